@@ -1,0 +1,71 @@
+"""What goes wrong, as data: a user's mistakes (with place, excerpt and remedy) and notices; our own bugs are another type."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Span:
+    """A place in the model file; line and columns count from 1, `end_column` is one past the last character."""
+
+    line: int
+    column: int
+    end_column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """One mistake of the user: what is wrong, where, and what to do."""
+
+    message: str
+    remedy: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """Something the user should know that is no mistake."""
+
+    message: str
+    span: Span | None = None
+
+
+class ModelError(Exception):
+    """All mistakes of one model file, in the order of the file."""
+
+    def __init__(self, file: str, text: str, mistakes: tuple[Mistake, ...]) -> None:
+        self.file = file
+        self.text = text
+        self.mistakes = tuple(sorted(mistakes, key=lambda m: m.span or Span(0, 0, 0)))
+        super().__init__(self.render())
+
+    def render(self) -> str:
+        """Every mistake as `file:line:column: message`, the excerpt with a marker, and the remedy."""
+        return "\n".join(render_mistake(self.file, self.text, mistake) for mistake in self.mistakes)
+
+
+class SymgenBug(Exception):
+    """A fault of symgen itself, never of the user: names the stage and what was being worked on."""
+
+
+EXCERPT_WIDTH = 110
+
+
+def render_mistake(file: str, text: str, mistake: Mistake) -> str:
+    """One mistake as text, ending in a line break."""
+    if mistake.span is None:
+        return f"{file}: {mistake.message}\n  remedy: {mistake.remedy}\n"
+    span = mistake.span
+    lines = text.splitlines()
+    line = lines[span.line - 1] if 0 < span.line <= len(lines) else ""
+    start = max(0, span.column - 1 - EXCERPT_WIDTH // 2) if len(line) > EXCERPT_WIDTH else 0
+    excerpt = line[start : start + EXCERPT_WIDTH].replace("\t", " ")
+    width = max(1, min(span.end_column - span.column, len(excerpt) - (span.column - 1 - start)))
+    marker = " " * (span.column - 1 - start) + "^" * width
+    gutter = f"{span.line:5d} | "
+    return (
+        f"{file}:{span.line}:{span.column}: {mistake.message}\n"
+        f"{gutter}{excerpt}\n{' ' * (len(gutter) - 2)}| {marker}\n"
+        f"  remedy: {mistake.remedy}\n"
+    )

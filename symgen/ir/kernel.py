@@ -1,0 +1,163 @@
+"""Straight-line programs over real scalars: the noun between the mathematics and every back end.
+
+One operation per statement, each target assigned once, so that C, Python and the interpreter perform the same IEEE
+operations in the same order.  Nothing here knows mechanics.  A program is made for one scalar type: literals, status
+thresholds and the sine/cosine function differ between float64 and float32.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from fractions import Fraction
+from typing import Literal as Choice
+from typing import TypeAlias
+
+Scalar: TypeAlias = Choice["float64", "float32"]
+UNIT_ROUNDOFF: dict[Scalar, Fraction] = {"float64": Fraction(1, 2**53), "float32": Fraction(1, 2**24)}
+
+
+class Status(IntEnum):
+    """What a kernel reports; see interface.md for the meaning of each."""
+
+    OK = 0
+    NOT_FINITE = 1
+    CONSTRAINT_RANK = 2
+    ACTUATION_RANK = 3
+    ANGLE_RANGE = 4
+    MASS_RANK = 5
+
+
+OperationName: TypeAlias = Choice[
+    "add",
+    "sub",
+    "mul",
+    "div",
+    "neg",
+    "abs",
+    "sqrt",
+    "copysign",  # magnitude of the first operand, sign of the second
+    "ratio_or_zero",  # a / b, and 0 where b == 0
+    "sincos",  # two targets (sine, cosine); the program's own function
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "exp",
+    "log",
+    "sinh",
+    "cosh",
+    "tanh",
+    "pow",  # real power with a literal exponent, where products and roots do not serve
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """A value loaded from an argument or assigned by a statement."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """An exact number, rounded once to the program's scalar type where it is printed."""
+
+    value: Fraction
+
+
+Operand: TypeAlias = Local | Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """`local = argument[index]`; for the parameter struct `p`, `member` names the parameter."""
+
+    local: str
+    argument: Choice["q", "qd", "qdd", "u", "p"]
+    index: int
+    member: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """`targets = operation(operands)`; two targets for `sincos` only, else one."""
+
+    targets: tuple[str, ...]
+    operation: OperationName
+    operands: tuple[Operand, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Statements and the checks on their values, in order."""
+
+    statements: tuple[Statement, ...]
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """Return `status` unless `value > limit` (`>=` if `inclusive`); written so that NaN fails.
+
+    `first` is evaluated only on failure: if one of its checks fails, that status is returned instead (it tells a
+    drop of the constraint rank from a drop of the actuation rank without work on the way of a regular state).
+    """
+
+    status: Status
+    value: Operand
+    limit: Operand
+    inclusive: bool = False
+    first: Block | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """An array argument of a kernel; arrays of length 0 are left out of signatures."""
+
+    name: Choice["q", "qd", "qdd", "u"]
+    length: int
+
+
+@dataclass(frozen=True, slots=True)
+class Kernel:
+    """One quantity: inputs are loaded before anything is stored, outputs are stored only when every check passed.
+
+    Order at run time: loads, then `blocks` one after the other (statements, then their checks), then the test that
+    every output is finite (status NOT_FINITE), then the stores.  `outputs` are row-major entries of `shape`.
+    """
+
+    name: str
+    arguments: tuple[Argument, ...]
+    loads: tuple[Load, ...]
+    blocks: tuple[Block, ...]
+    outputs: tuple[Operand, ...]
+    shape: tuple[int, ...]
+
+    @property
+    def statements(self) -> tuple[Statement, ...]:
+        """The statements on the way of a regular state."""
+        return tuple(statement for block in self.blocks for statement in block.statements)
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A straight-line helper shared by the kernels of a program: the portable sine and cosine."""
+
+    name: str
+    parameters: tuple[str, ...]
+    statements: tuple[Statement, ...]
+    results: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """All kernels of one model for one scalar type.
+
+    `sincos` is the straight-line body of the portable sine/cosine pair, or None where the C library's are called.
+    """
+
+    scalar: Scalar
+    sincos: Function | None
+    kernels: tuple[Kernel, ...]

@@ -1,0 +1,191 @@
+"""The resolved model: what the user wrote, checked and complete, as frozen data.
+
+Names in expressions refer to coordinates `x`, rates `x_dot`, accelerations `x_ddot` (published formulas only),
+parameters, definitions (kept as names, in order of use), and in paths the time `t`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+from symgen.diagnostics import Notice, Span
+from symgen.model.expression import Expression
+
+Range: TypeAlias = tuple[Fraction, Fraction]
+Matrix: TypeAlias = tuple[tuple[Expression, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Coordinate:
+    """A generalized coordinate q^a, with the ranges states are sampled from."""
+
+    name: str
+    unit: str | None
+    description: str
+    is_angle: bool
+    range: Range
+    rate_range: Range
+    acceleration_range: Range
+    span: Span | None = None
+
+    @property
+    def rate(self) -> str:
+        """The name of the rate in expressions."""
+        return f"{self.name}_dot"
+
+    @property
+    def acceleration(self) -> str:
+        """The name of the acceleration in expressions."""
+        return f"{self.name}_ddot"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A run-time parameter of the kernels; `value` is its default, an expression of earlier parameters."""
+
+    name: str
+    unit: str | None
+    description: str
+    value: Expression
+    range: Range | None
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A named sub-expression of coordinates, rates, parameters and earlier definitions."""
+
+    name: str
+    value: Expression
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ConstraintRow:
+    """g(q) = 0 (geometric) or an expression linear in the rates, = 0 (nonholonomic)."""
+
+    name: str
+    kind: Literal["geometric", "nonholonomic"]
+    expression: Expression
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """One control force u_i: its column of the control matrix M(q), coordinate by coordinate."""
+
+    name: str
+    unit: str | None
+    description: str
+    acts_on: tuple[tuple[str, Expression], ...]
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class AppliedForce:
+    """A further generalized force Q_a(q, q_dot) on the right-hand side of one coordinate's equation."""
+
+    coordinate: str
+    expression: Expression
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedMatrix:
+    """A printed matrix (or column) of a quantity, and the corrected form where the print is wrong."""
+
+    equation: str
+    quantity: str
+    value: Matrix
+    corrected: Matrix | None
+    where: tuple[tuple[str, Expression], ...]
+    independent: tuple[str, ...]
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedEquations:
+    """Printed equations left = right in q, rates, accelerations, inputs and `multiplier_<row>`."""
+
+    equation: str
+    equations: tuple[tuple[Expression, Expression], ...]
+    corrected: tuple[tuple[Expression, Expression], ...]
+    where: tuple[tuple[str, Expression], ...]
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedSingularSet:
+    """The printed set where a quantity does not exist, as the zeros of an expression."""
+
+    equation: str
+    quantity: str
+    independent: tuple[str, ...]
+    where_zero: Expression
+    corrected: Expression | None
+    span: Span | None = None
+
+
+Published: TypeAlias = PublishedMatrix | PublishedEquations | PublishedSingularSet
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A trajectory q(t) on 0 <= t <= duration, fixed by the geometric constraints and `conditions`(q, t) = 0.
+
+    `definitions` are named expressions of t and parameters; `start` is where Newton's method begins at t = 0;
+    rates and accelerations follow by differentiating constraints and conditions.
+    """
+
+    name: str
+    description: str
+    duration: Fraction
+    samples: int
+    definitions: tuple[Definition, ...]
+    conditions: tuple[tuple[str, Expression], ...]
+    start: tuple[tuple[str, Fraction], ...]
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A mechanical system in energy form, complete: the input of every derivation."""
+
+    name: str
+    description: str
+    source: str
+    coordinates: tuple[Coordinate, ...]
+    parameters: tuple[Parameter, ...]
+    definitions: tuple[Definition, ...]
+    kinetic_energy: Expression
+    potential_energy: Expression
+    constraints: tuple[ConstraintRow, ...]
+    inputs: tuple[Input, ...]
+    applied_forces: tuple[AppliedForce, ...]
+    outputs: tuple[str, ...]
+    independent_velocities: tuple[str, ...]
+    configuration: tuple[tuple[str, Fraction], ...]
+    constraint_rank_tolerance: Fraction | None
+    actuation_rank_tolerance: Fraction | None
+    published: tuple[Published, ...]
+    paths: tuple[Path, ...]
+    report: Literal["full", "short"]
+    notices: tuple[Notice, ...]
+    text_hash: str
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.coordinates)
+
+    @property
+    def r(self) -> int:
+        """Number of constraint rows, geometric first, then non-holonomic, in the order of the file."""
+        return len(self.constraints)
+
+    @property
+    def m(self) -> int:
+        """Number of inputs."""
+        return len(self.inputs)
