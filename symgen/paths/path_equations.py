@@ -1,0 +1,83 @@
+"""The equations of a path, h(q, t) = [g(q); conditions(q, t)] = 0, with the derivatives Newton's method needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symgen.model.model import Model, Path
+
+Array = NDArray[np.float64]
+
+
+class PathError(Exception):
+    """A path of the model file that cannot be followed; the message names it and says what to change."""
+
+    def __init__(self, path: Path, message: str) -> None:
+        super().__init__(f"path {path.name}: {message}")
+
+
+@dataclass(frozen=True, slots=True)
+class PathEquations:
+    """h (k) and its Jacobian ∂h/∂q (k×n), the parts of ḣ and ḧ without q̈, and the non-holonomic rows' residual."""
+
+    path: Path
+    geometric_rows: int
+    _position: Any
+    _rate: Any
+    _acceleration: Any
+    _nonholonomic: Any
+    _parameters: Any
+
+    def position(self, q: Array, t: float) -> tuple[Array, Array]:
+        """h (k) and ∂h/∂q (k×n)."""
+        h, jacobian = self._position(q, t, self._parameters)
+        return h.full().ravel(), jacobian.full()
+
+    def rate(self, q: Array, t: float) -> Array:
+        """∂h/∂t, k."""
+        return np.asarray(self._rate(q, t, self._parameters).full().ravel())
+
+    def acceleration(self, q: Array, qd: Array, t: float) -> Array:
+        """d²h/dt² at q̈ = 0, k."""
+        return np.asarray(self._acceleration(q, qd, t, self._parameters).full().ravel())
+
+    def nonholonomic(self, q: Array, qd: Array) -> Array:
+        """What the non-holonomic rows leave of 0, r_v."""
+        return np.asarray(self._nonholonomic(q, qd, self._parameters).full().ravel())
+
+
+def path_equations(model: Model, path: Path) -> PathEquations:
+    """The equations of one path with the model's default parameters."""
+    import casadi
+
+    from symgen.witness.translate import default_parameters, translate, with_definitions
+
+    q, qd, t = casadi.SX.sym("q", model.n), casadi.SX.sym("qd", model.n), casadi.SX.sym("t")
+    p = casadi.SX.sym("p", len(model.parameters))
+    positions = {coordinate.name: q[i] for i, coordinate in enumerate(model.coordinates)}
+    positions |= {parameter.name: p[i] for i, parameter in enumerate(model.parameters)}
+    rates = {coordinate.rate: qd[i] for i, coordinate in enumerate(model.coordinates)}
+    model_scope = with_definitions(positions | rates, model.definitions)
+    path_scope = with_definitions(with_definitions(positions, model.definitions) | {"t": t}, path.definitions)
+    geometric = [translate(row.expression, model_scope) for row in model.constraints if row.kind == "geometric"]
+    nonholonomic = [translate(row.expression, model_scope) for row in model.constraints if row.kind == "nonholonomic"]
+    conditions = [translate(condition, path_scope) for _, condition in path.conditions]
+
+    h = casadi.densify(casadi.vertcat(casadi.SX(0, 1), *geometric, *conditions))
+    jacobian, h_t = casadi.jacobian(h, q), casadi.jacobian(h, t)
+    h_dot = jacobian @ qd + h_t
+    h_ddot = casadi.jacobian(h_dot, q) @ qd + casadi.jacobian(h_dot, t)
+    rows = casadi.densify(casadi.vertcat(casadi.SX(0, 1), *nonholonomic))
+    return PathEquations(
+        path=path,
+        geometric_rows=len(geometric),
+        _position=casadi.Function("position", [q, t, p], [h, jacobian]),
+        _rate=casadi.Function("rate", [q, t, p], [h_t]),
+        _acceleration=casadi.Function("acceleration", [q, qd, t, p], [h_ddot]),
+        _nonholonomic=casadi.Function("nonholonomic", [q, qd, p], [rows]),
+        _parameters=default_parameters(model),
+    )
