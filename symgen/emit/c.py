@@ -1,0 +1,203 @@
+"""C99 for microcontrollers: one header and one source file for each scalar type, usable alone or together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from symgen.emit.about import STATUS_MEANING, count_lines, renaming_lines, shape_text, symbol_lines, unit_text
+from symgen.emit.comments import c_comment, c_comment_lines, indent_of
+from symgen.emit.defaults import default_values
+from symgen.emit.literals import c_literal
+from symgen.emit.locals import Names, all_statements, names_of, used_locals
+from symgen.emit.quantities import meaning
+from symgen.emit.render import render
+from symgen.emit.statements import CStatements, c_type
+from symgen.ir.kernel import Function, Kernel, Local, Program, Status
+from symgen.model.model import Model
+from symgen.naming import c_identifiers, file_stem
+
+_WITHOUT_LIBRARY = frozenset({"add", "sub", "mul", "div", "neg", "ratio_or_zero"})
+
+
+@dataclass(frozen=True, slots=True)
+class MemberView:
+    """One member of the parameter struct and its default."""
+
+    name: str
+    comment: str
+    default: str
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionView:
+    """One function: comment, prototype without semicolon, body lines."""
+
+    comment: tuple[str, ...]
+    prototype: str
+    body: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CView:
+    """Everything the C templates print."""
+
+    stem: str
+    guard: str
+    status_guard: str
+    status_type: str
+    parameters_type: str
+    default_function: str
+    scalar: str
+    about: tuple[str, ...]
+    statuses: tuple[tuple[str, int, str], ...]
+    members: tuple[MemberView, ...]
+    functions: tuple[FunctionView, ...]
+    private: tuple[FunctionView, ...]
+    includes_math: bool
+
+
+def emit_c(model: Model, program: Program) -> dict[str, str]:
+    """Header and source of the program's scalar type: `c/<model>.h`, `.c` (float64) or `c/<model>_f.h`, `_f.c`."""
+    view = _view(model, program)
+    return {
+        f"c/{view.stem}.h": render("c/header.h.jinja", view),
+        f"c/{view.stem}.c": render("c/source.c.jinja", view),
+    }
+
+
+def status_name(model: Model, status: Status) -> str:
+    """The enumerator of a status."""
+    return f"{model.name.upper()}_{status.name}"
+
+
+def _suffix(program: Program) -> str:
+    return "" if program.scalar == "float64" else "_f"
+
+
+def _view(model: Model, program: Program) -> CView:
+    prefix, suffix = model.name, _suffix(program)
+    stem = file_stem(model.name) + suffix
+    status_type, parameters_type = f"{prefix}_status", f"{prefix}_params{suffix}"
+    default_function, sincos = f"{prefix}_default_params{suffix}", f"{prefix}_sincos{suffix}"
+    guard, status_guard = f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"
+    own = {status_type, parameters_type, default_function, sincos, guard, status_guard}
+    own |= {status_name(model, status) for status in Status}
+    own |= {f"{prefix}_{kernel.name}{suffix}" for kernel in program.kernels}
+    names = names_of(model, program, own)
+    called = program.sincos is not None and any(
+        statement.operation == "sincos" for kernel in program.kernels for statement in all_statements(kernel)
+    )
+    functions = tuple(_kernel(model, program, kernel, names, sincos, parameters_type) for kernel in program.kernels)
+    return CView(
+        stem=stem,
+        guard=guard,
+        status_guard=status_guard,
+        status_type=status_type,
+        parameters_type=parameters_type,
+        default_function=default_function,
+        scalar=c_type(program.scalar),
+        about=_about(model, program, names),
+        statuses=tuple((status_name(model, status), int(status), STATUS_MEANING[status]) for status in Status),
+        members=_members(model, program, names),
+        functions=functions,
+        private=(_sincos(program, program.sincos, sincos),) if program.sincos is not None and called else (),
+        includes_math=_uses_library(program),
+    )
+
+
+def _about(model: Model, program: Program, names: Names) -> tuple[str, ...]:
+    kind = "double precision" if program.scalar == "float64" else "single precision"
+    lines = list(c_comment_lines(f"{model.name}: {model.description or 'constrained mechanical system'} ({kind})"))
+    if model.source:
+        lines += c_comment_lines(f"Source: {model.source}")
+    for group in (symbol_lines(model), renaming_lines(names), count_lines(program)):
+        lines.append("")
+        lines += [wrapped for line in group for wrapped in _comment_line(line)]
+    return tuple(lines)
+
+
+def _comment_line(line: str) -> tuple[str, ...]:
+    """A prepared line, escaped; tables keep their columns, long lines are wrapped."""
+    indent = indent_of(line)
+    if indent:
+        return tuple(indent + wrapped for wrapped in c_comment_lines(line, "    "))
+    return (line,)
+
+
+def _members(model: Model, program: Program, names: Names) -> tuple[MemberView, ...]:
+    values = default_values(model)
+    members = []
+    for parameter in model.parameters:
+        default = c_literal(program.scalar, values[parameter.name]).strip("()")
+        about = " ".join(part for part in (unit_text(parameter.unit), parameter.description) if part)
+        comment = c_comment(f"{about}; default {default}" if about else f"default {default}")
+        members.append(MemberView(names.members[parameter.name], comment, default))
+    zero = c_literal(program.scalar, Fraction(0))
+    return tuple(members) or (MemberView("unused", "this model has no parameters", zero),)
+
+
+def _kernel(
+    model: Model, program: Program, kernel: Kernel, names: Names, sincos: str, parameters_type: str
+) -> FunctionView:
+    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    size = len(kernel.outputs)
+    arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in kernel.arguments]
+    arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
+    prototype = f"{model.name}_status {model.name}_{kernel.name}{_suffix(program)}({', '.join(arguments)})"
+    comment = c_comment_lines(f"{meaning(kernel.name)}; {output}: {shape_text(kernel)}")
+    return FunctionView(comment, prototype, _body(model, program, kernel, names, sincos))
+
+
+def _body(model: Model, program: Program, kernel: Kernel, names: Names, sincos: str) -> tuple[str, ...]:
+    used = used_locals(kernel)
+    own_sincos = None if program.sincos is None else sincos
+    printer = CStatements(program.scalar, names.locals, used, own_sincos, lambda status: status_name(model, status))
+    loads = [load for load in kernel.loads if load.local in used]
+    loaded = {load.argument for load in loads}
+    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    lines = [f"(void){name};" for name in (*(a.name for a in kernel.arguments), "p") if name not in loaded]
+    for load in loads:
+        place = f"p->{names.members[load.member]}" if load.argument == "p" else f"{load.argument}[{load.index}]"
+        lines.append(f"const {scalar} {names.locals[load.local]} = {place};")
+    lines += [line for block in kernel.blocks for line in printer.block(block)]
+    lines += _finite_test(model, program, kernel, names)
+    lines += [
+        f"{output}[{index}] = {printer.operand(operand).strip('()')};" for index, operand in enumerate(kernel.outputs)
+    ]
+    lines.append(f"return {status_name(model, Status.OK)};")
+    return tuple(lines)
+
+
+def _finite_test(model: Model, program: Program, kernel: Kernel, names: Names) -> list[str]:
+    """x - x is 0 for finite x and NaN otherwise; one comparison decides for all outputs."""
+    results = [names.locals[o.name] for o in dict.fromkeys(kernel.outputs) if isinstance(o, Local)]
+    if not results:
+        return []
+    scalar, zero = c_type(program.scalar), "0.0" if program.scalar == "float64" else "0.0f"
+    return [
+        f"{scalar} rest = {results[0]} - {results[0]};",
+        *(f"rest += {name} - {name};" for name in results[1:]),
+        f"if (!(rest >= {zero})) {{",
+        f"    return {status_name(model, Status.NOT_FINITE)};",
+        "}",
+    ]
+
+
+def _sincos(program: Program, function: Function, name: str) -> FunctionView:
+    scalar = c_type(program.scalar)
+    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
+    names = c_identifiers(own, {"sine", "cosine", name})
+    printer = CStatements(program.scalar, names, frozenset(own))
+    sine, cosine = function.results
+    body = [line for statement in function.statements for line in printer.statement(statement)]
+    body += [f"*sine = {names[sine]};", f"*cosine = {names[cosine]};"]
+    prototype = f"static void {name}(const {scalar} {names[function.parameters[0]]}, {scalar} *sine, {scalar} *cosine)"
+    return FunctionView(("Sine and cosine, the same bits on every IEEE platform.",), prototype, tuple(body))
+
+
+def _uses_library(program: Program) -> bool:
+    own = () if program.sincos is None else program.sincos.statements
+    free = _WITHOUT_LIBRARY if program.sincos is None else _WITHOUT_LIBRARY | {"sincos"}
+    statements = [*own, *(statement for kernel in program.kernels for statement in all_statements(kernel))]
+    return any(statement.operation not in free for statement in statements)

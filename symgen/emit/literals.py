@@ -1,0 +1,65 @@
+"""Exact numbers as source text: rounded once, to nearest even, and printed with the fewest digits that read back."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+
+from symgen.diagnostics import SymgenBug
+from symgen.ir.kernel import Scalar
+
+_FLOAT32_DIGITS = 24
+_FLOAT32_LOWEST_EXPONENT = -149
+_FLOAT32_LIMIT = Fraction(2**128)
+
+
+def round_to_float32(value: Fraction) -> float:
+    """The binary32 number nearest to `value` (ties to even), exactly held in a Python float; no double rounding."""
+    if value == 0:
+        return 0.0
+    magnitude = abs(value)
+    exponent = magnitude.numerator.bit_length() - magnitude.denominator.bit_length()
+    if magnitude < Fraction(2) ** exponent:
+        exponent -= 1
+    unit = Fraction(2) ** max(exponent - (_FLOAT32_DIGITS - 1), _FLOAT32_LOWEST_EXPONENT)
+    rounded = round(magnitude / unit) * unit  # Fraction rounds half to even
+    if rounded >= _FLOAT32_LIMIT:
+        raise OverflowError(f"{float(value):.6g} does not fit in float32")
+    return math.copysign(float(rounded), value)
+
+
+def round_to(scalar: Scalar, value: Fraction) -> float:
+    """`value` rounded once to the scalar type, as a Python float that holds it exactly."""
+    return float(value) if scalar == "float64" else round_to_float32(value)
+
+
+def decimal_text(scalar: Scalar, value: Fraction) -> str:
+    """The shortest decimal that reads back as `value` rounded to the scalar type; always with a point or exponent."""
+    try:
+        rounded = round_to(scalar, value)
+    except OverflowError as error:
+        raise SymgenBug(f"emit: the literal {value} does not fit in {scalar}") from error
+    if scalar == "float64":
+        return repr(rounded)
+    texts = (f"{rounded:.{digits}g}" for digits in range(1, 10))  # nine digits always read back
+    return repr(float(next(text for text in texts if _reads_back(text, rounded))))
+
+
+def c_literal(scalar: Scalar, value: Fraction) -> str:
+    """A C constant of the scalar type; negative ones in parentheses."""
+    text = decimal_text(scalar, value) + ("f" if scalar == "float32" else "")
+    return f"({text})" if text.startswith("-") else text
+
+
+def numpy_literal(value: Fraction) -> str:
+    """A Python float; negative ones in parentheses."""
+    text = decimal_text("float64", value)
+    return f"({text})" if text.startswith("-") else text
+
+
+def _reads_back(text: str, rounded: float) -> bool:
+    try:
+        return round_to_float32(Fraction(Decimal(text))) == rounded
+    except OverflowError:
+        return False

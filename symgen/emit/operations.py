@@ -1,0 +1,47 @@
+"""What a kernel costs: operations counted by kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from symgen.ir.kernel import Statement
+
+_KIND = {
+    "add": "add",
+    "sub": "add",
+    "mul": "mul",
+    "div": "div",
+    "ratio_or_zero": "div",
+    "sqrt": "sqrt",
+    "sincos": "sincos",
+    "neg": "sign",
+    "abs": "sign",
+    "copysign": "sign",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class OperationCounts:
+    """Operations of a straight-line program; `sign` counts neg, abs and copysign, `other` the library's functions."""
+
+    add: int
+    mul: int
+    div: int
+    sqrt: int
+    sincos: int
+    sign: int
+    other: int
+
+    @property
+    def total(self) -> int:
+        """All operations; a sine/cosine pair counts as one."""
+        return self.add + self.mul + self.div + self.sqrt + self.sincos + self.sign + self.other
+
+
+def count_operations(statements: Iterable[Statement]) -> OperationCounts:
+    """Counts the statements by kind."""
+    counts = dict.fromkeys(("add", "mul", "div", "sqrt", "sincos", "sign", "other"), 0)
+    for statement in statements:
+        counts[_KIND.get(statement.operation, "other")] += 1
+    return OperationCounts(**counts)

@@ -1,0 +1,147 @@
+"""IR statements as source lines: one IEEE operation a line, the same operation in C and in NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+
+from symgen.emit.literals import c_literal, numpy_literal
+from symgen.ir.kernel import Block, Check, Literal, Local, Operand, Scalar, Statement, Status
+
+_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+_C_FUNCTIONS = {"abs": "fabs"}
+_NUMPY_FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2", "pow": "power"}
+
+
+def c_type(scalar: Scalar) -> str:
+    """The C type of a scalar."""
+    return "double" if scalar == "float64" else "float"
+
+
+@dataclass(frozen=True, slots=True)
+class CStatements:
+    """Prints statements and checks as C99, which is C++11 too.
+
+    `sincos` names the file's own sine/cosine function, None calls the library's; `status` maps a status to its
+    enumerator; locals outside `used` are not printed where a statement has two targets.
+    """
+
+    scalar: Scalar
+    names: Mapping[str, str]
+    used: Collection[str]
+    sincos: str | None = None
+    status: Callable[[Status], str] = str
+
+    def operand(self, operand: Operand) -> str:
+        """A local's identifier or a constant."""
+        match operand:
+            case Local(name):
+                return self.names[name]
+            case Literal(value):
+                return c_literal(self.scalar, value)
+
+    def function(self, name: str) -> str:
+        """The math.h function of the scalar type."""
+        return _C_FUNCTIONS.get(name, name) + ("f" if self.scalar == "float32" else "")
+
+    def statement(self, statement: Statement) -> tuple[str, ...]:
+        """One statement as lines."""
+        operands = [self.operand(operand) for operand in statement.operands]
+        if statement.operation == "sincos":
+            return self._sincos(statement.targets, operands[0])
+        return (self._declare(statement.targets[0], self._expression(statement.operation, operands)),)
+
+    def block(self, block: Block) -> tuple[str, ...]:
+        """Statements, then checks."""
+        statements = [line for statement in block.statements for line in self.statement(statement)]
+        checks = [line for check in block.checks for line in self._check(check)]
+        return (*statements, *checks)
+
+    def _declare(self, target: str, expression: str) -> str:
+        return f"const {c_type(self.scalar)} {self.names[target]} = {expression};"
+
+    def _expression(self, operation: str, operands: list[str]) -> str:
+        if operation in _INFIX:
+            return f"{operands[0]} {_INFIX[operation]} {operands[1]}"
+        if operation == "neg":
+            return f"-{operands[0]}"
+        if operation == "ratio_or_zero":
+            zero = "0.0f" if self.scalar == "float32" else "0.0"
+            return f"{operands[1]} != {zero} ? {operands[0]} / {operands[1]} : {zero}"
+        return f"{self.function(operation)}({', '.join(operands)})"
+
+    def _sincos(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
+        if self.sincos is None:
+            pairs = zip(targets, ("sin", "cos"), strict=True)
+            return tuple(self._declare(t, f"{self.function(name)}({angle})") for t, name in pairs if t in self.used)
+        sine, cosine = (self.names[target] for target in targets)
+        # Taking the address is a use, so a half that nothing reads gives no warning.
+        return (f"{c_type(self.scalar)} {sine}, {cosine};", f"{self.sincos}({angle}, &{sine}, &{cosine});")
+
+    def _check(self, check: Check) -> tuple[str, ...]:
+        relation = ">=" if check.inclusive else ">"
+        first = () if check.first is None else self.block(check.first)
+        return (
+            f"if (!({self.operand(check.value)} {relation} {self.operand(check.limit)})) {{",
+            *(f"    {line}" for line in first),
+            f"    return {self.status(check.status)};",
+            "}",
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class NumpyStatements:
+    """Prints statements and checks as NumPy over arrays of states; a state keeps the first status it gets."""
+
+    names: Mapping[str, str]
+    used: Collection[str]
+    sincos: str | None = None
+
+    def operand(self, operand: Operand) -> str:
+        """A local's identifier or a constant."""
+        match operand:
+            case Local(name):
+                return self.names[name]
+            case Literal(value):
+                return numpy_literal(value)
+
+    def statement(self, statement: Statement) -> tuple[str, ...]:
+        """One statement as lines."""
+        operands = [self.operand(operand) for operand in statement.operands]
+        targets = [self.names[target] for target in statement.targets]
+        if statement.operation != "sincos":
+            return (f"{targets[0]} = {self._expression(statement.operation, operands)}",)
+        if self.sincos is not None:
+            return (f"{', '.join(targets)} = {self.sincos}({operands[0]})",)
+        pairs = zip(statement.targets, ("sin", "cos"), strict=True)
+        return tuple(f"{self.names[t]} = np.{name}({operands[0]})" for t, name in pairs if t in self.used)
+
+    def block(self, block: Block, context: str = "") -> tuple[str, ...]:
+        """Statements, then checks; `context` names the mask of states that this block is about (empty: all)."""
+        statements = [line for statement in block.statements for line in self.statement(statement)]
+        checks = [line for check in block.checks for line in self._check(check, context)]
+        return (*statements, *checks)
+
+    def _expression(self, operation: str, operands: list[str]) -> str:
+        if operation in _INFIX:
+            return f"{operands[0]} {_INFIX[operation]} {operands[1]}"
+        if operation == "neg":
+            return f"-{operands[0]}"
+        if operation == "ratio_or_zero":
+            return f"_ratio_or_zero({operands[0]}, {operands[1]})"
+        return f"np.{_NUMPY_FUNCTIONS.get(operation, operation)}({', '.join(operands)})"
+
+    def _check(self, check: Check, context: str) -> tuple[str, ...]:
+        relation = ">=" if check.inclusive else ">"
+        failed = f"~np.asarray({self.operand(check.value)} {relation} {self.operand(check.limit)})"
+        if context:
+            failed = f"{context} & {failed}"
+        if check.first is None:
+            return (f"status = _first(status, {failed}, {int(check.status)})",)
+        mask = f"{context or '_failed'}_"  # a leading underscore is no name of the user's
+        return (
+            f"{mask} = {failed}",
+            f"if np.any({mask} & (status == 0)):",
+            *(f"    {line}" for line in self.block(check.first, mask)),
+            f"    status = _first(status, {mask}, {int(check.status)})",
+        )
