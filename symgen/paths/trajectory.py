@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from symgen.model.model import Model, Path
 from symgen.paths.path_equations import Array, PathEquations, PathError, path_equations
@@ -22,10 +21,10 @@ SMALLEST_STEP = 1e-6  # of a grid interval, where continuation gives up
 class Trajectory:
     """Samples of a motion: t (k), and q, qd, qdd (k×n) in the order of the model's coordinates."""
 
-    t: NDArray[np.float64]
-    q: NDArray[np.float64]
-    qd: NDArray[np.float64]
-    qdd: NDArray[np.float64]
+    t: Array
+    q: Array
+    qd: Array
+    qdd: Array
 
 
 class PathSolver:

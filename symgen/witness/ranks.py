@@ -68,10 +68,11 @@ def _start(model: Model, generator: np.random.Generator, near_configuration: boo
     high = np.array([float(coordinate.range[1]) for coordinate in model.coordinates])
     anywhere = low + (high - low) * generator.random(model.n)
     if not (near_configuration and model.configuration):
-        return anywhere
+        return np.asarray(anywhere)
     known = {name: float(value) for name, value in model.configuration}
     given = np.array([known.get(coordinate.name, np.nan) for coordinate in model.coordinates])
-    return np.asarray(np.where(np.isnan(given), anywhere, given + 0.3 * (generator.random(model.n) - 0.5)))
+    near: Array = given + 0.3 * (generator.random(model.n) - 0.5)
+    return np.asarray(np.where(np.isnan(given), anywhere, near))
 
 
 def _rank(matrix: Array, scale: float | None = None) -> int:
@@ -87,4 +88,5 @@ def _null_projector(B: Array) -> Array:
         return np.eye(B.shape[1])
     _, values, Vt = np.linalg.svd(B)
     F = Vt[int(np.sum(values > RANK_TOLERANCE * values[0])) :].T
-    return np.asarray(F @ F.T)
+    projector: Array = F @ F.T
+    return projector

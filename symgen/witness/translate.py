@@ -34,8 +34,8 @@ def translate(expression: Expression, scope: Mapping[str, casadi.SX]) -> casadi.
         case Power(base=base, exponent=exponent):
             return _power(translate(base, scope), exponent)
         case Call(function=function, arguments=arguments):
-            value: casadi.SX = getattr(casadi, function)(*(translate(argument, scope) for argument in arguments))
-            return value
+            result: casadi.SX = getattr(casadi, function)(*(translate(argument, scope) for argument in arguments))
+            return result
 
 
 def _power(base: casadi.SX, exponent: Fraction) -> casadi.SX:
