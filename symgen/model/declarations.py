@@ -1,0 +1,178 @@
+"""What a model declares by name: coordinates, parameters, definitions, inputs, constraint rows."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from symgen.model.constants import range_of
+from symgen.model.expression import Expression, Number
+from symgen.model.model import AppliedForce, ConstraintRow, Definition, Input, Parameter, Range
+from symgen.model.names import did_you_mean
+from symgen.model.parser import parse_expression
+from symgen.model.reading import description_of, entries, member, text_of
+from symgen.model.scope import CONFIGURATION, PARAMETERS, STATE, Scope
+from symgen.model.source import MappingNode, Node, ScalarNode
+from symgen.model.walk import names_in
+
+DeclaredRanges = dict[str, Range]
+
+
+def declare_names(scope: Scope, tree: MappingNode) -> None:
+    """Enters every name of the file, so that each expression can be checked against all of them."""
+    for block, kind in (("coordinates", "coordinate"), ("parameters", "parameter"), ("definitions", "definition")):
+        for key, _ in entries(tree.get(block)):
+            scope.declare(key, kind)  # type: ignore[arg-type]
+    for key, _ in entries(tree.get("inputs")):
+        scope.declare(key, "input")
+    for block in ("geometric", "nonholonomic"):
+        for key, _ in entries(member(tree.get("constraints"), block)):
+            if scope.declare(key, "constraint row"):
+                scope.kinds.setdefault(f"multiplier_{key.value}", "multiplier")
+
+
+def read_ranges(scope: Scope, tree: MappingNode) -> DeclaredRanges:
+    """The ranges by name, from the `range:` of entries and from the block `ranges`."""
+    ranges: DeclaredRanges = {}
+    for block in ("coordinates", "parameters"):
+        for key, value in entries(tree.get(block)):
+            declared = range_of(scope, member(value, "range"), f"the range of `{key.value}`")
+            if declared is not None:
+                ranges[key.value] = declared
+    ranged = [name for name, kind in scope.kinds.items() if kind in ("coordinate", "rate", "acceleration", "parameter")]
+    for key, value in entries(tree.get("ranges")):
+        if key.value not in ranged:
+            remedy = did_you_mean(key.value, ranged, "name a coordinate, rate, acceleration or parameter")
+            scope.wrong(f"unknown name `{key.value}` in `ranges`", remedy, key.span)
+            continue
+        if key.value in ranges:
+            scope.wrong(f"`{key.value}` has two ranges", "keep the one here or the one at its declaration", key.span)
+            continue
+        declared = range_of(scope, value, f"the range of `{key.value}`")
+        if declared is not None:
+            ranges[key.value] = declared
+    return ranges
+
+
+def read_parameters(scope: Scope, tree: MappingNode, ranges: DeclaredRanges) -> tuple[Parameter, ...]:
+    """The parameters, each a number or an expression of earlier ones."""
+    parameters: list[Parameter] = []
+    block = entries(tree.get("parameters"))
+    cycles = _cyclic(block)
+    for key, node in block:
+        value_node = node if isinstance(node, ScalarNode) else member(node, "value")
+        known = [parameter.name for parameter in parameters]
+        value = _ordered(scope, key, value_node, f"the value of `{key.value}`", PARAMETERS, known, cycles)
+        # A faulty value stands in as 1, so that what uses the parameter is still checked.
+        value = value or Number(Fraction(1))
+        unit = text_of(member(node, "unit"))
+        parameters.append(
+            Parameter(key.value, unit, description_of(node), value, ranges.get(key.value), key.span)
+        )
+    return tuple(parameters)
+
+
+def read_definitions(scope: Scope, tree: MappingNode) -> tuple[Definition, ...]:
+    """The named sub-expressions, each of coordinates, rates, parameters and earlier ones."""
+    definitions: list[Definition] = []
+    block = entries(tree.get("definitions"))
+    cycles = _cyclic(block)
+    parameters = [name for name, kind in scope.kinds.items() if kind == "parameter"]
+    for key, node in block:
+        known = [*parameters, *(definition.name for definition in definitions)]
+        value = _ordered(scope, key, node, f"the definition `{key.value}`", STATE, known, cycles)
+        if value is not None and any(
+            scope.kinds[name.name] == "rate" or name.name in scope.rate_definitions for name in names_in(value)
+        ):
+            scope.rate_definitions.add(key.value)
+        definitions.append(Definition(key.value, value or Number(Fraction(1)), key.span))
+    return tuple(definitions)
+
+
+def read_constraints(scope: Scope, tree: MappingNode) -> tuple[ConstraintRow, ...]:
+    """The rows, geometric ones first; faulty rows are left out."""
+    rows: list[ConstraintRow] = []
+    block = tree.get("constraints")
+    for key, node in entries(member(block, "geometric")):
+        expression = scope.expression(node, f"the geometric constraint `{key.value}`", CONFIGURATION)
+        if expression is not None:
+            rows.append(ConstraintRow(key.value, "geometric", expression, node.span))
+    for key, node in entries(member(block, "nonholonomic")):
+        expression = scope.expression(node, f"the constraint `{key.value}`", STATE)
+        if expression is not None:
+            rows.append(ConstraintRow(key.value, "nonholonomic", expression, node.span))
+    return tuple(rows)
+
+
+def read_inputs(scope: Scope, tree: MappingNode) -> tuple[Input, ...]:
+    """The inputs with their columns of the control matrix."""
+    inputs: list[Input] = []
+    for key, node in entries(tree.get("inputs")):
+        column: list[tuple[str, Expression]] = []
+        for target, coefficient in entries(member(node, "acts_on")):
+            if _is_coordinate(scope, target, f"`acts_on` of `{key.value}`"):
+                where = f"the coefficient of `{key.value}` on `{target.value}`"
+                expression = scope.expression(coefficient, where, CONFIGURATION)
+                if expression is not None:
+                    column.append((target.value, expression))
+        unit = text_of(member(node, "unit"))
+        inputs.append(Input(key.value, unit, description_of(node), tuple(column), key.span))
+    return tuple(inputs)
+
+
+def read_applied_forces(scope: Scope, tree: MappingNode) -> tuple[AppliedForce, ...]:
+    """The further generalized forces."""
+    forces: list[AppliedForce] = []
+    for key, node in entries(tree.get("applied_forces")):
+        if _is_coordinate(scope, key, "`applied_forces`"):
+            expression = scope.expression(node, f"the applied force on `{key.value}`", STATE)
+            if expression is not None:
+                forces.append(AppliedForce(key.value, expression, key.span))
+    return tuple(forces)
+
+
+def _is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:
+    if scope.kinds.get(key.value) == "coordinate":
+        return True
+    coordinates = [name for name, kind in scope.kinds.items() if kind == "coordinate"]
+    remedy = did_you_mean(key.value, coordinates, "forces act on coordinates; name one of them")
+    scope.wrong(f"`{key.value}` in {where} is no coordinate", remedy, key.span)
+    return False
+
+
+def _ordered(
+    scope: Scope, key: ScalarNode, node: Node | None, where: str, allowed: frozenset, known: list[str],
+    cycles: dict[str, str],
+) -> Expression | None:  # fmt: skip
+    if key.value in cycles:
+        span = node.span if node is not None else key.span
+        scope.wrong(f"`{key.value}` is defined by itself: {cycles[key.value]}", "break the circle", span)
+        return None
+    return scope.expression(node, where, allowed, known)
+
+
+def _cyclic(block: tuple[tuple[ScalarNode, Node], ...]) -> dict[str, str]:
+    """For each name that leads back to itself, the shortest way round, as `a -> b -> a`."""
+    uses: dict[str, list[str]] = {}
+    for key, node in block:
+        scalar = node if isinstance(node, ScalarNode) else member(node, "value")
+        parsed = parse_expression(scalar) if isinstance(scalar, ScalarNode) and scalar.value.strip() else None
+        if parsed is not None and not hasattr(parsed, "remedy"):
+            uses[key.value] = list(dict.fromkeys(name.name for name in names_in(parsed)))  # type: ignore[arg-type]
+    cycles: dict[str, str] = {}
+    for start in uses:
+        previous: dict[str, str] = {}
+        frontier = [start]
+        while frontier and start not in previous:
+            reached: list[str] = []
+            for name in frontier:
+                for used in uses.get(name, ()):
+                    if used in uses and used not in previous:
+                        previous[used] = name
+                        reached.append(used)
+            frontier = reached
+        if start in previous:
+            way = [start]
+            while len(way) == 1 or way[-1] != start:
+                way.append(previous[way[-1]])
+            cycles[start] = " -> ".join(reversed(way))
+    return cycles

@@ -1,0 +1,36 @@
+"""A model file as a Model, or all its mistakes at once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from symgen.diagnostics import Mistake, ModelError, Span
+from symgen.model.model import Model
+from symgen.model.resolve import resolve
+from symgen.model.scope import Scope
+from symgen.model.source import read_tree
+
+
+def load_model(path: Path) -> Model:
+    """The model in the file at `path`; raises ModelError with every mistake, OSError where it cannot be read."""
+    data = path.read_bytes()
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        mistake = Mistake("the file is not text in UTF-8", "save it as UTF-8", Span(line, 1, 2))
+        raise ModelError(str(path), data.decode("utf-8", "replace"), (mistake,)) from None
+    return load_text(text, str(path))
+
+
+def load_text(text: str, file: str) -> Model:
+    """The model in `text`; `file` is its name in messages.  Raises ModelError with every mistake."""
+    tree, mistakes = read_tree(text)
+    if tree is None:
+        raise ModelError(file, text, mistakes)
+    scope = Scope(mistakes=list(mistakes))
+    model = resolve(scope, tree, text)
+    if scope.mistakes:
+        raise ModelError(file, text, tuple(scope.mistakes))
+    return replace(model, notices=tuple(scope.notices))

@@ -1,0 +1,64 @@
+"""Which names a model may use, and the nearest known name to a misspelt one."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable
+
+from symgen.diagnostics import Mistake
+from symgen.model.expression import FUNCTION_ARITY
+from symgen.model.source import ScalarNode
+
+MAXIMUM_NAME = 40
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
+
+_C = """auto break case char const continue default do double else enum extern float for goto if inline int long register
+restrict return short signed sizeof static struct switch typedef union unsigned void volatile while"""
+_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t class co_await co_return
+co_yield compl concept const_cast consteval constexpr constinit decltype delete dynamic_cast explicit export false
+friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public reinterpret_cast
+requires static_assert static_cast template this thread_local throw true try typeid typename using virtual wchar_t xor
+xor_eq"""
+_PYTHON = """False None True and as assert async await break class continue def del elif else except finally for from
+global if import in is lambda nonlocal not or pass raise return try while with yield"""
+RESERVED: dict[str, str] = {
+    **dict.fromkeys(_PYTHON.split(), "a keyword of Python"),
+    **dict.fromkeys(_CPP.split(), "a keyword of C++"),
+    **dict.fromkeys(_C.split(), "a keyword of C"),
+    **dict.fromkeys(FUNCTION_ARITY, "a function of the language"),
+    "pi": "the number pi",
+    "t": "the time",
+    **dict.fromkeys(("null", "true", "false"), "a word of YAML"),
+}
+
+
+def name_mistake(node: ScalarNode, what: str) -> Mistake | None:
+    """What is wrong with `node` as a name of a `what` ("coordinate"); None for a good name."""
+    name = node.value
+    shown = name if len(name) <= MAXIMUM_NAME else name[:MAXIMUM_NAME] + "..."
+    if not _NAME.fullmatch(name):
+        message = f"`{shown}` is no name for a {what}"
+        if set(name) & set("()+*/, "):
+            remedy = "names are letters, digits and _; inside { } quote an expression that has a comma, or use block style"
+        else:
+            remedy = "names start with a letter and go on with letters a-z, A-Z, digits and _"
+        return Mistake(message, remedy, node.span)
+    if len(name) > MAXIMUM_NAME:
+        message = f"the name `{shown}` has {len(name)} characters, at most {MAXIMUM_NAME} are allowed"
+        return Mistake(message, "choose a shorter name, and say more in its description", node.span)
+    if name in RESERVED:
+        return Mistake(f"`{name}` is reserved: {RESERVED[name]}", f"rename it, for example to `{name}_1`", node.span)
+    if name.endswith(("_dot", "_ddot")):
+        message = f"`{name}` is reserved: names in _dot and _ddot are rates and accelerations of coordinates"
+        return Mistake(message, "choose another ending", node.span)
+    return None
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
+    """The remedy for an unknown name: the nearest known one, else `otherwise`."""
+    candidates = sorted(known)
+    near = difflib.get_close_matches(name, candidates, 1, 0.6)
+    if not near:
+        near = [candidate for candidate in candidates if candidate.lower() == name.lower()]
+    return f"did you mean `{near[0]}`?" if near else otherwise

@@ -1,0 +1,65 @@
+"""The block `paths`: trajectories as functions of t, fixed by conditions on the configuration."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from symgen.model.constants import constant, whole_number
+from symgen.model.expression import Expression, Number
+from symgen.model.model import Definition, Path
+from symgen.model.names import did_you_mean, name_mistake
+from symgen.model.reading import description_of, entries, member
+from symgen.model.scope import CONFIGURATION, Scope
+from symgen.model.source import MappingNode, Node, ScalarNode
+
+MAXIMUM_SAMPLES = 100_000
+
+
+def read_paths(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...]) -> tuple[Path, ...]:
+    """The paths in the order of the file."""
+    paths: list[Path] = []
+    for key, node in entries(tree.get("paths")):
+        mistake = name_mistake(key, "path")
+        if mistake is not None:
+            scope.mistakes.append(mistake)
+        path = _path(scope, key, node, coordinates)
+        if path is not None:
+            paths.append(path)
+    return tuple(paths)
+
+
+def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...]) -> Path | None:
+    name = key.value
+    duration = constant(scope, member(node, "duration"), f"the duration of path `{name}`")
+    samples = whole_number(scope, member(node, "samples"), f"the number of samples of path `{name}`", 2, MAXIMUM_SAMPLES)
+    if duration is not None and duration <= 0:
+        scope.wrong(f"the duration of path `{name}` is not positive", "write a time in seconds", node.span)
+    local = Scope({**scope.kinds, "t": "time"}, scope.spans, scope.rate_definitions, scope.used, scope.mistakes)
+    definitions: list[Definition] = []
+    for symbol, value in entries(member(node, "definitions")):
+        allowed = frozenset({"time", "parameter", "symbol"})
+        expression = local.expression(value, f"`{symbol.value}` of path `{name}`", allowed)
+        if local.declare(symbol, "symbol"):
+            definitions.append(Definition(symbol.value, expression or Number(Fraction(1)), symbol.span))
+    conditions: list[tuple[str, Expression]] = []
+    for condition, value in entries(member(node, "conditions")):
+        mistake = name_mistake(condition, "condition")
+        if mistake is not None:
+            scope.mistakes.append(mistake)
+        allowed = CONFIGURATION | {"time", "symbol"}
+        expression = local.expression(value, f"the condition `{condition.value}` of path `{name}`", allowed)
+        if expression is not None:
+            conditions.append((condition.value, expression))
+    start: list[tuple[str, Fraction]] = []
+    for coordinate, value in entries(member(node, "start")):
+        if coordinate.value not in coordinates:
+            remedy = did_you_mean(coordinate.value, coordinates, "name coordinates")
+            scope.wrong(f"`{coordinate.value}` in `start` is no coordinate", remedy, coordinate.span)
+            continue
+        number = constant(scope, value, f"the start value of `{coordinate.value}`")
+        if number is not None:
+            start.append((coordinate.value, number))
+    if duration is None or samples is None:
+        return None
+    description = description_of(node)
+    return Path(name, description, duration, samples, tuple(definitions), tuple(conditions), tuple(start), key.span)

@@ -1,0 +1,32 @@
+"""Tolerant access to the tree: what has the wrong shape reads as absent, because the shape check has reported it."""
+
+from __future__ import annotations
+
+from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
+
+
+def entries(node: Node | None) -> tuple[tuple[ScalarNode, Node], ...]:
+    """The entries of a mapping."""
+    return node.entries if isinstance(node, MappingNode) else ()
+
+
+def items(node: Node | None) -> tuple[Node, ...]:
+    """The items of a list."""
+    return node.items if isinstance(node, SequenceNode) else ()
+
+
+def member(node: Node | None, key: str) -> Node | None:
+    """The value under `key` of a mapping."""
+    return node.get(key) if isinstance(node, MappingNode) else None
+
+
+def text_of(node: Node | None) -> str | None:
+    """The text of a scalar that is not empty, without surrounding white space."""
+    if isinstance(node, ScalarNode) and node.value.strip():
+        return node.value.strip()
+    return None
+
+
+def description_of(node: Node | None) -> str:
+    """The text under `description`, or nothing."""
+    return text_of(member(node, "description")) or ""

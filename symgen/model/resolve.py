@@ -1,0 +1,163 @@
+"""From the tree of the file to a complete Model: every name known, every default filled in."""
+
+from __future__ import annotations
+
+import hashlib
+from fractions import Fraction
+from typing import Literal
+
+from symgen.diagnostics import Notice
+from symgen.model.constants import constant
+from symgen.model.coordinates import read_coordinates
+from symgen.model.declarations import (
+    declare_names,
+    read_applied_forces,
+    read_constraints,
+    read_definitions,
+    read_inputs,
+    read_parameters,
+    read_ranges,
+)
+from symgen.model.expression import Expression, Number
+from symgen.model.model import Model
+from symgen.model.names import did_you_mean, name_mistake
+from symgen.model.paths import read_paths
+from symgen.model.published import read_published
+from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
+from symgen.model.reading import entries, items, member, text_of
+from symgen.model.scope import CONFIGURATION, STATE, Scope
+from symgen.model.source import MappingNode, Node, ScalarNode
+
+ZERO = Number(Fraction(0))
+
+
+def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
+    """The model as far as it can be understood; what cannot is a mistake in `scope`."""
+    declare_names(scope, tree)
+    ranges = read_ranges(scope, tree)
+    parameters = read_parameters(scope, tree, ranges)
+    definitions = read_definitions(scope, tree)
+    kinetic = _energy(scope, tree, "kinetic_energy", STATE)
+    potential = _energy(scope, tree, "potential_energy", CONFIGURATION)
+    constraints = read_constraints(scope, tree)
+    inputs = read_inputs(scope, tree)
+    forces = read_applied_forces(scope, tree)
+    used = [
+        kinetic, potential, *(row.expression for row in constraints), *(force.expression for force in forces),
+        *(coefficient for column in inputs for _, coefficient in column.acts_on),
+    ]  # fmt: skip
+    coordinates = read_coordinates(tree, ranges, definitions, used)
+    names = tuple(coordinate.name for coordinate in coordinates)
+    tolerances = tree.get("tolerances")
+    published = read_published(scope, tree, names)
+    paths = read_paths(scope, tree, names)
+    _notice_unused(scope, tree)
+    return Model(
+        name=_model_name(scope, tree),
+        description=text_of(tree.get("description")) or "",
+        source=text_of(tree.get("source")) or "",
+        coordinates=coordinates,
+        parameters=parameters,
+        definitions=definitions,
+        kinetic_energy=kinetic,
+        potential_energy=potential,
+        constraints=constraints,
+        inputs=inputs,
+        applied_forces=forces,
+        outputs=_outputs(scope, tree.get("outputs"), bool(inputs)),
+        independent_velocities=_coordinate_list(scope, tree.get("independent_velocities"), names),
+        configuration=_configuration(scope, tree.get("configuration"), names),
+        constraint_rank_tolerance=_tolerance(scope, tolerances, "constraint_rank"),
+        actuation_rank_tolerance=_tolerance(scope, tolerances, "actuation_rank"),
+        published=published,
+        paths=paths,
+        report=_report(tree.get("report")),
+        notices=(),
+        text_hash=hashlib.sha256(text.encode()).hexdigest(),
+    )
+
+
+def _model_name(scope: Scope, tree: MappingNode) -> str:
+    node = tree.get("model")
+    if not isinstance(node, ScalarNode) or not node.value:
+        return ""
+    mistake = name_mistake(node, "model")
+    if mistake is not None:
+        scope.mistakes.append(mistake)
+    return node.value
+
+
+def _energy(scope: Scope, tree: MappingNode, key: str, allowed: frozenset) -> Expression:
+    return scope.expression(tree.get(key), f"the {key.replace('_', ' ')}", allowed) or ZERO
+
+
+def _outputs(scope: Scope, node: Node | None, has_inputs: bool) -> tuple[str, ...]:
+    requested = (node,) if isinstance(node, ScalarNode) else items(node)
+    known = ["all", *(quantity.name for quantity in QUANTITIES)]
+    outputs: list[str] = []
+    for item in requested:
+        name = text_of(item)
+        if name in POINT_QUANTITIES:
+            scope.notices.append(Notice(f"`{name}` is not made: this model has no named points", item.span))
+        elif name is not None and name not in known:
+            remedy = did_you_mean(name, known, "`symgen explain` lists the quantities of a model")
+            scope.wrong(f"`{name}` is no quantity", remedy, item.span)
+        elif name is not None and name not in outputs:
+            outputs.append(name)
+    if "all" in outputs:
+        return ("all",)
+    return tuple(outputs) or (("inverse_dynamics",) if has_inputs else ("forward_dynamics",))
+
+
+def _coordinate_list(scope: Scope, node: Node | None, names: tuple[str, ...]) -> tuple[str, ...]:
+    chosen: list[str] = []
+    for item in items(node):
+        name = text_of(item)
+        if name is None:
+            continue
+        if name not in names:
+            remedy = did_you_mean(name, names, "name coordinates, without _dot")
+            if name.removesuffix("_dot") in names:
+                remedy = f"write the coordinate: `{name.removesuffix('_dot')}`"
+            scope.wrong(f"`{name}` in `independent_velocities` is no coordinate", remedy, item.span)
+        elif name in chosen:
+            scope.wrong(f"`{name}` stands twice in `independent_velocities`", "name it once", item.span)
+        else:
+            chosen.append(name)
+    return tuple(chosen)
+
+
+def _configuration(scope: Scope, node: Node | None, names: tuple[str, ...]) -> tuple[tuple[str, Fraction], ...]:
+    start: list[tuple[str, Fraction]] = []
+    for key, value in entries(node):
+        if key.value not in names:
+            remedy = did_you_mean(key.value, names, "name coordinates")
+            scope.wrong(f"`{key.value}` in `configuration` is no coordinate", remedy, key.span)
+            continue
+        number = constant(scope, value, f"the start value of `{key.value}`")
+        if number is not None:
+            start.append((key.value, number))
+    return tuple(start)
+
+
+def _tolerance(scope: Scope, node: Node | None, key: str) -> Fraction | None:
+    value_node = member(node, key)
+    value = constant(scope, value_node, f"the tolerance `{key}`")
+    if value is None or value_node is None:
+        return None
+    if not 0 < value < 1:
+        scope.wrong(f"the tolerance `{key}` is not between 0 and 1", "write a small number such as 1e-9",
+                    value_node.span)  # fmt: skip
+        return None
+    return value
+
+
+def _report(node: Node | None) -> Literal["full", "short"]:
+    return "short" if text_of(node) == "short" else "full"
+
+
+def _notice_unused(scope: Scope, tree: MappingNode) -> None:
+    for block, kind in (("parameters", "parameter"), ("definitions", "definition")):
+        for key, _ in entries(tree.get(block)):
+            if scope.kinds.get(key.value) == kind and key.value not in scope.used:
+                scope.notices.append(Notice(f"the {kind} `{key.value}` is not used", key.span))

@@ -1,0 +1,116 @@
+"""Which names an expression may use where it stands, and what to say about the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.expression import Expression
+from symgen.model.names import did_you_mean, name_mistake
+from symgen.model.parser import parse_expression
+from symgen.model.source import Node, ScalarNode
+from symgen.model.walk import names_in
+
+Kind: TypeAlias = Literal[
+    "coordinate", "rate", "acceleration", "parameter", "definition", "input", "constraint row", "multiplier", "time",
+    "symbol",
+]  # fmt: skip
+
+CONSTANT: frozenset[Kind] = frozenset()
+PARAMETERS: frozenset[Kind] = frozenset({"parameter"})
+CONFIGURATION: frozenset[Kind] = frozenset({"coordinate", "parameter", "definition"})
+STATE: frozenset[Kind] = CONFIGURATION | {"rate"}
+MOTION: frozenset[Kind] = STATE | {"acceleration", "input", "multiplier", "symbol"}
+
+_REMEDIES: dict[Kind, str] = {
+    "rate": "forces that depend on rates belong into `applied_forces`, constraints on rates into `nonholonomic`",
+    "acceleration": "accelerations are derived; they stand in `published` formulas and `ranges` only",
+    "input": "inputs act through `acts_on` only",
+    "multiplier": "forces that depend on constraint forces are out of scope",
+    "constraint row": "a constraint is no value; write its expression, or name it under `definitions`",
+    "time": "time-dependent energies, forces and constraints are out of scope; make it a coordinate or a parameter",
+    "coordinate": "use numbers and parameters only",
+    "parameter": "use numbers only",
+    "definition": "use numbers, parameters and earlier definitions",
+    "symbol": "symbols of `where` belong to their formula only",
+}
+
+
+@dataclass(slots=True)
+class Scope:
+    """The declared names of a model, and the mistakes and notices found so far."""
+
+    kinds: dict[str, Kind] = field(default_factory=dict)
+    spans: dict[str, Span] = field(default_factory=dict)
+    rate_definitions: set[str] = field(default_factory=set)
+    used: set[str] = field(default_factory=set)
+    mistakes: list[Mistake] = field(default_factory=list)
+    notices: list[Notice] = field(default_factory=list)
+
+    def wrong(self, message: str, remedy: str, span: Span | None) -> None:
+        """Records a mistake."""
+        self.mistakes.append(Mistake(message, remedy, span))
+
+    def declare(self, node: ScalarNode, kind: Kind) -> bool:
+        """Adds a name, with its rate and acceleration; False (and a mistake) where it is no name or is taken."""
+        mistake = name_mistake(node, kind)
+        if mistake is not None:
+            self.mistakes.append(mistake)
+            return False
+        name = node.value
+        if name in self.kinds:
+            taken = self.kinds[name]
+            where = f" (line {self.spans[name].line})" if name in self.spans else ""
+            article = "an" if taken[0] in "ai" else "a"
+            self.wrong(f"`{name}` is already {article} {taken}{where}", "give each thing a name of its own", node.span)
+            return False
+        self.kinds[name] = kind
+        self.spans[name] = node.span
+        if kind == "coordinate":
+            self.kinds[f"{name}_dot"] = "rate"
+            self.kinds[f"{name}_ddot"] = "acceleration"
+        return True
+
+    def expression(
+        self, node: Node | None, where: str, allowed: frozenset[Kind], known: Iterable[str] | None = None
+    ) -> Expression | None:
+        """The expression of a scalar, its names checked; `known` restricts parameters and definitions to those
+        declared before it.  None where there is a mistake (recorded) or no scalar (the shape's mistake)."""
+        if not isinstance(node, ScalarNode):
+            return None
+        parsed = parse_expression(node)
+        if isinstance(parsed, Mistake):
+            self.mistakes.append(parsed)
+            return None
+        good = True
+        earlier = None if known is None else set(known)
+        for name in names_in(parsed):
+            good &= self._name(name.name, name.span, where, allowed, earlier)
+        return parsed if good else None
+
+    def _name(
+        self, name: str, span: Span | None, where: str, allowed: frozenset[Kind], earlier: set[str] | None
+    ) -> bool:
+        kind = self.kinds.get(name, "time" if name == "t" else None)
+        if kind is None:
+            visible = [other for other, its in self.kinds.items() if its in allowed]
+            declared = "declare it under `coordinates`, `parameters` or `definitions`"
+            self.wrong(f"unknown name `{name}` in {where}", did_you_mean(name, visible, declared), span)
+            return False
+        self.used.add(name)
+        if kind not in allowed:
+            article = "an" if kind[0] in "ai" else "a"
+            noun = "the time" if kind == "time" else f"{article} {kind}"
+            self.wrong(f"`{name}` is {noun}, which {where} must not contain", _REMEDIES[kind], span)
+            return False
+        if earlier is not None and kind in ("parameter", "definition") and name not in earlier:
+            self.wrong(f"{where} uses `{name}`, which is declared later", "declare it before its first use", span)
+            return False
+        if name in self.rate_definitions and "rate" not in allowed:
+            self.wrong(
+                f"`{name}` contains rates, which {where} must not contain", _REMEDIES["rate"], span
+            )
+            return False
+        return True

@@ -1,0 +1,223 @@
+"""YAML text as a tree that knows its places: every scalar is text, every node has line and column.
+
+Built from YAML events, iteratively, so that no document, however deep or long, can exhaust the machine; anchors,
+aliases, merge keys and tags are refused before anything is built from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import yaml
+
+from symgen.diagnostics import Mistake, Span
+
+MAXIMUM_CHARACTERS = 1_000_000
+MAXIMUM_DEPTH = 24
+MAXIMUM_NODES = 100_000
+PLAIN_REMEDY = "write the value out, or name it under `parameters` or `definitions`"
+
+_EventLoader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+@dataclass(frozen=True, slots=True)
+class ScalarNode:
+    """A text; `raw` is its source text, quotes and line breaks included, starting at `line` and `column`."""
+
+    value: str
+    span: Span
+    raw: str = field(repr=False)
+    quoted: bool
+
+    def place(self, offset: int, length: int) -> Span:
+        """The place of `value[offset : offset + length]`, also where the text is quoted or runs over several lines."""
+        if self.raw == self.value:
+            column = self.span.column + offset
+            return Span(self.span.line, column, column + max(1, length))
+        start = _raw_offset(self.raw, self.value, offset)
+        before = self.raw[:start]
+        line = self.span.line + before.count("\n")
+        column = start - before.rfind("\n") if "\n" in before else self.span.column + start
+        return Span(line, column, column + max(1, length))
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceNode:
+    """A list."""
+
+    items: tuple[Node, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class MappingNode:
+    """Names with values, in the order of the file; `flow` where written in braces."""
+
+    entries: tuple[tuple[ScalarNode, Node], ...]
+    span: Span
+    flow: bool
+
+    def get(self, key: str) -> Node | None:
+        """The value of the first entry of that name."""
+        return next((value for name, value in self.entries if name.value == key), None)
+
+
+Node: TypeAlias = ScalarNode | SequenceNode | MappingNode
+
+
+@dataclass(slots=True)
+class _Open:
+    """A collection whose end has not been read."""
+
+    mapping: bool
+    flow: bool
+    span: Span
+    items: list[Node]
+
+
+def read_tree(text: str) -> tuple[MappingNode | None, tuple[Mistake, ...]]:
+    """The document's top mapping; a syntax error is reported alone, duplicate keys are collected."""
+    if len(text) > MAXIMUM_CHARACTERS:
+        message = f"the file has {len(text)} characters, at most {MAXIMUM_CHARACTERS} are read"
+        return None, (Mistake(message, "split the model, or remove what does not belong to it"),)
+    mistakes: list[Mistake] = []
+    try:
+        root = _build(text, yaml.parse(text, Loader=_EventLoader), mistakes)
+    except _Refused as refused:
+        return None, (refused.mistake,)
+    except yaml.YAMLError:
+        return None, (_syntax_mistake(text),)
+    if root is None:
+        return None, (Mistake("the file is empty", "write a model; a minimal one has `model`, `coordinates`, "
+                              "`kinetic_energy`"),)
+    if not isinstance(root, MappingNode):
+        message = "a model file is a mapping of names to values"
+        return None, (Mistake(message, "start with `model: name_of_the_model`", root.span),)
+    return root, tuple(mistakes)
+
+
+class _Refused(Exception):
+    def __init__(self, message: str, remedy: str, span: Span) -> None:
+        self.mistake = Mistake(message, remedy, span)
+
+
+def _build(text: str, events: Iterator[yaml.Event], mistakes: list[Mistake]) -> Node | None:
+    open_collections: list[_Open] = []
+    root: Node | None = None
+    nodes = 0
+    for event in events:
+        node: Node | None = None
+        match event:
+            case yaml.DocumentStartEvent() if root is not None:
+                raise _Refused("a second document begins here", "keep one model per file", _span(event))
+            case yaml.AliasEvent():
+                raise _Refused(f"YAML aliases are not read: `*{event.anchor}`", PLAIN_REMEDY, _span(event))
+            case yaml.ScalarEvent():
+                _refuse_decoration(event)
+                node = _scalar(text, event)
+            case yaml.MappingStartEvent() | yaml.SequenceStartEvent():
+                _refuse_decoration(event)
+                mapping = isinstance(event, yaml.MappingStartEvent)
+                open_collections.append(_Open(mapping, bool(event.flow_style), _span(event), []))
+                if len(open_collections) > MAXIMUM_DEPTH:
+                    raise _Refused(f"nested deeper than {MAXIMUM_DEPTH} levels", "flatten the file", _span(event))
+            case yaml.MappingEndEvent() | yaml.SequenceEndEvent():
+                node = _close(open_collections.pop(), mistakes)
+            case _:
+                continue
+        nodes += 1
+        if nodes > MAXIMUM_NODES:
+            raise _Refused(f"more than {MAXIMUM_NODES} values", "split the model", _span(event))
+        if node is not None and open_collections:
+            _append(open_collections[-1], node)
+        elif node is not None:
+            root = node
+    return None if isinstance(root, ScalarNode) and not root.raw else root
+
+
+def _append(collection: _Open, node: Node) -> None:
+    if collection.mapping and len(collection.items) % 2 == 0:
+        if not isinstance(node, ScalarNode):
+            raise _Refused("a key that is a list or a mapping", "use a plain name as key, or quote the text", node.span)
+        if node.value == "<<" and not node.quoted:
+            raise _Refused("YAML merge keys are not read", PLAIN_REMEDY, node.span)
+    collection.items.append(node)
+
+
+def _close(collection: _Open, mistakes: list[Mistake]) -> Node:
+    if not collection.mapping:
+        return SequenceNode(tuple(collection.items), collection.span)
+    entries: list[tuple[ScalarNode, Node]] = []
+    first: dict[str, Span] = {}
+    for key, value in zip(collection.items[::2], collection.items[1::2], strict=True):
+        assert isinstance(key, ScalarNode)
+        if key.value in first:
+            message = f"`{key.value}` stands here a second time (first in line {first[key.value].line})"
+            mistakes.append(Mistake(message, "remove or rename one of the two", key.span))
+            continue
+        first[key.value] = key.span
+        entries.append((key, value))
+    return MappingNode(tuple(entries), collection.span, collection.flow)
+
+
+def _refuse_decoration(event: yaml.NodeEvent) -> None:
+    if event.anchor is not None:
+        raise _Refused(f"YAML anchors are not read: `&{event.anchor}`", PLAIN_REMEDY, _span(event))
+    if event.tag is not None:
+        raise _Refused(f"YAML tags are not read: `{event.tag}`", "remove it; symgen knows what each value is",
+                       _span(event))
+
+
+def _scalar(text: str, event: yaml.ScalarEvent) -> ScalarNode:
+    raw = text[event.start_mark.index : event.end_mark.index]
+    return ScalarNode(event.value, _span(event), raw, event.style is not None)
+
+
+def _span(event: yaml.Event) -> Span:
+    start, end = event.start_mark, event.end_mark
+    last = end.column if end.line == start.line else start.column + 1
+    return Span(start.line + 1, start.column + 1, max(last, start.column + 1) + 1 if last == start.column else last + 1)
+
+
+def _raw_offset(raw: str, value: str, offset: int) -> int:
+    """Where `value[offset]` stands in the source: folding changes white space only, so the other characters align."""
+    header = raw.find("\n") + 1 if raw[:1] in "|>" else 0
+    visible = len("".join(value[:offset].split()))
+    position = max(header, 1 if raw[:1] in "\"'" else 0)
+    while position < len(raw):
+        if not raw[position].isspace():
+            if visible == 0:
+                return position
+            visible -= 1
+        position += 1
+    return max(0, len(raw) - 1)
+
+
+def _syntax_mistake(text: str) -> Mistake:
+    """The error in the words of PyYAML's own parser, which are the same whether or not libyaml is there."""
+    try:
+        for _ in yaml.parse(text, Loader=yaml.SafeLoader):
+            pass
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        span = Span(mark.line + 1, mark.column + 1, mark.column + 2) if mark else None
+        problem = " ".join(str(part) for part in (error.problem, error.context) if part)
+        return Mistake(f"this is not YAML: {problem}", _syntax_remedy(problem), span)
+    except yaml.reader.ReaderError as error:
+        return _character_mistake(text, error.position)
+    return Mistake("this is not YAML", "check brackets, quotes and indentation")
+
+
+def _syntax_remedy(problem: str) -> str:
+    if "\\t" in problem or "'\\t'" in problem:
+        return "indent with spaces, not with tabs"
+    return "check indentation, brackets and quotes; quote a text that has a comma, colon, bracket or #"
+
+
+def _character_mistake(text: str, position: int) -> Mistake:
+    line = text.count("\n", 0, position) + 1
+    column = position - (text.rfind("\n", 0, position) + 1) + 1
+    message = f"a control character (code {ord(text[position]):#04x})"
+    return Mistake(message, "remove it", Span(line, column, column + 1))

@@ -1,0 +1,94 @@
+"""The words of an expression: numbers, names, operators, brackets, commas, each with its offset in the text."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+from typing import Literal
+
+TokenKind = Literal["number", "name", "operator", "end"]
+
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
+    r"|(?P<operator>\*\*|//|[-+*/(),.])|(?P<end>$))",
+    re.ASCII,
+)
+_LOOKALIKES = {
+    "−": "-", "–": "-", "—": "-", "‐": "-", "·": "*", "×": "*", "∙": "*", "⋅": "*", "÷": "/", "∕": "/", "²": "**2",
+    "³": "**3", "½": "1/2", "π": "pi", "（": "(", "）": ")", "，": ",", "∗": "*", "√": "sqrt( )",
+}  # fmt: skip
+_OPERATORS_ELSEWHERE = {
+    "^": ("`^` is not the power", "write `**`, as in `x**2`"),
+    "%": ("`%` is no operator", "write fractions and remainders out"),
+    "=": ("`=` in an expression", "write the expression only; a constraint is `left - right`, and = 0 is understood"),
+    "'": ("a prime is no derivative", "write the rate of x as `x_dot`"),
+    "[": ("square brackets in an expression", "use round parentheses"),
+    "]": ("square brackets in an expression", "use round parentheses"),
+    "{": ("braces in an expression", "use round parentheses"),
+    "}": ("braces in an expression", "use round parentheses"),
+    "&": ("`&` is no operator", "use + - * / ** and the functions of the language"),
+    "|": ("`|` is no operator", "write an absolute value as sqrt(x**2)"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A word of kind `kind`; `offset` counts characters from the start of the text."""
+
+    kind: TokenKind
+    text: str
+    offset: int
+
+
+class ExpressionMistake(Exception):
+    """What is wrong with an expression, at which characters of its text, and what to do."""
+
+    def __init__(self, message: str, remedy: str, offset: int, length: int = 1) -> None:
+        super().__init__(message)
+        self.message, self.remedy, self.offset, self.length = message, remedy, offset, length
+
+
+def tokenize(text: str) -> list[Token]:
+    """The tokens of `text`, closed by one of kind "end"; raises ExpressionMistake."""
+    tokens: list[Token] = []
+    position = 0
+    while True:
+        match = _TOKEN.match(text, position)
+        if match is None:
+            while text[position].isspace():
+                position += 1
+            raise _foreign(text, position)
+        kind = match.lastgroup
+        assert kind in ("number", "name", "operator", "end")
+        offset = match.start(kind)
+        tokens.append(Token(kind, match.group(kind), offset))
+        if kind == "end":
+            return tokens
+        position = match.end()
+        if kind == "number" and text[position : position + 1].isidentifier():
+            shown = match.group(kind)
+            raise ExpressionMistake(
+                f"an operator is missing after {shown}", f"write `{shown}*...`", offset, len(shown) + 1
+            )
+
+
+def _foreign(text: str, position: int) -> ExpressionMistake:
+    character = text[position]
+    if character in _LOOKALIKES:
+        name = unicodedata.name(character).lower()
+        return ExpressionMistake(
+            f"the character {character!r} ({name}) is not read", f"write `{_LOOKALIKES[character]}`", position
+        )
+    if character in _OPERATORS_ELSEWHERE:
+        return ExpressionMistake(*_OPERATORS_ELSEWHERE[character], position)
+    if character.isascii():
+        return ExpressionMistake(
+            f"the character {character!r} is not part of the language", "use + - * / **, parentheses, names, numbers",
+            position,
+        )  # fmt: skip
+    name = unicodedata.name(character, f"code {ord(character):#x}").lower()
+    return ExpressionMistake(
+        f"the character {character!r} ({name}) is not read", "spell names with the letters a-z, A-Z, digits and _",
+        position,
+    )  # fmt: skip
