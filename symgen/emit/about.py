@@ -50,7 +50,8 @@ def count_lines(program: Program) -> Iterator[str]:
 
 def shape_text(kernel: Kernel) -> str:
     """The shape of a result, such as `4 x 2, row-major`."""
-    return " x ".join(str(extent) for extent in kernel.shape) + (", row-major" if len(kernel.shape) > 1 else "")
+    shape = " x ".join(str(extent) for extent in kernel.shape)
+    return f"{shape}, row-major" if len(kernel.shape) > 1 else f"length {shape}"
 
 
 def unit_text(unit: str | None) -> str:

@@ -145,7 +145,7 @@ def _kernel(
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in kernel.arguments]
     arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
     prototype = f"{model.name}_status {model.name}_{kernel.name}{_suffix(program)}({', '.join(arguments)})"
-    comment = c_comment_lines(f"{meaning(kernel.name)}; {output}: {shape_text(kernel)}")
+    comment = c_comment_lines(f"{meaning(kernel.name)}; {shape_text(kernel)}")
     return FunctionView(comment, prototype, _body(model, program, kernel, names, sincos))
 
 

@@ -1,0 +1,272 @@
+"""The command line: `symgen MODEL.yaml...` and the commands verify, explain, schema."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+from symgen import __version__
+from symgen.diagnostics import ModelError, SymgenBug
+from symgen.ir.kernel import Scalar
+from symgen.results import DEFAULT_STATES, PARTS, Options, Part, Result, WrongUseError
+from symgen.terminal import Progress, notice_line, summary_table
+
+DONE, MODEL_WRONG, WRONG_USE, INTERRUPTED = 0, 1, 2, 130
+_SCALARS: dict[str, tuple[Scalar, ...]] = {
+    "float64": ("float64",),
+    "float32": ("float32",),
+    "both": ("float64", "float32"),
+}
+_EPILOG = """commands:
+  symgen MODEL.yaml...              generate and verify
+  symgen verify MODEL.yaml          verify again, write the certificate only
+  symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
+  symgen schema                     JSON Schema of model files, for editors
+
+examples:
+  symgen models/front_car.yaml
+  symgen models/*.yaml --out build/symgen --quiet
+  symgen models/front_car.yaml --outputs inverse_dynamics,forward_dynamics --scalar float32 --only c
+  symgen models/*.yaml --check
+  symgen explain models/front_car.yaml nullspace_projector
+
+exit codes: 0 done, 1 the model or its verification is wrong, 2 wrong use or a fault of symgen
+"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command line and returns the exit code."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+    command, rest = (given[0], given[1:]) if given and given[0] in _COMMANDS else ("", given)
+    try:
+        return _COMMANDS[command](rest) if command else _generate(rest)
+    except KeyboardInterrupt:
+        print("\ninterrupted; earlier output is unchanged", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # no second complaint at exit
+        return DONE
+    except WrongUseError as error:
+        return _complain(str(error))
+    except OSError as error:
+        return _complain(f"{error.filename or 'symgen'}: {error.strerror or error}")
+
+
+def _complain(message: str) -> int:
+    print(f"symgen: {message}", file=sys.stderr)
+    return WRONG_USE
+
+
+def _generate(arguments: list[str]) -> int:
+    parser = _parser("symgen", "Verified, globally valid inverse dynamics of constrained mechanical systems.", _EPILOG)
+    parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
+    _add_generation_options(parser)
+    parser.add_argument("--outputs", metavar="A,B", type=_names, help="quantities, or all (default: the model's list)")
+    parser.add_argument(
+        "--scalar", choices=tuple(_SCALARS), default="both", help="scalar types of the C (default: both)"
+    )
+    parser.add_argument("--only", metavar="PARTS", type=_parts, default=PARTS, help="of c,python,report (default: all)")
+    parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="write nothing; exit 1 and list what differs from the disk (no verification)",
+    )
+    parser.add_argument("--version", action="version", version=f"symgen {__version__}")
+    given = parser.parse_args(arguments)
+    options = Options(
+        outputs=given.outputs,
+        scalars=_SCALARS[given.scalar],
+        parts=given.only,
+        verify=given.verify and not given.check,
+        states=given.states,
+    )
+    finish = _check_files if given.check else _write_files
+    return _each_model(given.models, options, given.quiet, lambda result: finish(result, given.out, given.quiet))
+
+
+def _verify(arguments: list[str]) -> int:
+    parser = _parser(
+        "symgen verify", "Compiles the C, runs C and Python against the reference, writes the certificate."
+    )
+    parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
+    _add_generation_options(parser)
+    given = parser.parse_args(arguments)
+    options = Options(parts=("c", "python"), states=given.states)
+    return _each_model(
+        given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)
+    )
+
+
+def _explain(arguments: list[str]) -> int:
+    parser = _parser("symgen explain", "Closed forms, structure, and what is skipped and why.")
+    parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file")
+    parser.add_argument("quantity", metavar="QUANTITY", nargs="?", help="one quantity (default: an overview)")
+    given = parser.parse_args(arguments)
+
+    if not given.model.is_file():
+        raise WrongUseError(f"no such file: {given.model}")
+
+    def explain() -> int:
+        from symgen.pipeline import explain
+
+        progress = Progress(given.model.stem, quiet=not sys.stderr.isatty())
+        text = explain(given.model, given.quantity, progress)
+        progress.done()
+        print(text)
+        return DONE
+
+    return _guarded(explain)
+
+
+def _schema(arguments: list[str]) -> int:
+    _parser("symgen schema", "Prints the JSON Schema of model files.").parse_args(arguments)
+    import json
+
+    from symgen.model.schema import json_schema
+
+    print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+    return DONE
+
+
+_COMMANDS: dict[str, Callable[[list[str]], int]] = {"verify": _verify, "explain": _explain, "schema": _schema}
+
+
+def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: Callable[[Result], int]) -> int:
+    """Every model, also after one that failed; the highest exit code wins."""
+    seen: dict[str, Path] = {}
+
+    def one(path: Path) -> int:
+        from symgen.pipeline import generate
+
+        progress = Progress(path.stem, quiet)
+        try:
+            result = generate(path, options, progress)
+        finally:
+            progress.done()
+        other = seen.setdefault(result.model.name, path)
+        if other != path:
+            raise WrongUseError(f"{other} and {path} are both models named {result.model.name}")
+        for notice in () if quiet else result.notices:
+            print(notice_line(str(path), notice), file=sys.stderr)
+        if result.failures:
+            print(f"{path}: verification failed, nothing is written", file=sys.stderr)
+            print(*(f"  {failure}" for failure in result.failures), sep="\n", file=sys.stderr)
+            return MODEL_WRONG
+        return finish(result)
+
+    for path in models:
+        if not path.is_file():
+            raise WrongUseError(f"no such file: {path}")
+    return max([_guarded(partial(one, path)) for path in models])
+
+
+def _guarded(work: Callable[[], int]) -> int:
+    """A user's mistake becomes its message and a fault of symgen a report; neither stops the next model."""
+    try:
+        return work()
+    except ModelError as error:
+        print(error.render(), end="", file=sys.stderr)
+        return MODEL_WRONG
+    except (WrongUseError, OSError):
+        raise
+    except SymgenBug as error:
+        print(f"symgen: internal error: {error}\nThis is a fault of symgen, not of the model.", file=sys.stderr)
+    except Exception:
+        traceback.print_exc()
+        print("symgen: internal error: this is a fault of symgen, not of the model.", file=sys.stderr)
+    return WRONG_USE
+
+
+def _write_files(result: Result, out: Path, quiet: bool) -> int:
+    from symgen.write import write_files
+
+    written = write_files(out / result.model.name, result.files)
+    if not quiet:
+        print(summary_table(result.model.name, result.summary))
+        print("written:", *(f"  {path}" for path in written), "", sep="\n")
+    return DONE
+
+
+def _write_certificate(result: Result, out: Path, quiet: bool) -> int:
+    """The certificate speaks of what symgen makes now; other files on disk are a failure, not a certificate."""
+    from symgen.write import compare, write_files
+
+    folder = out / result.model.name
+    certificate = {path: content for path, content in result.files.items() if path == "certificate.json"}
+    sources = {path: content for path, content in result.files.items() if path.startswith(("c/", "python/"))}
+    differences = compare(folder, sources)
+    if differences:
+        print("the files on disk are not the ones verified (run symgen again):", file=sys.stderr)
+        print(*(f"  {line}" for line in differences), sep="\n", file=sys.stderr)
+        return MODEL_WRONG
+    written = write_files(folder, certificate)
+    if not quiet:
+        print(summary_table(result.model.name, result.summary))
+        print("written:", *(f"  {path}" for path in written), "", sep="\n")
+    return DONE
+
+
+def _check_files(result: Result, out: Path, quiet: bool) -> int:
+    from symgen.write import compare
+
+    differences = compare(out / result.model.name, result.files)
+    if differences:
+        print(*differences, sep="\n")
+        return MODEL_WRONG
+    if not quiet:
+        print(f"{result.model.name}: as on disk")
+    return DONE
+
+
+def _parser(program: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:
+    form = argparse.RawDescriptionHelpFormatter
+    return argparse.ArgumentParser(
+        program, description=description, epilog=epilog, formatter_class=form, allow_abbrev=False
+    )
+
+
+def _add_generation_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, default=Path("generated"), help="writes DIR/<model>/ (default: generated)"
+    )
+    parser.add_argument(
+        "--states",
+        metavar="N",
+        type=_states,
+        default=DEFAULT_STATES,
+        help=f"states to verify (default: {DEFAULT_STATES})",
+    )
+    parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
+
+
+def _names(text: str) -> tuple[str, ...]:
+    names = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    if not names:
+        raise argparse.ArgumentTypeError("expected names separated by commas")
+    return names
+
+
+def _parts(text: str) -> tuple[Part, ...]:
+    names = _names(text)
+    if unknown := [name for name in names if name not in PARTS]:
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is none of {', '.join(PARTS)}")
+    return tuple(part for part in PARTS if part in names)
+
+
+def _states(text: str) -> int:
+    try:
+        count = int(text)
+    except ValueError:
+        count = 0
+    if count < 8:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from 8 up")
+    return count

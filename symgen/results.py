@@ -1,0 +1,68 @@
+"""What a run of symgen is asked for and what it hands back: the nouns between pipeline and command line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
+
+from symgen.diagnostics import Notice
+from symgen.ir.kernel import Scalar
+from symgen.model.model import Model
+
+Part: TypeAlias = Literal["c", "python", "report"]
+PARTS: tuple[Part, ...] = ("c", "python", "report")
+DEFAULT_STATES = 64
+
+
+class WrongUseError(Exception):
+    """The command line asks for something that does not exist, such as an unknown quantity; exit code 2."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What to generate; `outputs` None takes the model's own list, `states` is the number of states to verify."""
+
+    outputs: tuple[str, ...] | None = None
+    scalars: tuple[Scalar, ...] = ("float64", "float32")
+    parts: tuple[Part, ...] = PARTS
+    verify: bool = True
+    states: int = DEFAULT_STATES
+
+
+@dataclass(frozen=True, slots=True)
+class LargestError:
+    """The worst error of one target (`C float64`, `C float32`, `Python`), relative to its scale, and its tolerance."""
+
+    target: str
+    quantity: str
+    error: float
+    tolerance: float
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """The table at the end of a run: sizes, what the scene does not need and why, operations, largest errors."""
+
+    n: int
+    r: int
+    delta: int
+    m: int
+    skipped: tuple[tuple[str, str], ...]
+    operations: tuple[tuple[str, int], ...]
+    errors: tuple[LargestError, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """All files of one model in memory (paths relative to its folder), and what to tell the user.
+
+    `failures` are verification failures: with any, nothing is written and the exit code is 1.
+    """
+
+    model: Model
+    files: Mapping[str, str | bytes]
+    summary: Summary
+    notices: tuple[Notice, ...] = ()
+    certificate: Mapping[str, Any] | None = None
+    failures: tuple[str, ...] = field(default=())

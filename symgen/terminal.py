@@ -1,0 +1,64 @@
+"""What a run prints: progress on standard error, the closing table, notices."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import TextIO
+
+from symgen.diagnostics import Notice
+from symgen.results import Summary
+
+_CLEAR_LINE = "\r\x1b[K"
+
+
+class Progress:
+    """Tells what is being done: one line that changes on a terminal, plain lines elsewhere, nothing when quiet."""
+
+    def __init__(self, label: str, quiet: bool, stream: TextIO | None = None) -> None:
+        self._label = label
+        self._quiet = quiet
+        self._stream = sys.stderr if stream is None else stream
+        self._live = self._stream.isatty()
+
+    def __call__(self, message: str) -> None:
+        """Shows what starts now."""
+        if not self._quiet:
+            start, end = (_CLEAR_LINE, "") if self._live else ("", "\n")
+            print(f"{start}{self._label}: {message} ...", end=end, file=self._stream, flush=True)
+
+    def done(self) -> None:
+        """Removes the changing line."""
+        if not self._quiet and self._live:
+            print(_CLEAR_LINE, end="", file=self._stream, flush=True)
+
+
+def summary_table(name: str, summary: Summary) -> str:
+    """Sizes, largest errors, operations by quantity, and what the scene does not need."""
+    sizes = f"n = {summary.n}, r = {summary.r}, δ = {summary.delta}, m = {summary.m}"
+    sections = [f"{name}   {sizes}"]
+    if summary.operations:
+        rows = [(quantity, str(count)) for quantity, count in summary.operations]
+        sections.append(_columns(("quantity", "operations"), rows, "<>"))
+    if summary.errors:
+        errors = [(e.target, f"{e.error:.1e}", f"{e.tolerance:.1e}", e.quantity) for e in summary.errors]
+        sections.append(_columns(("largest error", "found", "allowed", "in"), errors, "<>><"))
+    if summary.skipped:
+        sections.append(_columns(("not needed", "because"), summary.skipped, "<<"))
+    return "\n\n".join(sections) + "\n"
+
+
+def notice_line(file: str, notice: Notice) -> str:
+    """A notice with its place."""
+    place = file if notice.span is None else f"{file}:{notice.span.line}:{notice.span.column}"
+    return f"{place}: notice: {notice.message}"
+
+
+def _columns(head: Sequence[str], rows: Sequence[Sequence[str]], alignment: str) -> str:
+    widths = [max(len(row[k]) for row in (head, *rows)) for k in range(len(head))]
+    lines = [
+        "   ".join(f"{cell:{side}{width}}" for cell, side, width in zip(row, alignment, widths, strict=True)).rstrip()
+        for row in (head, *rows)
+    ]
+    lines.insert(1, "─" * max(len(line) for line in lines))
+    return "\n".join("  " + line for line in lines)
