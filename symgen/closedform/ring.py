@@ -1,0 +1,101 @@
+"""The ring Q[names, opaque atoms][s_i, c_i] / (s_i^2 + c_i^2 - 1) and its field of fractions.
+
+Elements are SymPy's sparse polynomials.  {s_i^2 + c_i^2 - 1} is a Groebner basis with coprime leading terms, so "every
+s_i to the power 0 or 1" is a canonical form: two elements are equal exactly when their normal forms are
+(theory.md, section 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from sympy import QQ
+from sympy.polys.rings import PolyElement, PolyRing
+
+from symgen.closedform.angles import AngleBasis
+from symgen.model.expression import Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Opaque:
+    """An atom the ring knows nothing about but its derivative: a root, exp, atan, ... of ring elements."""
+
+    expression: Expression
+    outer_derivatives: tuple[tuple[Expression, Expression], ...]
+    """(argument, partial derivative of the atom with respect to that argument) as expressions."""
+
+
+class TrigRing:
+    """The polynomial ring with one (s, c) pair per atom of `basis`, variables by name and opaque atoms."""
+
+    def __init__(self, variables: Sequence[str], basis: AngleBasis, opaque: Sequence[Opaque]) -> None:
+        self.variables = tuple(variables)
+        self.basis = basis
+        self.opaque = tuple(opaque)
+        pairs = [f"_{kind}{index}" for index in range(len(basis.atoms)) for kind in "sc"]
+        atoms = [f"_w{index}" for index in range(len(self.opaque))]
+        self.polys = PolyRing([*self.variables, *pairs, *atoms], QQ)
+        self.position: Mapping[str, int] = {name: i for i, name in enumerate(self.variables)}
+        first = len(self.variables)
+        self.sine = tuple(first + 2 * i for i in range(len(basis.atoms)))
+        self.cosine = tuple(first + 2 * i + 1 for i in range(len(basis.atoms)))
+        self.opaque_position = tuple(first + 2 * len(basis.atoms) + i for i in range(len(self.opaque)))
+        self.angle_positions = frozenset(self.sine + self.cosine)
+
+    @cached_property
+    def zero(self) -> PolyElement:
+        """The polynomial 0."""
+        return self.polys.zero
+
+    @cached_property
+    def one(self) -> PolyElement:
+        """The polynomial 1."""
+        return self.polys.one
+
+    def constant(self, value: Fraction | int) -> PolyElement:
+        """A rational number as a polynomial."""
+        value = Fraction(value)
+        return self.polys.ground_new(QQ(value.numerator, value.denominator))
+
+    def generator(self, index: int) -> PolyElement:
+        """The generator at a position of the monomials."""
+        return self.polys.gens[index]
+
+    def normal(self, p: PolyElement) -> PolyElement:
+        """The canonical form: every s_i to the power 0 or 1."""
+        for s, c in zip(self.sine, self.cosine, strict=True):
+            if all(monomial[s] < 2 for monomial in p):
+                continue
+            by_power: dict[int, PolyElement] = {}
+            for monomial, coefficient in p.items():
+                pairs, rest = divmod(monomial[s], 2)
+                target = by_power.setdefault(pairs, self.polys.zero.copy())
+                target[(*monomial[:s], rest, *monomial[s + 1 :])] = coefficient
+            p = by_power.pop(0, self.polys.zero.copy())
+            square = 1 - self.generator(c) ** 2
+            for pairs, part in by_power.items():
+                p = p + part * square**pairs
+        return p
+
+    def product(self, p: PolyElement, q: PolyElement) -> PolyElement:
+        """The product in normal form."""
+        return self.normal(p * q)
+
+    def shape(self, p: PolyElement) -> tuple[int, ...]:
+        """The positions of the generators that occur."""
+        return tuple(i for i, used in enumerate(map(any, zip(*p, strict=True))) if used) if p else ()
+
+    def multiple_angle(self, multiples: Sequence[int], quarter_turns: int) -> tuple[PolyElement, PolyElement]:
+        """(sin, cos) of an integer combination of the atoms plus quarter turns, by the addition theorems."""
+        sine, cosine = self.zero, self.one
+        for index, count in enumerate(multiples):
+            s, c = self.generator(self.sine[index]), self.generator(self.cosine[index])
+            for _ in range(abs(count)):
+                step = s if count > 0 else -s
+                sine, cosine = self.normal(sine * c + cosine * step), self.normal(cosine * c - sine * step)
+        for _ in range(quarter_turns % 4):
+            sine, cosine = cosine, -sine
+        return sine, cosine

@@ -1,0 +1,227 @@
+"""From a model's expressions to fractions of ring elements, and their derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+from sympy.polys.rings import PolyElement
+
+from symgen.closedform.angles import (
+    AngleBasis,
+    Argument,
+    choose_basis,
+    read_argument,
+    trigonometric_arguments,
+)
+from symgen.closedform.quotient import Quotient, polynomial
+from symgen.closedform.ring import Opaque, TrigRing
+from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+
+ONE = Number(Fraction(1))
+
+
+class Translator:
+    """Translates expressions of one model into its ring, and differentiates ring elements."""
+
+    def __init__(
+        self,
+        variables: Iterable[str],
+        definitions: Mapping[str, Expression],
+        preferred: Iterable[Expression],
+        others: Iterable[Expression],
+    ) -> None:
+        self.definitions = dict(definitions)
+        atoms: dict[Expression, Opaque] = {}
+        arguments = [self._scan(group, atoms) for group in (preferred, others)]
+        basis: AngleBasis = choose_basis(*arguments)
+        self.ring = TrigRing(tuple(variables), basis, tuple(atoms.values()))
+        self._opaque = {key: self.ring.opaque_position[i] for i, key in enumerate(atoms)}
+        self._values: dict[Expression, Quotient] = {}
+        self._slopes: dict[tuple[int, str], Quotient] = {}
+
+    def _scan(self, expressions: Iterable[Expression], atoms: dict[Expression, Opaque]) -> list[Argument]:
+        """Angle arguments and opaque atoms of the expressions, of everything they name and of their derivatives."""
+        found: list[Argument] = []
+        pending = list(expressions)
+        seen: set[Expression] = set()
+        while pending:
+            expression = pending.pop(0)
+            if expression in seen:
+                continue
+            seen.add(expression)
+            for argument in trigonometric_arguments(expression):
+                split = read_argument(argument, self.definitions.get)
+                found.append(split)
+                pending += [base for base, _ in split.combination]
+            for part in _parts(expression):
+                if isinstance(part, Name) and part.name in self.definitions:
+                    pending.append(self.definitions[part.name])
+                atom = opaque_atom(part)
+                if atom is not None and atom.expression not in atoms:
+                    atoms[atom.expression] = atom
+                    pending += [slope for _, slope in atom.outer_derivatives]
+        return found
+
+    def value(self, expression: Expression) -> Quotient:
+        """The expression as a fraction of ring elements, definitions by value."""
+        known = self._values.get(expression)
+        if known is None:
+            known = self._values[expression] = self._translate(expression)
+        return known
+
+    def constant(self, value: Fraction | int) -> Quotient:
+        """A rational number."""
+        return polynomial(self.ring, self.ring.constant(value))
+
+    def name(self, name: str) -> Quotient:
+        """A variable of the ring."""
+        return polynomial(self.ring, self.ring.generator(self.ring.position[name]))
+
+    def _translate(self, expression: Expression) -> Quotient:
+        match expression:
+            case Number(value):
+                return self.constant(value)
+            case Name(name):
+                if name in self.definitions:
+                    return self.value(self.definitions[name])
+                return self.name(name)
+            case Negation(operand):
+                return -self.value(operand)
+            case Binary("+", left, right):
+                return self.value(left) + self.value(right)
+            case Binary("-", left, right):
+                return self.value(left) - self.value(right)
+            case Binary("*", left, right):
+                return self.value(left) * self.value(right)
+            case Binary("/", left, right):
+                return self.value(left) / self.value(right)
+            case Power(base, exponent):
+                return self._power(base, exponent)
+            case Call("sin" | "cos" | "tan" as function, (argument,)):
+                split = read_argument(argument, self.definitions.get)
+                sine, cosine = self.ring.multiple_angle(self.ring.basis.multiples(split), split.quarter_turns)
+                pair = polynomial(self.ring, sine), polynomial(self.ring, cosine)
+                return pair[0] if function == "sin" else pair[1] if function == "cos" else pair[0] / pair[1]
+            case Call("sqrt", (argument,)):
+                return self._power(argument, Fraction(1, 2))
+            case _:
+                return polynomial(self.ring, self.ring.generator(self._opaque[expression]))
+
+    def _power(self, base: Expression, exponent: Fraction) -> Quotient:
+        whole, part = divmod(exponent, 1)
+        value = self.value(base)
+        result = self.constant(1)
+        for _ in range(abs(whole)):
+            result = result * value
+        if whole < 0:
+            result = self.constant(1) / result
+        if part:
+            root = polynomial(self.ring, self.ring.generator(self._opaque[Power(base, Fraction(1, part.denominator))]))
+            for _ in range(part.numerator):
+                result = result * root
+        return result
+
+    def derivative(self, value: Quotient, name: str) -> Quotient:
+        """The partial derivative of a fraction with respect to a variable."""
+        slope = self._polynomial_derivative(value.numerator, name)
+        if value.is_polynomial:
+            return slope
+        bottom = polynomial(self.ring, value.denominator)
+        fall = self._polynomial_derivative(value.denominator, name)
+        if not fall:
+            return slope / bottom
+        return (slope * bottom - polynomial(self.ring, value.numerator) * fall) / (bottom * bottom)
+
+    def _polynomial_derivative(self, p: PolyElement, name: str) -> Quotient:
+        ring = self.ring
+        used = set(ring.shape(p))
+        position = ring.position[name]
+        total = polynomial(ring, p.diff(ring.generator(position)) if position in used else ring.zero)
+        for index, (s, c) in enumerate(zip(ring.sine, ring.cosine, strict=True)):
+            if s not in used and c not in used:
+                continue
+            rate = self._angle_slope(index, name)
+            if rate:
+                x, y = ring.generator(s), ring.generator(c)
+                turn = ring.normal(y * p.diff(x) - x * p.diff(y))
+                total = total + polynomial(ring, turn) * rate
+        for index, position in enumerate(ring.opaque_position):
+            if position in used:
+                slope = self.constant(0)
+                for argument, outer in ring.opaque[index].outer_derivatives:
+                    inner = self.derivative(self.value(argument), name)
+                    if inner:
+                        slope = slope + self.value(outer) * inner
+                total = total + polynomial(ring, ring.normal(p.diff(ring.generator(position)))) * slope
+        return total
+
+    def _angle_slope(self, index: int, name: str) -> Quotient:
+        """The derivative of an angle atom with respect to a variable."""
+        key = (index, name)
+        if key not in self._slopes:
+            total = self.constant(0)
+            for base, factor in self.ring.basis.atoms[index]:
+                if isinstance(base, Name):
+                    inner = self.constant(1 if base.name == name else 0)
+                else:
+                    inner = self.derivative(self.value(base), name)
+                total = total + self.constant(factor) * inner
+            self._slopes[key] = total
+        return self._slopes[key]
+
+
+def _parts(expression: Expression) -> Iterable[Expression]:
+    """The expression and all its sub-expressions."""
+    yield expression
+    match expression:
+        case Negation(operand):
+            yield from _parts(operand)
+        case Binary(_, left, right):
+            yield from _parts(left)
+            yield from _parts(right)
+        case Power(base, _):
+            yield from _parts(base)
+        case Call(_, arguments):
+            for argument in arguments:
+                yield from _parts(argument)
+        case _:
+            pass
+
+
+def opaque_atom(expression: Expression) -> Opaque | None:
+    """The atom an expression needs because the ring cannot hold it, with its derivative; None if it can."""
+    match expression:
+        case Pi():
+            return Opaque(expression, ())
+        case Power(base, exponent) if exponent.denominator != 1:
+            return _root(base, exponent.denominator)
+        case Call("sqrt", (argument,)):
+            return _root(argument, 2)
+        case Call("sin" | "cos" | "tan", _):
+            return None
+        case Call("atan2", (y, x)):
+            square = Binary("+", Power(x, Fraction(2)), Power(y, Fraction(2)))
+            return Opaque(expression, ((y, Binary("/", x, square)), (x, Negation(Binary("/", y, square)))))
+        case Call(function, (u,)):
+            rest = Binary("-", ONE, Power(u, Fraction(2)))
+            slopes: dict[str, Expression] = {
+                "asin": Power(rest, Fraction(-1, 2)),
+                "acos": Negation(Power(rest, Fraction(-1, 2))),
+                "atan": Binary("/", ONE, Binary("+", ONE, Power(u, Fraction(2)))),
+                "exp": expression,
+                "log": Binary("/", ONE, u),
+                "sinh": Call("cosh", (u,)),
+                "cosh": Call("sinh", (u,)),
+                "tanh": Binary("-", ONE, Power(expression, Fraction(2))),
+            }
+            return Opaque(expression, ((u, slopes[function]),))
+        case _:
+            return None
+
+
+def _root(base: Expression, degree: int) -> Opaque:
+    root = Power(base, Fraction(1, degree))
+    return Opaque(root, ((base, Binary("/", root, Binary("*", Number(Fraction(degree)), base))),))
+
+
