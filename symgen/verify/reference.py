@@ -1,0 +1,112 @@
+"""The independent reference: every quantity at one state, to at least 50 digits.
+
+It starts from T, U, the constraint expressions, the inputs and the applied forces as parsed, differentiates by
+truncated Taylor arithmetic, and solves at known ranks in ball arithmetic, whose radii bound its own error.  It shares
+nothing with the derivation of kernels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+from flint import ctx
+
+from symgen.model.model import Model
+from symgen.verify.reference_linear import norm
+from symgen.verify.reference_manifold import Ranks, generic_ranks
+from symgen.verify.reference_quantities import QUANTITIES, Evaluation, offered
+from symgen.verify.reference_system import System, literal_values
+from symgen.verify.reference_tape import ball
+
+Exact: TypeAlias = int | float | Fraction | Any
+BITS = 256
+DIGITS = 50
+MOST_BITS = 4096
+
+
+class ReferenceValueError(Exception):
+    """The reference has no value here: a rank drops, or a function is evaluated outside its domain."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """One input of all kernels, as exact numbers (int, float, Fraction) or balls."""
+
+    q: tuple[Exact, ...]
+    qd: tuple[Exact, ...]
+    qdd: tuple[Exact, ...]
+    u: tuple[Exact, ...]
+    parameters: tuple[Exact, ...]
+
+
+class Reference:
+    """The reference of one model; `ranks` are found at random points of V when they are not given.
+
+    Raises ReferenceValueError when no point of the constraint manifold is found.
+    """
+
+    def __init__(self, model: Model, ranks: Ranks | None = None) -> None:
+        self.model = model
+        self.system = System(model)
+        known = ranks or generic_ranks(self.system)
+        if known is None:
+            raise ReferenceValueError(
+                f"{model.name}: no configuration that satisfies the geometric constraints was found"
+            )
+        self.ranks = known
+
+    def quantities(self) -> tuple[str, ...]:
+        """The names this model has (not those whose result would be empty)."""
+        return tuple(name for name in QUANTITIES if offered(name, self.system, self.ranks))
+
+    def literals(self) -> list[Any]:
+        """The literals of the model at the working precision."""
+        return literal_values(self.system.literals)
+
+    def evaluate(self, state: State, quantities: Sequence[str]) -> dict[str, tuple[Any, ...]]:
+        """Row-major entries of each quantity, as balls that hold at least 50 digits of the quantity's norm.
+
+        Raises ReferenceValueError where a quantity does not exist (a rank drops).
+        """
+        bits = BITS
+        while True:
+            matrices = self.matrices(state, quantities, bits)
+            if all(_accurate(matrix) for matrix in matrices.values()):
+                return {name: tuple(matrix.entries()) for name, matrix in matrices.items()}
+            bits *= 2
+            if bits > MOST_BITS:
+                raise ReferenceValueError(
+                    f"{self.model.name}: no 50 digits of {', '.join(quantities)} with {MOST_BITS} bits"
+                )
+
+    def matrices(
+        self, state: State, quantities: Sequence[str], bits: int = BITS, literals: Sequence[Any] | None = None
+    ) -> dict[str, Any]:
+        """Each quantity as a matrix of balls (vectors are columns) at a working precision, whatever the radii become.
+
+        `literals` replace the values of the model's literals.
+        """
+        previous = ctx.prec
+        ctx.prec = bits
+        try:
+            evaluation = Evaluation(
+                self.system,
+                self.ranks,
+                *([ball(x) for x in part] for part in (state.q, state.qd, state.qdd, state.u, state.parameters)),
+                self.literals() if literals is None else literals,
+            )
+            return {name: QUANTITIES[name](evaluation) for name in quantities}
+        except ZeroDivisionError as fault:
+            raise ReferenceValueError(f"{self.model.name}: a rank drops at this state") from fault
+        finally:
+            ctx.prec = previous
+
+
+def _accurate(matrix: Any) -> bool:
+    """Whether the radii leave 50 digits of the norm (or are that small absolutely, for results that vanish)."""
+    radius = max((float(entry.rad()) for entry in matrix.entries()), default=0.0)
+    size = norm(matrix)
+    return bool(radius <= 10.0**-DIGITS * max(size, 10.0**-DIGITS)) and size == size

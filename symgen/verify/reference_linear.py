@@ -1,0 +1,143 @@
+"""Linear algebra at known rank, in ball arithmetic.
+
+No cutoff decides a rank here: ranks are given, every inverse is that of a regular Gram matrix, and the working precision
+(256 bits) pays for the squared condition number.  A ball that contains a singular matrix raises ZeroDivisionError.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Any
+
+from flint import arb, arb_mat
+
+
+def identity(n: int) -> Any:
+    """The n x n identity."""
+    return arb_mat(n, n, [int(i == j) for i in range(n) for j in range(n)])
+
+
+def column(values: Sequence[Any]) -> Any:
+    """A column of numbers."""
+    return arb_mat(len(values), 1, list(values))
+
+
+def solve(matrix: Any, right: Any) -> Any:
+    """The solution of a regular system; sizes of zero are fine."""
+    if matrix.nrows() == 0 or right.ncols() == 0:
+        return arb_mat(matrix.nrows(), right.ncols())
+    return matrix.solve(right)
+
+
+def rows_of(matrix: Any, indices: Sequence[int]) -> Any:
+    """The rows `indices`."""
+    table = matrix.tolist()
+    return arb_mat(len(indices), matrix.ncols(), [entry for i in indices for entry in table[i]])
+
+
+def columns_of(matrix: Any, indices: Sequence[int]) -> Any:
+    """The columns `indices`."""
+    table = matrix.tolist()
+    return arb_mat(matrix.nrows(), len(indices), [row[j] for row in table for j in indices])
+
+
+def norm(matrix: Any) -> float:
+    """Frobenius norm of the midpoints, to a float's accuracy."""
+    if matrix.nrows() == 0 or matrix.ncols() == 0:
+        return 0.0
+    wide = matrix.transpose() if matrix.nrows() > matrix.ncols() else matrix
+    middle = wide.mid()
+    return float((middle * middle.transpose()).trace().mid().sqrt())
+
+
+def determinant(matrix: Any) -> Any:
+    """The determinant; 1 for size zero."""
+    return matrix.det() if matrix.nrows() else arb(1)
+
+
+def right_pseudoinverse(matrix: Any, rank: int) -> Any:
+    """B+ (n x r) of B (r x n) of the given generic rank.
+
+    For rank < r the Cauchy-Binet mean over the row subsets I of that size (theory.md 3.1): B+ = sum_I w_I [B_I+],
+    w_I = det(B_I B_I') / sum.  It is smooth near the manifold, and the Moore-Penrose inverse on it.
+    """
+    r, n = matrix.nrows(), matrix.ncols()
+    if rank == 0:
+        return arb_mat(n, r)
+    if rank == r:
+        return solve(matrix * matrix.transpose(), matrix).transpose()
+    total = arb(0)
+    entries = [[arb(0)] * r for _ in range(n)]
+    for subset in combinations(range(r), rank):
+        part = rows_of(matrix, subset)
+        gram = part * part.transpose()
+        weight = determinant(gram)
+        if weight.contains(0):
+            continue  # det(A) A^-1 is the adjugate, and B_I' adj(B_I B_I') = 0 where B_I loses rank
+        total += weight
+        for i, row in enumerate((solve(gram, part).transpose() * weight).tolist()):
+            for j, entry in zip(subset, row, strict=True):
+                entries[i][j] += entry
+    return arb_mat(n, r, [entry / total for row in entries for entry in row])
+
+
+def pseudoinverse(matrix: Any, rank: int) -> Any:
+    """The Moore-Penrose inverse (m x n) of an n x m matrix of known rank, by a full-rank factorisation."""
+    n, m = matrix.nrows(), matrix.ncols()
+    if rank == 0:
+        return arb_mat(m, n)
+    if rank == m:
+        return solve(matrix.transpose() * matrix, matrix.transpose())
+    if rank == n:
+        return solve(matrix * matrix.transpose(), matrix).transpose()
+    basis = columns_of(matrix, independent_columns(matrix, rank))
+    left = solve(basis.transpose() * basis, basis.transpose())
+    factor = left * matrix
+    return factor.transpose() * solve(factor * factor.transpose(), left)
+
+
+def independent_columns(matrix: Any, rank: int) -> list[int]:
+    """`rank` columns by pivoting on the largest remaining one (modified Gram-Schmidt on midpoints)."""
+    columns = [[arb(entry.mid()) for entry in row] for row in matrix.transpose().tolist()]
+    chosen: list[int] = []
+    for _ in range(rank):
+        squares = [sum((x * x for x in c), arb(0)) for c in columns]
+        pivot = max((j for j in range(len(columns)) if j not in chosen), key=lambda j: float(squares[j].mid()))
+        chosen.append(pivot)
+        direction = columns[pivot]
+        for j, other in enumerate(columns):
+            if j not in chosen:
+                share = (sum((x * y for x, y in zip(direction, other, strict=True)), arb(0)) / squares[pivot]).mid()
+                columns[j] = [arb((y - share * x).mid()) for x, y in zip(direction, other, strict=True)]
+    return sorted(chosen)
+
+
+RANK_NOISE = -100
+RANK_SIGNAL = -60
+
+
+def numerical_rank(matrix: Any) -> int | None:
+    """Rank of a matrix known to more than 150 bits: pivots above 2^-60 of a row's size count, below 2^-100 do not.
+
+    None when a pivot falls between (the point is too close to a singularity to tell).
+    """
+    rows = [[arb(entry.mid()) for entry in row] for row in matrix.tolist()]
+    sizes = [max((float(abs(entry)) for entry in row), default=0.0) for row in rows]
+    largest = max(sizes, default=0.0)
+    rows = [
+        [entry / size for entry in row]
+        for row, size in zip(rows, sizes, strict=True)
+        if size > largest * 2.0**RANK_NOISE
+    ]
+    rank = 0
+    while rows:
+        size, i, j = max((float(abs(entry).mid()), i, j) for i, row in enumerate(rows) for j, entry in enumerate(row))
+        if size < 2.0**RANK_NOISE:
+            break
+        if size < 2.0**RANK_SIGNAL:
+            return None
+        pivot = rows.pop(i)
+        rows = [[arb((x - row[j] / pivot[j] * y).mid()) for x, y in zip(row, pivot, strict=True)] for row in rows]
+        rank += 1
+    return rank

@@ -1,0 +1,294 @@
+"""From the parsed model to numbers: what the energies, constraints, inputs and forces say about one state.
+
+Four replays of one tape: the configuration (G, B, M and their gradients, g, U and its gradient), the constraint
+residual alone (for Newton's method), the energies, and the applied forces.  Inputs of a replay are the coordinates,
+the rates, the parameters and the literals of the model, in this order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, arb_mat
+
+from symgen.diagnostics import SymgenBug
+from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.model import Model
+from symgen.verify.reference_tape import Register, Replay, Tape, ball, replay_of
+from symgen.verify.reference_taylor import CONSTANT, Polynomial, Taylor
+
+
+def literals_of(model: Model) -> tuple[Number | Pi, ...]:
+    """Every literal of the model's formulas, in order of reading; default values of parameters do not count."""
+    found: dict[int, Number | Pi] = {}
+    for expression in _formulas(model):
+        for node in _walk(expression):
+            if isinstance(node, Pi) or (isinstance(node, Number) and node.value != 0):
+                found.setdefault(id(node), node)
+    return tuple(found.values())
+
+
+def literal_values(literals: Sequence[Number | Pi]) -> list[Any]:
+    """The literals as balls of the working precision."""
+    return [arb.pi() if isinstance(literal, Pi) else ball(literal.value) for literal in literals]
+
+
+def default_parameters(model: Model) -> list[Any]:
+    """Default values of the parameters, as balls of the working precision."""
+    return parameters_from(model, {})
+
+
+def parameters_from(model: Model, chosen: dict[str, Any]) -> list[Any]:
+    """Parameter values: the `chosen` ones, and the others from their expressions of earlier parameters."""
+    tape = Tape()
+    algebra = Taylor(tape, 0, 0)
+    names: dict[str, Polynomial] = {}
+    given: list[Any] = []
+    translation = _Translation(algebra, names, {}, {})
+    for parameter in model.parameters:
+        if parameter.name in chosen:
+            given.append(ball(chosen[parameter.name]))
+            names[parameter.name] = {CONSTANT: tape.input(len(given) - 1)}
+        else:
+            names[parameter.name] = translation.polynomial(parameter.value)
+    registers = [names[parameter.name].get(CONSTANT, tape.zero) for parameter in model.parameters]
+    return list(replay_of(tape, registers).run(given))
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """Everything that depends on q and parameters alone; gradients are stacked with the last index fastest."""
+
+    mass: Any  # n x n
+    mass_gradient: Any  # (n n) x n: row (i, j), column k holds dG_ij/dq_k
+    mass_gradient_turned: Any  # (n n) x n: row (i, j), column k holds dG_ik/dq_j
+    constraints: Any  # r x n
+    constraint_gradient: Any  # (r n) x n
+    residual: Any  # r_g x 1
+    control: Any  # n x m
+    control_gradient: Any  # (n m) x n
+    potential_gradient: Any  # n x 1
+
+
+class System:
+    """The model as replays."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.literals = literals_of(model)
+        n, m, r = model.n, model.m, model.r
+        self.n, self.m, self.r = n, m, r
+        self.r_geometric = sum(row.kind == "geometric" for row in model.constraints)
+        self._tape = Tape()
+        self._shared: dict[tuple[int, int], _Translation] = {}
+        energy = self._translation(1, 2).polynomial(model.kinetic_energy)
+        potential = self._translation(1, 0).polynomial(model.potential_energy)
+        rows = [self._constraint_row(index) for index in range(r)]
+        columns = [dict(control.acts_on) for control in model.inputs]
+        control = [
+            self._translation(1, 0).polynomial(column[c.name]) if c.name in column else {}
+            for c in model.coordinates
+            for column in columns
+        ]
+        mass = [self._rate_coefficient(energy, i, j, None) for i in range(n) for j in range(n)]
+        gradient = {
+            (i, j, k): self._rate_coefficient(energy, i, j, k) for i in range(n) for j in range(i, n) for k in range(n)
+        }
+        self._has_coriolis = any(register != self._tape.zero for register in gradient.values())
+        zero = self._tape.zero
+        outputs = [
+            mass,
+            [gradient[min(i, j), max(i, j), k] for i in range(n) for j in range(n) for k in range(n)],
+            [gradient[min(i, k), max(i, k), j] for i in range(n) for j in range(n) for k in range(n)],
+            [row[0][j] for row in rows for j in range(n)],
+            [row[1][j][k] for row in rows for j in range(n) for k in range(n)],
+            [row[2] for row in rows[: self.r_geometric]],
+            [entry.get(CONSTANT, zero) for entry in control],
+            [entry.get(((k,), ()), zero) for entry in control for k in range(n)],
+            [potential.get(((k,), ()), zero) for k in range(n)],
+        ]
+        stacked = (n * n, n)
+        residual = (self.r_geometric, 1)
+        self._shapes = ((n, n), stacked, stacked, (r, n), (r * n, n), residual, (n, m), (n * m, n), (n, 1))
+        self._configuration = replay_of(self._tape, [register for block in outputs for register in block])
+        self._geometry = replay_of(self._tape, [*outputs[5], *outputs[3][: self.r_geometric * n]])
+        plain = self._translation(0, 0)
+        self._energies = self._plain([plain.polynomial(model.kinetic_energy), plain.polynomial(model.potential_energy)])
+        forces = {force.coordinate: force.expression for force in model.applied_forces}
+        self._applied: Replay | None = None
+        if forces:
+            self._applied = self._plain(
+                [plain.polynomial(forces[c.name]) if c.name in forces else {} for c in model.coordinates]
+            )
+
+    def configuration(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> Configuration:
+        """Evaluate at q."""
+        values = self._configuration.run([*q, *([None] * self.n), *parameters, *literals])
+        matrices = []
+        start = 0
+        for rows, columns in self._shapes:
+            end = start + rows * columns
+            matrices.append(arb_mat(rows, columns, values[start:end]))
+            start = end
+        return Configuration(*matrices)
+
+    def geometry(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
+        """g (r_g x 1) and dg/dq (r_g x n) at q."""
+        values = self._geometry.run([*q, *([None] * self.n), *parameters, *literals])
+        r = self.r_geometric
+        return arb_mat(r, 1, values[:r]), arb_mat(r, self.n, values[r:])
+
+    def energies(
+        self, q: Sequence[Any], qd: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
+    ) -> tuple[Any, ...]:
+        """T and U."""
+        return self._energies.run([*q, *qd, *parameters, *literals])
+
+    def applied(self, q: Sequence[Any], qd: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> Any:
+        """Q_a (n x 1)."""
+        if self._applied is None:
+            return arb_mat(self.n, 1)
+        return arb_mat(self.n, 1, self._applied.run([*q, *qd, *parameters, *literals]))
+
+    @property
+    def has_applied_forces(self) -> bool:
+        """Whether the model declares applied forces."""
+        return self._applied is not None
+
+    @property
+    def has_coriolis(self) -> bool:
+        """Whether G depends on q, as far as the record of operations tells."""
+        return self._has_coriolis
+
+    def _plain(self, polynomials: Sequence[Polynomial]) -> Replay:
+        return replay_of(self._tape, [p.get(CONSTANT, self._tape.zero) for p in polynomials])
+
+    def _rate_coefficient(self, energy: Polynomial, i: int, j: int, k: int | None) -> Register:
+        """Register of d2T/dqd_i dqd_j, or of its derivative along q_k."""
+        monomial = (() if k is None else (k,), (min(i, j), max(i, j)))
+        register = energy.get(monomial, self._tape.zero)
+        return self._tape.scaled(Fraction(2), register) if i == j else register
+
+    def _constraint_row(self, index: int) -> tuple[list[Register], list[list[Register]], Register]:
+        """Row of B, its gradient, and the residual of a geometric row."""
+        row = self.model.constraints[index]
+        zero, n = self._tape.zero, self.n
+        if row.kind == "nonholonomic":
+            linear = self._translation(1, 1).polynomial(row.expression)
+            entries = [linear.get(((), (j,)), zero) for j in range(n)]
+            gradient = [[linear.get(((k,), (j,)), zero) for k in range(n)] for j in range(n)]
+            return entries, gradient, zero
+        g = self._translation(2, 0).polynomial(row.expression)
+        entries = [g.get(((j,), ()), zero) for j in range(n)]
+        gradient = [
+            [
+                self._tape.scaled(Fraction(2), g.get(((j, j), ()), zero))
+                if j == k
+                else g.get(((min(j, k), max(j, k)), ()), zero)
+                for k in range(n)
+            ]
+            for j in range(n)
+        ]
+        return entries, gradient, g.get(CONSTANT, zero)
+
+    def _translation(self, coordinates: int, rates: int) -> _Translation:
+        """The shared translation for polynomials of these degrees; degree 0 in both takes the rates at their value."""
+        key = (coordinates, rates)
+        if key not in self._shared:
+            self._shared[key] = self._new_translation(coordinates, rates)
+        return self._shared[key]
+
+    def _new_translation(self, coordinates: int, rates: int) -> _Translation:
+        tape, n = self._tape, self.n
+        names: dict[str, Polynomial] = {}
+        for j, coordinate in enumerate(self.model.coordinates):
+            names[coordinate.name] = {CONSTANT: tape.input(j)}
+            if coordinates:
+                names[coordinate.name][(j,), ()] = tape.one
+            if rates:
+                names[coordinate.rate] = {((), (j,)): tape.one}
+            elif not coordinates:
+                names[coordinate.rate] = {CONSTANT: tape.input(n + j)}
+        for j, parameter in enumerate(self.model.parameters):
+            names[parameter.name] = {CONSTANT: tape.input(2 * n + j)}
+        first = 2 * n + len(self.model.parameters)
+        literals = {id(literal): tape.input(first + j) for j, literal in enumerate(self.literals)}
+        definitions = {definition.name: definition.value for definition in self.model.definitions}
+        return _Translation(Taylor(tape, coordinates, rates), names, definitions, literals)
+
+
+@dataclass(frozen=True)
+class _Translation:
+    """Expressions to polynomials; a literal that is not among `literals` is a constant."""
+
+    algebra: Taylor
+    names: dict[str, Polynomial]
+    definitions: dict[str, Expression]
+    literals: dict[int, Register]
+
+    def polynomial(self, expression: Expression) -> Polynomial:
+        """The Taylor polynomial of an expression."""
+        algebra = self.algebra
+        match expression:
+            case Number(value):
+                if value == 0:
+                    return {}
+                register = self.literals.get(id(expression))
+                return {CONSTANT: algebra.tape.constant(value) if register is None else register}
+            case Pi():
+                register = self.literals.get(id(expression))
+                return {CONSTANT: self._pi() if register is None else register}
+            case Name(name):
+                if name not in self.names:
+                    self.names[name] = self.polynomial(self.definitions[name])
+                return self.names[name]
+            case Negation(operand):
+                return algebra.negate(self.polynomial(operand))
+            case Binary(operator, left, right):
+                combine = {
+                    "+": algebra.add,
+                    "-": algebra.subtract,
+                    "*": algebra.multiply,
+                    "/": algebra.divide,
+                }[operator]
+                return combine(self.polynomial(left), self.polynomial(right))
+            case Power(base, exponent):
+                return algebra.power(self.polynomial(base), exponent)
+            case Call("atan2", (y, x)):
+                return algebra.angle(self.polynomial(y), self.polynomial(x))
+            case Call(function, (argument,)):
+                return algebra.function(function, self.polynomial(argument))
+        raise SymgenBug(f"reference: no rule for {expression}")
+
+    def _pi(self) -> Register:
+        """pi of a parameter's default value, as 4 atan(1)."""
+        tape = self.algebra.tape
+        return tape.scaled(Fraction(4), tape.unary("atan", tape.one))
+
+
+def _formulas(model: Model) -> Iterator[Expression]:
+    yield from (definition.value for definition in model.definitions)
+    yield model.kinetic_energy
+    yield model.potential_energy
+    yield from (row.expression for row in model.constraints)
+    yield from (entry for control in model.inputs for _, entry in control.acts_on)
+    yield from (force.expression for force in model.applied_forces)
+
+
+def _walk(expression: Expression) -> Iterator[Expression]:
+    pending = [expression]
+    while pending:
+        node = pending.pop()
+        yield node
+        match node:
+            case Negation(operand):
+                pending.append(operand)
+            case Binary(_, left, right):
+                pending.extend((right, left))
+            case Power(base, _):
+                pending.append(base)
+            case Call(_, arguments):
+                pending.extend(reversed(arguments))
