@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import comb
-
 import casadi
 
 from symgen.model.model import Model
@@ -63,7 +61,7 @@ def derive(model: Model, s: Lagrange, ranks: Ranks) -> dict[str, casadi.SX]:
     if model.independent_velocities:
         quantities |= _minimal(model, s, ranks)
     if 0 < model.m == model.n - ranks.constraints == ranks.actuation:
-        quantities |= _actuator(s, M_plus.T, v)
+        quantities |= _actuator(s, M_plus.T)
     return {name: casadi.densify(value) for name, value in quantities.items() if 0 not in value.shape}
 
 
@@ -123,11 +121,16 @@ def _singularity(s: Lagrange, N: casadi.SX, n: int, ranks: Ranks) -> casadi.SX:
     if rows:
         lengths = casadi.sqrt(casadi.sum2(s.jacobian**2))
         unit = s.jacobian / casadi.repmat(casadi.if_else(lengths == 0, 1, lengths), 1, n)
-        constraint = compound(unit @ unit.T, ranks.constraints)[1] / comb(rows, ranks.constraints)
+        possible = compound(casadi.diag(lengths != 0), ranks.constraints)[1]  # subsets without a vanishing row
+        constraint = _ratio_or_zero(compound(unit @ unit.T, ranks.constraints)[1], possible)
     order = ranks.actuation
     projected = compound(s.control.T @ N @ s.control, order)[1]
     plain = compound(s.control.T @ s.control, order)[1]
-    return casadi.vertcat(constraint, casadi.if_else(plain == 0, 0, projected / plain))
+    return casadi.vertcat(constraint, _ratio_or_zero(projected, plain))
+
+
+def _ratio_or_zero(numerator: casadi.SX, denominator: casadi.SX) -> casadi.SX:
+    return casadi.if_else(denominator == 0, 0, numerator / denominator)
 
 
 def _minimal(model: Model, s: Lagrange, ranks: Ranks) -> dict[str, casadi.SX]:
@@ -151,13 +154,14 @@ def _minimal(model: Model, s: Lagrange, ranks: Ranks) -> dict[str, casadi.SX]:
     }
 
 
-def _actuator(s: Lagrange, W: casadi.SX, v: casadi.SX) -> dict[str, casadi.SX]:
-    """Equations in the quasi-velocities ν = Mᵀ q̇ (Remark 10), W = (M̃⁺)ᵀ (n×m), all at the projected velocity v."""
-    nu = casadi.SX.sym("nu", W.shape[1])
-    drift = casadi.substitute(casadi.jtimes(W @ nu, s.q, s.qd), nu, s.control.T @ s.qd)
+def _actuator(s: Lagrange, W: casadi.SX) -> dict[str, casadi.SX]:
+    """Equations in the quasi-velocities ν = Mᵀ q̇ (Remark 10), W = (M̃⁺)ᵀ (n×m), all at the velocity W ν."""
+    nu = s.control.T @ s.qd
+    held = casadi.SX.sym("nu", W.shape[1])
+    drift = casadi.substitute(casadi.jtimes(W @ held, s.q, s.qd), held, nu)
     force = s.mass @ drift + s.coriolis_force + s.potential_force - s.applied_force
     return {
-        "actuator_velocity": s.control.T @ v,
+        "actuator_velocity": nu,
         "actuator_mass_matrix": W.T @ s.mass @ W,
-        "actuator_bias": W.T @ _at_rate(s, force, v),
+        "actuator_bias": W.T @ _at_rate(s, force, W @ nu),
     }
