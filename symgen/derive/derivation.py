@@ -1,0 +1,351 @@
+"""The quantities of the paper along one way to the null space of B.
+
+A `Derivation` holds what several quantities share, each part computed on first use.  The catalogue lists its methods
+by quantity name; `select` compares the derivations along different null spaces by counted cost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import combinations
+
+from symgen.derive.exterior import ActuationForms, RowForms, unit, wedge_all
+from symgen.derive.exterior import square as multivector_square
+from symgen.derive.genericity import Genericity
+from symgen.derive.guards import Guard
+from symgen.derive.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia, ShiftedInertia
+from symgen.derive.mechanics import Mechanics
+from symgen.derive.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
+from symgen.graph.matrix import (
+    Matrix,
+    Vector,
+    add,
+    dot,
+    flatten,
+    identity,
+    matmul,
+    matvec,
+    scale,
+    subtract,
+    subtract_vectors,
+    transpose,
+)
+from symgen.graph.scalar import Scalar
+from symgen.graph.traverse import substitute
+from symgen.ir.kernel import Status
+
+
+class Derivation:
+    """Every quantity of one system as scalars, along one `NullSpace`."""
+
+    def __init__(self, mechanics: Mechanics, generic: Genericity, space: NullSpace) -> None:
+        self.mechanics = mechanics
+        self.generic = generic
+        self.space = space
+        self.graph = mechanics.graph
+        self.n, self.r, self.m = mechanics.n, mechanics.r, mechanics.m
+
+    # shared parts -------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def admissible(self) -> Vector:
+        """v = N_B q_dot."""
+        return self.space.project(self.mechanics.qd)
+
+    @cached_property
+    def inertia(self) -> ConstrainedInertia:
+        """K = W (W^T G W)^-1 W^T, by the form that is valid wherever G is positive definite on ker B."""
+        mass_matrix = self.mechanics.mass_matrix
+        if self.r == 0:
+            return FreeInertia(self.graph, mass_matrix)
+        if isinstance(self.space, HouseholderSpace):
+            return BasisInertia(self.space, mass_matrix)
+        assert isinstance(self.space, MinorSpace)
+        if self.generic.delta <= 2:
+            return MinorInertia(self.space, mass_matrix)
+        return ShiftedInertia(self.space, mass_matrix)
+
+    @cached_property
+    def _actuation(self) -> tuple[ActuationForms, Restriction]:
+        return self.space.actuation(self.mechanics.inputs, self.generic.alpha)
+
+    @property
+    def actuation_guards(self) -> tuple[Guard, ...]:
+        """The denominator of the input equations; a drop of rank B is named first."""
+        forms, _ = self._actuation
+        if forms.denominator().constant is not None:
+            return ()
+        return (Guard(Status.ACTUATION_RANK, forms.denominator(), 1 if forms.single else 2, self.space.guards),)
+
+    def _solve_inputs(self, force: Vector) -> Vector:
+        forms, restriction = self._actuation
+        return forms.solve(restriction(force))
+
+    def _columns(self, solve: Sequence[Vector]) -> Matrix:
+        return transpose(tuple(solve), len(solve[0])) if solve else ()
+
+    @cached_property
+    def control_pseudoinverse(self) -> Matrix:
+        """M~^+ (m x n): the input equations solved for unit forces."""
+        return self._columns([self._solve_inputs(axis) for axis in identity(self.graph, self.n)])
+
+    def _projected_square(self, a: Matrix) -> Matrix:
+        n, projector = self.n, self.space.projector
+        product = matmul(self.graph, matmul(self.graph, projector, a, n), projector, n)
+        return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(n)) for i in range(n))
+
+    def projector_dot(self, velocity: Vector) -> Matrix:
+        """N_B_dot = -X - X^T with X = B^+ B_dot N_B (Remark 9)."""
+        graph, n = self.graph, self.n
+        if self.r == 0:
+            return scale(identity(graph, n), graph.zero)
+        rates = matmul(graph, self.mechanics.constraint_jacobian_dot(velocity), self.space.projector, n)
+        x = matmul(graph, self.space.pseudoinverse, rates, n)
+        return tuple(tuple(-(x[min(i, j)][max(i, j)] + x[max(i, j)][min(i, j)]) for j in range(n)) for i in range(n))
+
+    # projections of Remark 9 -----------------------------------------------------------------------------------------
+
+    def admissible_acceleration(self) -> Vector:
+        """N q_ddot + N_dot v with v = N q_dot: on the manifold N_dot v = -B^+ B_dot v."""
+        projected = self.space.project(self.mechanics.qdd)
+        if self.r == 0:
+            return projected
+        return subtract_vectors(projected, self.space.lift(self.mechanics.constraint_acceleration_bias(self.admissible)))
+
+    def projected_configuration(self) -> Vector:
+        """Two Newton steps q <- q - B_g^+ g with the geometric rows."""
+        q = self.mechanics.q
+        step = self._newton_step
+        first = tuple(a - b for a, b in zip(q, step, strict=True))
+        again = substitute(self.graph, step, dict(zip(q, first, strict=True)))
+        return tuple(a - b for a, b in zip(first, again, strict=True))
+
+    @cached_property
+    def _newton_space(self) -> NullSpace:
+        rows = self.mechanics.geometric_jacobian
+        if isinstance(self.space, HouseholderSpace):
+            return HouseholderSpace(self.graph, rows, self.n)
+        return MinorSpace(self.graph, rows, self.n, self.generic.geometric_rank)
+
+    @cached_property
+    def _newton_step(self) -> Vector:
+        if not self.mechanics.geometric_jacobian:
+            return (self.graph.zero,) * self.n
+        return self._newton_space.lift(self.mechanics.constraint_residual)
+
+    @property
+    def newton_guards(self) -> tuple[Guard, ...]:
+        """Where the geometric rows lose rank, at the given and at the improved configuration."""
+        if not self.mechanics.geometric_jacobian:
+            return ()
+        q = self.mechanics.q
+        moved = {a: a - b for a, b in zip(q, self._newton_step, strict=True)}
+        guards = self._newton_space.guards
+        again = substitute(self.graph, [guard.denominator for guard in guards], moved)
+        return (*guards, *(Guard(g.status, d, g.degree) for g, d in zip(guards, again, strict=True)))
+
+    # projected equations (30) ------------------------------------------------------------------------------------------
+
+    def projected_mass_matrix(self) -> Matrix:
+        """G~ = N G N."""
+        return self._projected_square(self.mechanics.mass_matrix)
+
+    def projected_coriolis_matrix(self) -> Matrix:
+        """C~ = N (C N + G N_dot), both along N q_dot."""
+        graph, n, space = self.graph, self.n, self.space
+        coriolis = matmul(graph, self.mechanics.coriolis_matrix(self.admissible), space.projector, n)
+        inertial = matmul(graph, self.mechanics.mass_matrix, self.projector_dot(self.admissible), n)
+        return matmul(graph, space.projector, add(coriolis, inertial), n)
+
+    # weighted projection (17), (19) --------------------------------------------------------------------------------------
+
+    @cached_property
+    def weighted_projector(self) -> Matrix:
+        """N_{B,G} = K G."""
+        if self.r == 0:
+            return identity(self.graph, self.n)
+        return self._columns([self.inertia.solve(row) for row in self.mechanics.mass_matrix])
+
+    def weighted_pseudoinverse(self) -> Matrix:
+        """B_G^+ = (I - N_{B,G}) B^+."""
+        complement = subtract(identity(self.graph, self.n), self.weighted_projector)
+        return matmul(self.graph, complement, self.space.pseudoinverse, self.r)
+
+    # minimal coordinates (8), (9) -----------------------------------------------------------------------------------------
+
+    @cached_property
+    def _independent(self) -> tuple[int, ...]:
+        names = [c.name for c in self.mechanics.model.coordinates]
+        return tuple(names.index(name) for name in self.mechanics.model.independent_velocities)
+
+    @cached_property
+    def _partition(self) -> tuple[ActuationForms, Restriction]:
+        axes = identity(self.graph, self.n)
+        return self.space.actuation([axes[i] for i in self._independent], len(self._independent))
+
+    @cached_property
+    def complement(self) -> Matrix:
+        """F (8), n x delta: B F = 0, the identity in the independent rows; the same map as (M~^+)^T with M selecting."""
+        forms, restriction = self._partition
+        rows = tuple(forms.solve(restriction(axis)) for axis in identity(self.graph, self.n))
+        chosen = {i: k for k, i in enumerate(self._independent)}
+        units = identity(self.graph, len(self._independent))
+        return tuple(units[chosen[i]] if i in chosen else row for i, row in enumerate(rows))
+
+    @property
+    def partition_guards(self) -> tuple[Guard, ...]:
+        """The parametrisation singularity of the chosen independent velocities; reported as a drop of rank."""
+        forms, _ = self._partition
+        if forms.denominator().constant is not None:
+            return ()
+        degree = 1 if forms.single else 2
+        return (Guard(Status.CONSTRAINT_RANK, forms.denominator(), degree, self.space.guards),)
+
+    def complement_dot(self, velocity: Vector) -> Matrix:
+        """F_dot = -(I - F E) B^+ B_dot F, with E selecting the independent rows."""
+        graph, n, delta = self.graph, self.n, self.generic.delta
+        if self.r == 0:
+            return scale(self.complement, graph.zero)
+        rates = matmul(graph, self.mechanics.constraint_jacobian_dot(velocity), self.complement, delta)
+        lifted = matmul(graph, self.space.pseudoinverse, rates, delta)
+        selected = tuple(lifted[i] for i in self._independent)
+        correction = matmul(graph, self.complement, selected, delta)
+        dependent = subtract(correction, lifted)
+        zeros = (graph.zero,) * delta
+        return tuple(zeros if i in self._independent else dependent[i] for i in range(n))
+
+    def minimal(self, a: Matrix) -> Matrix:
+        """F^T A F for symmetric A."""
+        graph, delta = self.graph, self.generic.delta
+        product = matmul(graph, transpose(self.complement, delta), matmul(graph, a, self.complement, delta), delta)
+        return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(delta)) for i in range(delta))
+
+    def minimal_vector(self, x: Vector) -> Vector:
+        """F^T x."""
+        return matvec(self.graph, transpose(self.complement, self.generic.delta), x)
+
+    def minimal_coriolis_matrix(self) -> Matrix:
+        """C- = F^T (C F + G F_dot), along q_dot as given."""
+        graph, delta, qd = self.graph, self.generic.delta, self.mechanics.qd
+        coriolis = matmul(graph, self.mechanics.coriolis_matrix(qd), self.complement, delta)
+        inertial = matmul(graph, self.mechanics.mass_matrix, self.complement_dot(qd), delta)
+        return matmul(graph, transpose(self.complement, delta), add(coriolis, inertial), delta)
+
+    # inverse dynamics (27) and Remark 10 -------------------------------------------------------------------------------------
+
+    @cached_property
+    def inverse_dynamics(self) -> Vector:
+        """u = (W^T M)^+ W^T tau, the minimum-norm least-squares inputs."""
+        return self._solve_inputs(self.mechanics.balance)
+
+    def inverse_dynamics_residual(self) -> Vector:
+        """N_B (tau - M u); nothing is left where the system is fully actuated."""
+        if self.generic.full_actuation:
+            return (self.graph.zero,) * self.n
+        return residual(self.space, self.mechanics.balance, self.mechanics.inputs, self.inverse_dynamics)
+
+    @cached_property
+    def actuator_basis(self) -> Matrix:
+        """W = (M~^+)^T, n x m."""
+        return transpose(self.control_pseudoinverse, self.n)
+
+    def actuator_velocity(self) -> Vector:
+        """nu = M^T q_dot."""
+        return tuple(dot(self.graph, column, self.mechanics.qd) for column in self.mechanics.inputs)
+
+    def actuator_mass_matrix(self) -> Matrix:
+        """W^T G W."""
+        graph, m, w = self.graph, self.m, self.actuator_basis
+        half = matmul(graph, self.mechanics.mass_matrix, w, m)
+        product = matmul(graph, self.control_pseudoinverse, half, m)
+        return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(m)) for i in range(m))
+
+    def actuator_bias(self) -> Vector:
+        """W^T (G W_dot nu + C v + Q - Q_a) at v = W nu.
+
+        Differentiating B W = 0 and M^T W = I gives W_dot nu = -(I - W M^T) B^+ B_dot v - W M_dot^T v.
+        """
+        graph, mechanics, w = self.graph, self.mechanics, self.actuator_basis
+        v = matvec(graph, w, self.actuator_velocity())
+        turned = matvec(graph, w, matvec(graph, transpose(mechanics.control_matrix_dot(v), self.m), v))
+        rate = tuple(-x for x in turned)
+        if self.r:
+            lifted = self.space.lift(mechanics.constraint_acceleration_bias(v))
+            seen = matvec(graph, w, tuple(dot(graph, column, lifted) for column in mechanics.inputs))
+            rate = tuple(a - (b - c) for a, b, c in zip(rate, lifted, seen, strict=True))
+        here = dict(zip((*mechanics.qd, *mechanics.qdd), (*v, *rate), strict=True))
+        force = substitute(graph, mechanics.balance, here)
+        return matvec(graph, self.control_pseudoinverse, tuple(force))
+
+    # forward dynamics (15) -------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def forward_dynamics(self) -> Vector:
+        """q_ddot = B^+ a + K (f - G B^+ a), a = -B_dot q_dot."""
+        mechanics, graph = self.mechanics, self.graph
+        force = mechanics.applied_balance
+        if self.r == 0:
+            return self.inertia.solve(force)
+        bias = mechanics.constraint_acceleration_bias(mechanics.qd)
+        lifted = tuple(-x for x in self.space.lift(bias))
+        rest = subtract_vectors(force, matvec(graph, mechanics.mass_matrix, lifted))
+        return tuple(a + b for a, b in zip(lifted, self.inertia.solve(rest), strict=True))
+
+    def multipliers(self) -> Vector:
+        """lambda = (B^+)^T (f - G q_ddot): the one of least norm where rows depend on each other."""
+        mechanics = self.mechanics
+        inertial = matvec(self.graph, mechanics.mass_matrix, self.forward_dynamics)
+        return self.space.lift_transposed(subtract_vectors(mechanics.applied_balance, inertial))
+
+    # diagnostics ------------------------------------------------------------------------------------------------------------
+
+    def energy(self) -> Vector:
+        """[T, U]."""
+        return self.mechanics.kinetic_energy, self.mechanics.potential_energy
+
+    def singularity(self) -> Vector:
+        """[det(B B^T) / prod |b_k|^2, e(M~)/e(M)] with rows normalised before products are formed."""
+        graph, mechanics = self.graph, self.mechanics
+        rows = mechanics.constraint_jacobian
+        lengths = [graph.function("sqrt", (dot(graph, row, row),)) for row in rows]
+        unit_rows = tuple(
+            tuple(graph.function("ratio_or_zero", (x, length)) for x in row)
+            for row, length in zip(rows, lengths, strict=True)
+        )
+        forms = RowForms(graph, unit_rows, self.n, self.generic.rank)
+        present = [graph.function("ratio_or_zero", (length, length)) for length in lengths]
+        possible = graph.sum(
+            self._product([present[k] for k in subset]) for subset in combinations(range(self.r), self.generic.rank)
+        )
+        constraint = graph.one
+        if self.r:
+            constraint = graph.function("ratio_or_zero", (forms.square, possible)) if self.generic.rank < self.r else forms.square
+        actuation = self._actuation_measure(forms)
+        return constraint, actuation
+
+    def _product(self, factors: Sequence[Scalar]) -> Scalar:
+        product = self.graph.one
+        for factor in factors:
+            product = product * factor
+        return product
+
+    def _actuation_measure(self, forms: RowForms) -> Scalar:
+        """e(M~)/e(M): |M_J ^ omega|^2 / |omega|^2 sums the determinants of the projected columns."""
+        graph, alpha = self.graph, self.generic.alpha
+        if alpha == 0:
+            return graph.one
+        inputs = self.mechanics.inputs
+        projected = ActuationForms(forms, inputs, alpha).square()
+        columns = combinations(range(self.m), alpha)
+        whole = graph.sum(
+            multivector_square(graph, wedge_all(graph, unit(graph), [inputs[k] for k in subset])) for subset in columns
+        )
+        if self.r == 0:
+            return graph.function("ratio_or_zero", (projected, whole))
+        seen = graph.function("ratio_or_zero", (projected, forms.square))
+        return graph.function("ratio_or_zero", (seen, whole))
+
+    def flat(self, a: Matrix) -> Vector:
+        """Row-major entries."""
+        return flatten(a)

@@ -1,0 +1,170 @@
+"""Exterior algebra of sparse multivectors: minors, projections and minimum-norm solutions without choosing anything.
+
+A multivector of grade k over R^n is a mapping from k-subsets of the axes (as bit masks) to scalars.  With
+omega = b_1 ^ ... ^ b_r, the entries of omega are the r x r minors of B; a vector x loses its part in the row space of
+B in x ^ omega, because |x ^ omega|^2 = |N_B x|^2 |omega|^2.  Every formula below is a polynomial in the entries and
+one division, symmetric in rows, columns and inputs, hence valid wherever the ranks are what they generically are
+(Bourbaki, Algebra I, ch. III; Ben-Israel and Greville, Generalized Inverses, ch. 6 for the sums over minors).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import TypeAlias
+
+from symgen.graph.matrix import Matrix, Vector
+from symgen.graph.scalar import Graph, Scalar
+
+Multivector: TypeAlias = dict[int, Scalar]
+
+
+def unit(graph: Graph) -> Multivector:
+    """The scalar 1, of grade 0."""
+    return {0: graph.one}
+
+
+def wedge(graph: Graph, a: Multivector, x: Sequence[Scalar]) -> Multivector:
+    """a ^ x for a vector x."""
+    result: Multivector = {}
+    for mask, value in a.items():
+        for axis, entry in enumerate(x):
+            if entry.is_zero or mask >> axis & 1:
+                continue
+            # moving e_axis to its place passes every higher axis of the mask
+            term = value * entry
+            if (mask >> (axis + 1)).bit_count() & 1:
+                term = -term
+            key = mask | 1 << axis
+            result[key] = result[key] + term if key in result else term
+    return {mask: result[mask] for mask in sorted(result) if not result[mask].is_zero}
+
+
+def wedge_all(graph: Graph, start: Multivector, vectors: Sequence[Sequence[Scalar]]) -> Multivector:
+    """start ^ x_1 ^ x_2 ^ ..."""
+    for vector in vectors:
+        start = wedge(graph, start, vector)
+    return start
+
+
+def inner(graph: Graph, a: Multivector, b: Multivector) -> Scalar:
+    """The inner product in which the basis multivectors are orthonormal."""
+    return graph.sum(a[mask] * b[mask] for mask in sorted(a.keys() & b.keys()))
+
+
+def square(graph: Graph, a: Multivector) -> Scalar:
+    """|a|^2 as a sum of squares."""
+    return graph.sum(value * value for value in a.values())
+
+
+def basis_wedges(graph: Graph, a: Multivector, n: int) -> list[Multivector]:
+    """a ^ e_i for every axis i."""
+    axes = [tuple(graph.one if i == j else graph.zero for j in range(n)) for i in range(n)]
+    return [wedge(graph, a, axis) for axis in axes]
+
+
+class RowForms:
+    """omega_I = wedge of the rows I of B, for all row subsets I of the generic rank rho (one when rho = r)."""
+
+    def __init__(self, graph: Graph, rows: Matrix, n: int, rank: int) -> None:
+        self.graph = graph
+        self.rows = rows
+        self.n = n
+        self.rank = rank
+        self.subsets = list(combinations(range(len(rows)), rank))
+        self.forms = [wedge_all(graph, unit(graph), [rows[k] for k in subset]) for subset in self.subsets]
+        self.square = graph.sum(square(graph, form) for form in self.forms)
+
+    def projector(self) -> Matrix:
+        """N_B (21): the smaller of (e_i ^ omega, e_j ^ omega) and its complement, over |omega|^2."""
+        graph, n = self.graph, self.n
+        if self.rank == 0:
+            return tuple(tuple(graph.one if i == j else graph.zero for j in range(n)) for i in range(n))
+        families = [basis_wedges(graph, form, n) for form in self.forms]
+        inverse = 1 / self.square
+        upper = {
+            (i, j): graph.sum(inner(graph, family[i], family[j]) for family in families) * inverse
+            for i in range(n)
+            for j in range(i, n)
+        }
+        return tuple(tuple(upper[min(i, j), max(i, j)] for j in range(n)) for i in range(n))
+
+    def pseudoinverse(self) -> Matrix:
+        """B^+ (n x r): entry (i, k) is the inner product of omega with omega where b_k gives way to e_i."""
+        graph, n, r = self.graph, self.n, len(self.rows)
+        columns: list[list[Scalar]] = [[graph.zero] * n for _ in range(r)]
+        for subset, form in zip(self.subsets, self.forms, strict=True):
+            for place, k in enumerate(subset):
+                others = [self.rows[other] for other in subset if other != k]
+                rest = wedge_all(graph, unit(graph), others)
+                # b_k stands at `place`; e_i joins at the end and has to move back over the rows behind it
+                sign = -1 if (len(subset) - 1 - place) & 1 else 1
+                for i, replaced in enumerate(basis_wedges(graph, rest, n)):
+                    term = inner(graph, form, replaced)
+                    columns[k][i] = columns[k][i] + (term if sign > 0 else -term)
+        inverse = 1 / self.square
+        return tuple(tuple(columns[k][i] * inverse for k in range(r)) for i in range(n))
+
+
+class ActuationForms:
+    """The products M_J ^ omega over the input subsets J of size alpha, for every row subset of `rows`."""
+
+    def __init__(self, rows: RowForms, inputs: Sequence[Vector], degree: int) -> None:
+        self.graph = rows.graph
+        self.rows = rows
+        self.inputs = inputs
+        self.degree = degree
+        self.subsets = list(combinations(range(len(inputs)), degree))
+        self.products = [[self._product(form, subset) for subset in self.subsets] for form in rows.forms]
+
+    def _product(self, form: Multivector, subset: tuple[int, ...]) -> Multivector:
+        return wedge_all(self.graph, form, [self.inputs[k] for k in subset])
+
+    @property
+    def single(self) -> bool:
+        """Whether there is one determinant only, so that a plain quotient solves (m = delta, independent rows)."""
+        return len(self.products) == 1 and len(self.subsets) == 1 and self.degree + self.rows.rank == self.rows.n
+
+    def determinant(self) -> Scalar:
+        """The one determinant Delta of a `single` family."""
+        (product,) = self.products[0]
+        return product.get((1 << self.rows.n) - 1, self.graph.zero)
+
+    def square(self) -> Scalar:
+        """Sum of |M_J ^ omega_I|^2; 0 where the rank of B or of the projected control matrix drops."""
+        graph = self.graph
+        return graph.sum(square(graph, product) for family in self.products for product in family)
+
+    def denominator(self) -> Scalar:
+        """Delta itself when `single`, else the sum of squares."""
+        return self.determinant() if self.single else self.square()
+
+    def solve(self, force: Vector) -> Vector:
+        """Minimum-norm least-squares u of N_B M u = N_B force: Cramer's rule summed over all minors (theory 3.1)."""
+        graph = self.graph
+        numerators = [graph.zero] * len(self.inputs)
+        for form, family in zip(self.rows.forms, self.products, strict=True):
+            replaced = self._replaced(form, force)
+            for subset, product in zip(self.subsets, family, strict=True):
+                for place, k in enumerate(subset):
+                    others = subset[:place] + subset[place + 1 :]
+                    term = self._pair(product, replaced[others])
+                    if (len(subset) - 1 - place) & 1:
+                        term = -term
+                    numerators[k] = numerators[k] + term
+        denominator = self.denominator()
+        if all(numerator.is_zero for numerator in numerators):
+            return tuple(numerators)
+        if len([numerator for numerator in numerators if not numerator.is_zero]) == 1 or denominator.is_one:
+            return tuple(numerator / denominator for numerator in numerators)
+        inverse = 1 / denominator
+        return tuple(numerator * inverse for numerator in numerators)
+
+    def _replaced(self, form: Multivector, force: Vector) -> dict[tuple[int, ...], Multivector]:
+        subsets = sorted({subset[:i] + subset[i + 1 :] for subset in self.subsets for i in range(len(subset))})
+        return {subset: wedge(self.graph, self._product(form, subset), force) for subset in subsets}
+
+    def _pair(self, product: Multivector, replaced: Multivector) -> Scalar:
+        if self.single:
+            return replaced.get((1 << self.rows.n) - 1, self.graph.zero)
+        return inner(self.graph, product, replaced)

@@ -1,0 +1,143 @@
+"""The constrained inverse of the mass matrix: K = W (W^T G W)^-1 W^T for any null-space basis W.
+
+K f is the acceleration that the force f causes along the constraints.  Only G positive definite on ker B is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from symgen.derive.exterior import wedge
+from symgen.derive.guards import Guard, magnitude
+from symgen.derive.spaces import HouseholderSpace, MinorSpace
+from symgen.graph.matrix import Matrix, Vector, dot, identity, matmul, matvec, transpose
+from symgen.graph.scalar import Graph, Scalar
+from symgen.ir.kernel import Status
+
+
+class ConstrainedInertia(Protocol):
+    """Solves for accelerations along the constraints."""
+
+    guards: tuple[Guard, ...]
+
+    def solve(self, force: Vector) -> Vector:
+        """K f."""
+
+
+class Cholesky:
+    """L D L^T without pivoting: safe for a symmetric positive definite matrix (Golub and Van Loan, 4.1)."""
+
+    def __init__(self, graph: Graph, a: Matrix) -> None:
+        self.graph = graph
+        self.size = len(a)
+        self.lower: list[list[Scalar]] = []
+        self.pivots: list[Scalar] = []
+        for i in range(self.size):
+            scaled: list[Scalar] = []
+            for j in range(i):
+                scaled.append(a[i][j] - graph.sum(scaled[k] * self.lower[j][k] for k in range(j)))
+            row = [value / pivot for value, pivot in zip(scaled, self.pivots, strict=True)]
+            self.pivots.append(a[i][i] - graph.sum(x * y for x, y in zip(scaled, row, strict=True)))
+            self.lower.append(row)
+
+    @property
+    def guards(self) -> tuple[Guard, ...]:
+        """The pivots, positive where the matrix is positive definite."""
+        return tuple(Guard(Status.MASS_RANK, pivot, 1) for pivot in self.pivots)
+
+    def solve(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L D L^T x = b."""
+        y: list[Scalar] = []
+        for i in range(self.size):
+            y.append(b[i] - dot(self.graph, self.lower[i], y))
+        x = [value / pivot for value, pivot in zip(y, self.pivots, strict=True)]
+        for i in reversed(range(self.size)):
+            for j in range(i + 1, self.size):
+                x[i] = x[i] - self.lower[j][i] * x[j]
+        return tuple(x)
+
+
+class FreeInertia:
+    """No constraints: K = G^-1."""
+
+    def __init__(self, graph: Graph, mass_matrix: Matrix) -> None:
+        self._factor = Cholesky(graph, mass_matrix)
+        self.guards = self._factor.guards
+
+    def solve(self, force: Vector) -> Vector:
+        return self._factor.solve(force)
+
+
+class MinorInertia:
+    """delta = 1 or 2 in closed form.
+
+    delta = 1: K = w w^T / (w^T G w).  delta = 2, with Phi the antisymmetric matrix of minors:
+    K = Phi G Phi^T / (1/2 sum_ij (Phi G Phi^T)_ij G_ij).  Dependent rows sum over the row subsets.
+    """
+
+    def __init__(self, space: MinorSpace, mass_matrix: Matrix) -> None:
+        graph, n = space.graph, space.n
+        axes = identity(graph, n)
+        full = (1 << n) - 1
+        entries = [[graph.zero] * n for _ in range(n)]
+        for form in space.forms.forms:
+            if space.delta == 1:
+                w = [wedge(graph, form, axis).get(full, graph.zero) for axis in axes]
+                contribution = [[a * b for b in w] for a in w]
+            else:
+                once = [wedge(graph, form, axis) for axis in axes]
+                phi = tuple(tuple(wedge(graph, mv, axis).get(full, graph.zero) for axis in axes) for mv in once)
+                half = matmul(graph, phi, mass_matrix, n)
+                contribution = [[dot(graph, half[i], phi[j]) for j in range(n)] for i in range(n)]
+            for i in range(n):
+                for j in range(n):
+                    low, high = min(i, j), max(i, j)
+                    entries[i][j] = entries[i][j] + contribution[low][high]
+        weight = graph.sum(dot(graph, entries[i], mass_matrix[i]) for i in range(n))
+        self._graph = graph
+        self._entries: Matrix = tuple(map(tuple, entries))
+        self._denominator = weight if space.delta == 1 else weight / 2
+        # the minors' own size is judged by the space's guard; here only G on the null space is
+        size = graph.sum(magnitude(graph, [mass_matrix[i][i] for i in range(n)]))
+        scale = space.forms.square * (size if space.delta == 1 else size * size)
+        self.guards = (*space.guards, Guard(Status.MASS_RANK, self._denominator, 1, scale=scale))
+
+    def solve(self, force: Vector) -> Vector:
+        inverse = 1 / self._denominator
+        return tuple(x * inverse for x in matvec(self._graph, self._entries, force))
+
+
+class BasisInertia:
+    """Orthonormal basis F by reflections, then L D L^T of F^T G F."""
+
+    def __init__(self, space: HouseholderSpace, mass_matrix: Matrix) -> None:
+        graph, basis, delta = space.graph, space.basis, space.delta
+        self._graph, self._basis = graph, basis
+        weighted = matmul(graph, mass_matrix, basis, delta)
+        self._transposed = transpose(basis, delta)
+        projected = matmul(graph, self._transposed, weighted, delta)
+        self._factor = Cholesky(graph, projected)
+        self.guards = (*space.guards, *self._factor.guards)
+
+    def solve(self, force: Vector) -> Vector:
+        return matvec(self._graph, self._basis, self._factor.solve(matvec(self._graph, self._transposed, force)))
+
+
+class ShiftedInertia:
+    """Dependent rows, delta > 2: K = S^-1 N with S = N G N + mu P, mu = tr G / n (theory, errata (22) C)."""
+
+    def __init__(self, space: MinorSpace, mass_matrix: Matrix) -> None:
+        graph, n, projector = space.graph, space.n, space.projector
+        self._space = space
+        inner = matmul(graph, matmul(graph, projector, mass_matrix, n), projector, n)
+        mu = graph.sum(mass_matrix[i][i] for i in range(n)) / n
+        eye = identity(graph, n)
+        shifted = tuple(
+            tuple(inner[i][j] + mu * (eye[i][j] - projector[i][j]) for j in range(n)) for i in range(n)
+        )
+        self._factor = Cholesky(graph, shifted)
+        self.guards = (*space.guards, *self._factor.guards)
+
+    def solve(self, force: Vector) -> Vector:
+        return self._factor.solve(self._space.project(force))

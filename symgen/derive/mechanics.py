@@ -1,0 +1,214 @@
+"""The mechanical system on the scalar graph: energies, forces, constraints and their derivatives.
+
+Everything is computed on first use, so a quantity that no output reaches costs nothing.  Velocities are arguments,
+because several quantities are evaluated along a projected velocity rather than along q_dot.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from symgen.graph.calculus import derivative_along, gradient
+from symgen.graph.matrix import Matrix, Vector, dot, matvec, subtract_vectors
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.translate import translate
+from symgen.graph.traverse import cost, substitute
+from symgen.model.model import Model
+
+
+class Mechanics:
+    """A model's energies, forces and constraint rows as scalars of one graph."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.graph = graph = Graph()
+        self.q: Vector = tuple(graph.symbol(c.name) for c in model.coordinates)
+        self.qd: Vector = tuple(graph.symbol(c.rate) for c in model.coordinates)
+        self.qdd: Vector = tuple(graph.symbol(c.acceleration) for c in model.coordinates)
+        self.parameters: Vector = tuple(graph.symbol(p.name) for p in model.parameters)
+        self.u: Vector = tuple(graph.symbol(i.name) for i in model.inputs)
+        names = {node.payload: node for node in (*self.q, *self.qd, *self.parameters)}
+        self.names: dict[str, Scalar] = {str(name): node for name, node in names.items()}
+        for definition in model.definitions:
+            self.names[definition.name] = translate(graph, definition.value, self.names)
+        self.definitions = {d.name: self.names[d.name] for d in model.definitions}
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.q)
+
+    @property
+    def r(self) -> int:
+        """Number of constraint rows."""
+        return len(self.model.constraints)
+
+    @property
+    def m(self) -> int:
+        """Number of inputs."""
+        return len(self.u)
+
+    # energies ---------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def kinetic_energy(self) -> Scalar:
+        """T(q, q_dot)."""
+        return translate(self.graph, self.model.kinetic_energy, self.names)
+
+    @cached_property
+    def potential_energy(self) -> Scalar:
+        """U(q)."""
+        return translate(self.graph, self.model.potential_energy, self.names)
+
+    @cached_property
+    def momentum(self) -> Vector:
+        """p = dT/dq_dot = G q_dot."""
+        return tuple(gradient(self.graph, self.kinetic_energy, self.qd))
+
+    @cached_property
+    def mass_matrix(self) -> Matrix:
+        """G (3): the momentum's derivatives by the rates, the upper triangle used twice."""
+        zero_rates = dict.fromkeys(self.qd, self.graph.zero)
+        rows = [
+            substitute(self.graph, gradient(self.graph, p, self.qd), zero_rates) for p in self.momentum
+        ]
+        return tuple(tuple(rows[min(i, j)][max(i, j)] for j in range(self.n)) for i in range(self.n))
+
+    @cached_property
+    def mass_matrix_gradient(self) -> tuple[Matrix, ...]:
+        """dG/dq^k for every k."""
+        graph, n = self.graph, self.n
+        upper = [self.mass_matrix[i][j] for i in range(n) for j in range(i, n)]
+        gradients = []
+        for k in range(n):
+            flat = iter(derivative_along(graph, upper, {self.q[k]: graph.one}))
+            entries = {(i, j): next(flat) for i in range(n) for j in range(i, n)}
+            gradients.append(tuple(tuple(entries[min(i, j), max(i, j)] for j in range(n)) for i in range(n)))
+        return tuple(gradients)
+
+    def coriolis_matrix(self, velocity: Vector) -> Matrix:
+        """C (3) from Christoffel symbols: 1/2 sum_k (d_k G_ij + d_j G_ik - d_i G_jk) v_k, so that G_dot - 2 C is skew."""
+        graph, n, d = self.graph, self.n, self.mass_matrix_gradient
+        symmetric = [[dot(graph, [d[k][i][j] for k in range(n)], velocity) for j in range(n)] for i in range(n)]
+        gyroscopic = [[dot(graph, [d[j][i][k] for k in range(n)], velocity) for j in range(n)] for i in range(n)]
+        half = graph.const(1) / 2
+        return tuple(
+            tuple((symmetric[i][j] + (gyroscopic[i][j] - gyroscopic[j][i])) * half for j in range(n)) for i in range(n)
+        )
+
+    @cached_property
+    def potential_force(self) -> Vector:
+        """Q (3) = dU/dq."""
+        return tuple(gradient(self.graph, self.potential_energy, self.q))
+
+    @cached_property
+    def applied_force(self) -> Vector:
+        """Q_a(q, q_dot), on the right-hand side."""
+        forces = {f.coordinate: translate(self.graph, f.expression, self.names) for f in self.model.applied_forces}
+        return tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates)
+
+    def applied_force_at(self, velocity: Vector) -> Vector:
+        """Q_a along another velocity."""
+        if velocity == self.qd:
+            return self.applied_force
+        return tuple(substitute(self.graph, self.applied_force, dict(zip(self.qd, velocity, strict=True))))
+
+    @cached_property
+    def coriolis_force(self) -> Vector:
+        """C q_dot, straight from the energy."""
+        return self._inertial_force(tuple(self.graph.zero for _ in self.q))
+
+    @cached_property
+    def balance(self) -> Vector:
+        """tau = G q_ddot + C q_dot + Q - Q_a; built without the matrices G and C."""
+        conservative = [i + f for i, f in zip(self._inertial_force(self.qdd), self.potential_force, strict=True)]
+        return tuple(f - a for f, a in zip(conservative, self.applied_force, strict=True))
+
+    def _inertial_force(self, acceleration: Vector) -> Vector:
+        """d/dt dT/dq_dot - dT/dq: by differentiating the momentum, or through G, whichever counts less."""
+        graph = self.graph
+        motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
+        rates = derivative_along(graph, self.momentum, motion)
+        direct = [p - t for p, t in zip(rates, gradient(graph, self.kinetic_energy, self.q), strict=True)]
+        half = graph.const(1) / 2
+        squared: list[Scalar] = []
+        for i in range(self.n):
+            total = graph.zero
+            for j in range(self.n):
+                for k in range(j, self.n):
+                    d = self.mass_matrix_gradient
+                    christoffel = d[k][i][j] + d[j][i][k] - d[i][j][k]
+                    weight = half if j == k else graph.one
+                    total = total + christoffel * weight * (self.qd[j] * self.qd[k])
+            squared.append(total)
+        linear = matvec(graph, self.mass_matrix, acceleration)
+        collected = [a + b for a, b in zip(linear, squared, strict=True)]
+        return tuple(min((direct, collected), key=lambda force: cost(force).weight))
+
+    # constraints and inputs ---------------------------------------------------------------------------------------
+
+    @cached_property
+    def constraint_residual(self) -> Vector:
+        """g(q) (4)."""
+        rows = [row for row in self.model.constraints if row.kind == "geometric"]
+        return tuple(translate(self.graph, row.expression, self.names) for row in rows)
+
+    @cached_property
+    def geometric_jacobian(self) -> Matrix:
+        """dg/dq."""
+        return tuple(tuple(gradient(self.graph, g, self.q)) for g in self.constraint_residual)
+
+    @cached_property
+    def constraint_jacobian(self) -> Matrix:
+        """B (1): dg/dq above the coefficients of the non-holonomic rows."""
+        graph = self.graph
+        rows = [row for row in self.model.constraints if row.kind == "nonholonomic"]
+        zero_rates = dict.fromkeys(self.qd, graph.zero)
+        kinematic = [
+            substitute(graph, gradient(graph, translate(graph, row.expression, self.names), self.qd), zero_rates)
+            for row in rows
+        ]
+        return (*self.geometric_jacobian, *(tuple(row) for row in kinematic))
+
+    def constraint_jacobian_dot(self, velocity: Vector) -> Matrix:
+        """B_dot along a velocity."""
+        flat = [entry for row in self.constraint_jacobian for entry in row]
+        rates = iter(derivative_along(self.graph, flat, dict(zip(self.q, velocity, strict=True))))
+        return tuple(tuple(next(rates) for _ in range(self.n)) for _ in range(self.r))
+
+    def constraint_acceleration_bias(self, velocity: Vector) -> Vector:
+        """B_dot v along v: differentiating B v is cheaper than forming B_dot."""
+        graph = self.graph
+        frozen = tuple(graph.symbol(f"{c.name}_frozen rate") for c in self.model.coordinates)
+        products = matvec(graph, self.constraint_jacobian, frozen)
+        rates = derivative_along(graph, products, dict(zip(self.q, velocity, strict=True)))
+        return tuple(substitute(graph, rates, dict(zip(frozen, velocity, strict=True))))
+
+    @cached_property
+    def control_matrix(self) -> Matrix:
+        """M (3): one column per input."""
+        columns = [
+            {name: translate(self.graph, value, self.names) for name, value in i.acts_on} for i in self.model.inputs
+        ]
+        return tuple(
+            tuple(column.get(c.name, self.graph.zero) for column in columns) for c in self.model.coordinates
+        )
+
+    @cached_property
+    def inputs(self) -> tuple[Vector, ...]:
+        """The columns of M."""
+        return tuple(tuple(row[k] for row in self.control_matrix) for k in range(self.m))
+
+    def control_matrix_dot(self, velocity: Vector) -> Matrix:
+        """M_dot along a velocity."""
+        flat = [entry for row in self.control_matrix for entry in row]
+        rates = iter(derivative_along(self.graph, flat, dict(zip(self.q, velocity, strict=True))))
+        return tuple(tuple(next(rates) for _ in range(self.m)) for _ in range(self.n))
+
+    @cached_property
+    def applied_balance(self) -> Vector:
+        """f = M u - C q_dot - Q + Q_a, the right-hand side of G q_ddot + B^T lambda = f."""
+        driven = matvec(self.graph, self.control_matrix, self.u) if self.m else tuple(self.graph.zero for _ in self.q)
+        bias = [c + f for c, f in zip(self.coriolis_force, self.potential_force, strict=True)]
+        bias = [b - a for b, a in zip(bias, self.applied_force, strict=True)]
+        return subtract_vectors(driven, tuple(bias))

@@ -1,0 +1,82 @@
+"""The quantities of a model, each along the cheapest valid way by counted cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import comb
+
+from symgen.derive.catalogue import BY_NAME, CATALOGUE, Derived, derive, missing, scalars
+from symgen.derive.derivation import Derivation
+from symgen.derive.genericity import Genericity, genericity
+from symgen.derive.mechanics import Mechanics
+from symgen.derive.spaces import HouseholderSpace, MinorSpace
+from symgen.graph.traverse import cost
+from symgen.model.model import Model
+
+# Minors are built only while their number stays small; beyond, Householder reflections are cheaper anyway.
+MINOR_LIMIT = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Which way a quantity took, and the counted cost of each way tried."""
+
+    quantity: str
+    way: str
+    costs: tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Derivations:
+    """The derived quantities of a model and how they were chosen."""
+
+    mechanics: Mechanics
+    generic: Genericity
+    quantities: tuple[Derived, ...]
+    choices: tuple[Choice, ...]
+    absent: tuple[tuple[str, str], ...]
+
+
+def ways(mechanics: Mechanics, generic: Genericity) -> dict[str, Derivation]:
+    """The derivations that are valid at every regular configuration, by name."""
+    rows, n = mechanics.constraint_jacobian, mechanics.n
+    found: dict[str, Derivation] = {}
+    if comb(n, generic.rank) * comb(len(rows), generic.rank) <= MINOR_LIMIT or generic.rank < len(rows):
+        space = MinorSpace(mechanics.graph, rows, n, generic.rank)
+        found["minors"] = Derivation(mechanics, generic, space)
+    if rows and generic.rank == len(rows):
+        found["householder"] = Derivation(mechanics, generic, HouseholderSpace(mechanics.graph, rows, n))
+    return found
+
+
+def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
+    """The names to derive, in catalogue order, and what was asked for that this system does not have."""
+    everything = "all" in outputs
+    present: list[str] = []
+    absent: list[tuple[str, str]] = []
+    for entry in CATALOGUE:
+        if everything or entry.name in outputs:
+            reason = missing(entry, model, generic)
+            if reason is None:
+                present.append(entry.name)
+            else:
+                absent.append((entry.name, reason))
+    return present, absent
+
+
+def derive_quantities(model: Model, outputs: Sequence[str]) -> Derivations:
+    """Derive what is asked for and nothing else."""
+    mechanics = Mechanics(model)
+    generic = genericity(mechanics)
+    present, absent = requested(model, generic, outputs)
+    derivations = ways(mechanics, generic)
+    quantities: list[Derived] = []
+    choices: list[Choice] = []
+    for name in present:
+        candidates = {way: derive(BY_NAME[name], derivation) for way, derivation in derivations.items()}
+        costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
+        best = min(costs, key=lambda way: costs[way])
+        quantities.append(candidates[best])
+        choices.append(Choice(name, best, tuple(costs.items())))
+    return Derivations(mechanics, generic, tuple(quantities), tuple(choices), tuple(absent))

@@ -1,0 +1,98 @@
+"""Derivatives on the graph: along a direction (forward) and of one output by many symbols (reverse).
+
+Both are memoised over the graph, so a shared intermediate is differentiated once (Griewank and Walther, Evaluating
+Derivatives, ch. 3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from symgen.diagnostics import SymgenBug
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import topological
+
+
+def partials(graph: Graph, node: Scalar) -> tuple[Scalar, ...]:
+    """The derivative of a node by each of its operands."""
+    args = node.args
+    match node.op:
+        case "add":
+            return (graph.one, graph.one)
+        case "sub":
+            return (graph.one, graph.const(-1))
+        case "neg":
+            return (graph.const(-1),)
+        case "mul":
+            return (args[1], args[0])
+        case "div":
+            return (1 / args[1], -(node / args[1]))
+        case "sqrt":
+            return (Fraction(1, 2) / node,)
+        case "pow":
+            exponent = node.payload
+            assert isinstance(exponent, Fraction)
+            return (graph.power(args[0], exponent - 1) * exponent,)
+        case "sin":
+            return (graph.trig("cos", args[0]),)
+        case "cos":
+            return (-graph.trig("sin", args[0]),)
+        case "tan":
+            return (1 + node * node,)
+        case "asin":
+            return (1 / graph.function("sqrt", (1 - args[0] * args[0],)),)
+        case "acos":
+            return (-1 / graph.function("sqrt", (1 - args[0] * args[0],)),)
+        case "atan":
+            return (1 / (1 + args[0] * args[0]),)
+        case "atan2":
+            square = args[0] * args[0] + args[1] * args[1]
+            return (args[1] / square, -(args[0] / square))
+        case "exp":
+            return (node,)
+        case "log":
+            return (1 / args[0],)
+        case "sinh":
+            return (graph.function("cosh", args),)
+        case "cosh":
+            return (graph.function("sinh", args),)
+        case "tanh":
+            return (1 - node * node,)
+        case _:
+            raise SymgenBug(f"calculus: no derivative for {node.op}")
+
+
+def derivative_along(graph: Graph, outputs: Sequence[Scalar], direction: Mapping[Scalar, Scalar]) -> list[Scalar]:
+    """d/ds of the outputs where each symbol moves with the given rate; symbols not named stand still."""
+    rate: dict[Scalar, Scalar] = {}
+    for node in topological(outputs):
+        if node.op in ("const", "symbol"):
+            rate[node] = direction.get(node, graph.zero)
+        elif all(rate[argument].is_zero for argument in node.args):
+            rate[node] = graph.zero
+        elif node.op == "div":
+            # (a' - (a/b) b') / b: one division more instead of three
+            numerator, denominator = node.args
+            rate[node] = (rate[numerator] - node * rate[denominator]) / denominator
+        else:
+            terms = zip(partials(graph, node), node.args, strict=True)
+            rate[node] = graph.sum(partial * rate[argument] for partial, argument in terms if not rate[argument].is_zero)
+    return [rate[output] for output in outputs]
+
+
+def gradient(graph: Graph, output: Scalar, symbols: Sequence[Scalar]) -> list[Scalar]:
+    """The derivatives of one output by the symbols, in one reverse sweep."""
+    order = topological([output])
+    touched = {symbol.serial for symbol in symbols}
+    for node in order:
+        if any(argument.serial in touched for argument in node.args):
+            touched.add(node.serial)
+    adjoint: dict[Scalar, Scalar] = {output: graph.one}
+    for node in reversed(order):
+        if node not in adjoint or node.op in ("const", "symbol") or node.serial not in touched:
+            continue
+        for partial, argument in zip(partials(graph, node), node.args, strict=True):
+            if argument.serial in touched:
+                adjoint[argument] = adjoint.get(argument, graph.zero) + adjoint[node] * partial
+    return [adjoint.get(symbol, graph.zero) for symbol in symbols]

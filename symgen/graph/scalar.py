@@ -1,0 +1,388 @@
+"""Hash-consed real scalars: the graph every kernel is derived on.
+
+Each distinct operation exists once, so equal intermediates are shared where they arise and nothing is expanded to be
+shrunk again.  All rewriting happens in the constructors, each rule local and exact: constants fold, signs travel
+outwards, x - x and x*y/y cancel, sums are never flattened, and products of sines and cosines of the same angles
+combine by the addition theorem.  The graph knows no mechanics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from math import isqrt
+from typing import TypeAlias
+
+Number: TypeAlias = "Scalar | int | Fraction"
+
+# pi to 70 digits: literals are rounded once, from this value, to the scalar type of a program.
+PI = Fraction(31415926535897932384626433832795028841971693993751058209749445923078164, 10**70)
+
+
+class Scalar:
+    """One node; compared by identity because equal nodes are the same object within a graph."""
+
+    __slots__ = ("args", "graph", "op", "payload", "serial")
+
+    def __init__(self, graph: Graph, serial: int, op: str, args: tuple[Scalar, ...], payload: object) -> None:
+        self.graph = graph
+        self.serial = serial
+        self.op = op
+        self.args = args
+        self.payload = payload
+
+    @property
+    def constant(self) -> Fraction | None:
+        """The value of a constant node, else None."""
+        return self.payload if isinstance(self.payload, Fraction) and self.op == "const" else None
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether the node is the constant 0."""
+        return self is self.graph.zero
+
+    @property
+    def is_one(self) -> bool:
+        """Whether the node is the constant 1."""
+        return self is self.graph.one
+
+    def __add__(self, other: Number) -> Scalar:
+        return self.graph.add(self, self.graph.lift(other))
+
+    def __radd__(self, other: Number) -> Scalar:
+        return self.graph.add(self.graph.lift(other), self)
+
+    def __sub__(self, other: Number) -> Scalar:
+        return self.graph.sub(self, self.graph.lift(other))
+
+    def __rsub__(self, other: Number) -> Scalar:
+        return self.graph.sub(self.graph.lift(other), self)
+
+    def __mul__(self, other: Number) -> Scalar:
+        return self.graph.mul(self, self.graph.lift(other))
+
+    def __rmul__(self, other: Number) -> Scalar:
+        return self.graph.mul(self.graph.lift(other), self)
+
+    def __truediv__(self, other: Number) -> Scalar:
+        return self.graph.div(self, self.graph.lift(other))
+
+    def __rtruediv__(self, other: Number) -> Scalar:
+        return self.graph.div(self.graph.lift(other), self)
+
+    def __neg__(self) -> Scalar:
+        return self.graph.neg(self)
+
+    def __repr__(self) -> str:
+        if self.op in ("const", "symbol"):
+            return str(self.payload)
+        return f"{self.op}({', '.join(map(repr, self.args))})"
+
+
+class Graph:
+    """Creates and owns scalars; `serial` numbers give a deterministic order of operands."""
+
+    def __init__(self) -> None:
+        self._nodes: dict[tuple[object, ...], Scalar] = {}
+        self.zero = self.const(0)
+        self.one = self.const(1)
+
+    def __len__(self) -> int:
+        return len(self._nodes)
+
+    def _node(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
+        key = (op, payload, *map(id, args))
+        node = self._nodes.get(key)
+        if node is None:
+            node = self._nodes[key] = Scalar(self, len(self._nodes), op, args, payload)
+        return node
+
+    def lift(self, value: Number) -> Scalar:
+        """A scalar of this graph from a scalar, an integer or a rational number."""
+        return value if isinstance(value, Scalar) else self.const(value)
+
+    def const(self, value: int | Fraction) -> Scalar:
+        """An exact constant."""
+        return self._node("const", (), Fraction(value))
+
+    def symbol(self, name: str) -> Scalar:
+        """A named input."""
+        return self._node("symbol", (), name)
+
+    def raw(self, op: str, args: tuple[Scalar, ...]) -> Scalar:
+        """The operation as it stands, past the constructor rules."""
+        return self._node(op, args)
+
+    def sum(self, terms: Iterable[Scalar]) -> Scalar:
+        """Left-to-right sum; 0 for no terms."""
+        total = self.zero
+        for term in terms:
+            total = self.add(total, term)
+        return total
+
+    def neg(self, a: Scalar) -> Scalar:
+        """-a."""
+        if a.op == "neg":
+            return a.args[0]
+        if (value := a.constant) is not None:
+            return self.const(-value)
+        if a.op == "sub":
+            return self._node("sub", (a.args[1], a.args[0]))
+        return self._node("neg", (a,))
+
+    def add(self, a: Scalar, b: Scalar) -> Scalar:
+        """a + b."""
+        if a.is_zero:
+            return b
+        if b.is_zero:
+            return a
+        if b.op == "neg":
+            return self.sub(a, b.args[0])
+        if a.op == "neg":
+            return self.sub(b, a.args[0])
+        if a.constant is not None and b.constant is not None:
+            return self.const(a.constant + b.constant)
+        if a is b:
+            return self.mul(self.const(2), a)
+        for x, y in ((a, b), (b, a)):
+            if x.op == "sub" and x.args[1] is y:
+                return x.args[0]
+        if (combined := self._addition_theorem(a, b, 1)) is not None:
+            return combined
+        if (collected := self._collect(a, b, 1)) is not None:
+            return collected
+        if a.serial > b.serial:
+            a, b = b, a
+        return self._node("add", (a, b))
+
+    def sub(self, a: Scalar, b: Scalar) -> Scalar:
+        """a - b."""
+        if a is b:
+            return self.zero
+        if b.is_zero:
+            return a
+        if a.is_zero:
+            return self.neg(b)
+        if b.op == "neg":
+            return self.add(a, b.args[0])
+        if a.op == "neg":
+            return self.neg(self.add(a.args[0], b))
+        if a.constant is not None and b.constant is not None:
+            return self.const(a.constant - b.constant)
+        if a.op == "add" and b in a.args:
+            return a.args[1] if a.args[0] is b else a.args[0]
+        if a.op == "sub" and a.args[0] is b:
+            return self.neg(a.args[1])
+        if b.op == "add" and a in b.args:
+            return self.neg(b.args[1] if b.args[0] is a else b.args[0])
+        if b.op == "sub" and b.args[0] is a:
+            return b.args[1]
+        if (combined := self._addition_theorem(a, b, -1)) is not None:
+            return combined
+        if (collected := self._collect(a, b, -1)) is not None:
+            return collected
+        return self._node("sub", (a, b))
+
+    def mul(self, a: Scalar, b: Scalar) -> Scalar:
+        """a * b."""
+        if a.is_zero or b.is_zero:
+            return self.zero
+        if a.is_one:
+            return b
+        if b.is_one:
+            return a
+        if a.op == "neg":
+            return self.neg(self.mul(a.args[0], b))
+        if b.op == "neg":
+            return self.neg(self.mul(a, b.args[0]))
+        if a.constant is None and b.constant is not None:
+            a, b = b, a
+        if (value := a.constant) is not None:
+            if b.constant is not None:
+                return self.const(value * b.constant)
+            if value < 0:
+                return self.neg(self.mul(self.const(-value), b))
+            if b.op == "mul" and (inner := b.args[0].constant) is not None:
+                return self.mul(self.const(value * inner), b.args[1])
+            return self._node("mul", (a, b))
+        for x, y in ((a, b), (b, a)):
+            if x.op == "div" and x.args[1] is y:
+                return x.args[0]
+            if x.op == "mul" and (factor := x.args[0].constant) is not None:
+                return self.mul(self.const(factor), self.mul(x.args[1], y))
+        if a.serial > b.serial:
+            a, b = b, a
+        return self._node("mul", (a, b))
+
+    def div(self, a: Scalar, b: Scalar) -> Scalar:
+        """a / b; a constant divisor becomes an exact factor."""
+        if a.is_zero:
+            return a
+        if (value := b.constant) is not None and value != 0:
+            return self.mul(self.const(1 / value), a)
+        if a is b:
+            return self.one
+        if a.op == "neg":
+            return self.neg(self.div(a.args[0], b))
+        if b.op == "neg":
+            return self.neg(self.div(a, b.args[0]))
+        if a.op == "mul" and b in a.args:
+            return a.args[1] if a.args[0] is b else a.args[0]
+        if b.op == "mul" and a in b.args:
+            return self.div(self.one, b.args[1] if b.args[0] is a else b.args[0])
+        if b.op == "div":
+            return self.div(self.mul(a, b.args[1]), b.args[0])
+        return self._node("div", (a, b))
+
+    def power(self, base: Scalar, exponent: Fraction) -> Scalar:
+        """base ** exponent: products and square roots where they serve."""
+        if exponent < 0:
+            return self.div(self.one, self.power(base, -exponent))
+        if exponent.denominator == 1:
+            result, square, count = self.one, base, exponent.numerator
+            while count:
+                if count & 1:
+                    result = self.mul(result, square)
+                count >>= 1
+                if count:
+                    square = self.mul(square, square)
+            return result
+        if exponent.denominator == 2:
+            whole = exponent.numerator // 2
+            return self.mul(self.power(base, Fraction(whole)), self.function("sqrt", (base,)))
+        return self._node("pow", (base,), exponent)
+
+    def function(self, name: str, args: tuple[Scalar, ...]) -> Scalar:
+        """One of the functions of the expression language, or abs, copysign, ratio_or_zero."""
+        if name in ("sin", "cos"):
+            return self.trig(name, args[0])
+        first = args[0]
+        if name == "sqrt":
+            if (value := first.constant) is not None and value >= 0:
+                top, bottom = isqrt(value.numerator), isqrt(value.denominator)
+                if top * top == value.numerator and bottom * bottom == value.denominator:
+                    return self.const(Fraction(top, bottom))
+            if first.op == "mul" and first.args[0] is first.args[1]:
+                return self.function("abs", (first.args[0],))
+        if name == "abs":
+            if first.op in ("neg", "abs"):
+                return self.function("abs", first.args)
+            if first.op == "sqrt" or (first.op == "mul" and first.args[0] is first.args[1]):
+                return first
+            if (value := first.constant) is not None:
+                return self.const(abs(value))
+        if name == "ratio_or_zero" and first.is_zero:
+            return first
+        return self._node(name, args)
+
+    def trig(self, name: str, argument: Scalar) -> Scalar:
+        """Sine or cosine, keyed by the integer combination of leaves its argument is; the leading sign is pulled out."""
+        form = self.angle_form(argument)
+        if not form:
+            return self.zero if name == "sin" else self.one
+        leading = min(form, key=lambda leaf: leaf.serial)
+        if form[leading] < 0:
+            value = self._trig_node(name, {leaf: -count for leaf, count in form.items()})
+            return self.neg(value) if name == "sin" else value
+        return self._trig_node(name, form)
+
+    def _trig_node(self, name: str, form: dict[Scalar, int]) -> Scalar:
+        total = self.zero
+        for leaf in sorted(form, key=lambda leaf: leaf.serial):
+            term = self.mul(self.const(abs(form[leaf])), leaf)
+            total = self.add(total, term) if form[leaf] > 0 else self.sub(total, term)
+        return self._node(name, (total,))
+
+    def angle_form(self, a: Scalar) -> dict[Scalar, int]:
+        """`a` as an integer combination of leaves (coordinates, or whatever is not a sum), without zeros."""
+        form: dict[Scalar, int] = {}
+        stack = [(a, 1)]
+        while stack:
+            node, count = stack.pop()
+            if node.op == "add":
+                stack += [(node.args[1], count), (node.args[0], count)]
+            elif node.op == "sub":
+                stack += [(node.args[1], -count), (node.args[0], count)]
+            elif node.op == "neg":
+                stack.append((node.args[0], -count))
+            elif node.op == "mul" and (k := node.args[0].constant) is not None and k.denominator == 1:
+                stack.append((node.args[1], count * k.numerator))
+            elif not node.is_zero:
+                form[node] = form.get(node, 0) + count
+        return {leaf: count for leaf, count in form.items() if count}
+
+    def _addition_theorem(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
+        """f t1 t2 + sign * f t3 t4 with t sines and cosines of the same two angles, as f times one sine or cosine."""
+        left, right = _trig_product(a), _trig_product(b)
+        if left is None or right is None:
+            return None
+        (factor, p, q), (other, v, w) = left, right
+        if factor is not other:
+            return None
+        common = self.one if factor is None else factor
+        if p.args[0] is q.args[0]:
+            # c c + s s = 1, c c - s s = cos 2a; the products of one angle alone
+            if v.args[0] is not p.args[0] or w.args[0] is not p.args[0] or p.op != q.op or v.op != w.op or p.op == v.op:
+                return None
+            if sign > 0:
+                return common
+            return None
+        if {id(p.args[0]), id(q.args[0])} != {id(v.args[0]), id(w.args[0])}:
+            return None
+        if v.args[0] is not p.args[0]:
+            v, w = w, v
+        x, y = p.args[0], q.args[0]
+        kinds = (p.op, q.op, v.op, w.op)
+        if kinds == ("cos", "cos", "sin", "sin"):
+            angle = self.sub(x, y) if sign > 0 else self.add(x, y)
+            return self.mul(common, self.trig("cos", angle))
+        if kinds == ("sin", "sin", "cos", "cos"):
+            angle = self.sub(x, y) if sign > 0 else self.add(x, y)
+            value = self.mul(common, self.trig("cos", angle))
+            return value if sign > 0 else self.neg(value)
+        if kinds == ("sin", "cos", "cos", "sin"):
+            angle = self.add(x, y) if sign > 0 else self.sub(x, y)
+            return self.mul(common, self.trig("sin", angle))
+        if kinds == ("cos", "sin", "sin", "cos"):
+            angle = self.add(x, y) if sign > 0 else self.sub(y, x)
+            return self.mul(common, self.trig("sin", angle))
+        return None
+
+    def _collect(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
+        """k1 x + sign * k2 x with constants k: one product."""
+        k1, x = _constant_factor(a)
+        k2, y = _constant_factor(b)
+        if x is y and (k1 != 1 or k2 != 1):
+            return self.mul(self.const(k1 + sign * k2), x)
+        return None
+
+
+def _constant_factor(a: Scalar) -> tuple[Fraction, Scalar]:
+    if a.op == "mul" and (k := a.args[0].constant) is not None:
+        return k, a.args[1]
+    return Fraction(1), a
+
+
+def _trig_product(a: Scalar) -> tuple[Scalar | None, Scalar, Scalar] | None:
+    """(factor, t1, t2) when `a` is t1*t2 or factor*(t1*t2) or t1*(factor*t2), with t sines or cosines."""
+    if a.op != "mul":
+        return None
+    x, y = a.args
+    if _is_trig(x) and _is_trig(y):
+        return None, x, y
+    for outer, inner in ((x, y), (y, x)):
+        if inner.op != "mul":
+            continue
+        v, w = inner.args
+        if _is_trig(v) and _is_trig(w):
+            return outer, v, w
+        if _is_trig(outer):
+            if _is_trig(v):
+                return w, outer, v
+            if _is_trig(w):
+                return v, outer, w
+    return None
+
+
+def _is_trig(a: Scalar) -> bool:
+    return a.op in ("sin", "cos")

@@ -1,0 +1,227 @@
+"""From scalars of a graph to a straight-line kernel: order, names, thresholds.
+
+Statements come depth first, operands just before the operation that needs them, which keeps few values alive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from symgen.derive.catalogue import Derived
+from symgen.derive.guards import Guard, magnitude
+from symgen.derive.mechanics import Mechanics
+from symgen.diagnostics import SymgenBug
+from symgen.graph.angles import share_angles
+from symgen.graph.scalar import Graph
+from symgen.graph.scalar import Scalar as Node
+from symgen.graph.traverse import topological
+from symgen.ir.kernel import (
+    UNIT_ROUNDOFF,
+    Argument,
+    Block,
+    Check,
+    Kernel,
+    Literal,
+    Load,
+    Local,
+    Operand,
+    Program,
+    Scalar,
+    Statement,
+    Status,
+)
+from symgen.ir.sincos import ANGLE_LIMIT, sincos
+from symgen.model.quantities import QUANTITIES
+
+# The order in which statuses are reported (interface, section 4).
+ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
+ARGUMENTS = {quantity.name: quantity.arguments for quantity in QUANTITIES}
+
+
+def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalar: Scalar) -> Program:
+    """All quantities as kernels for one scalar type."""
+    kernels = tuple(_kernel(mechanics, derived, scalar) for derived in quantities)
+    return Program(scalar, sincos(scalar), kernels)
+
+
+@dataclass(frozen=True, slots=True)
+class _Test:
+    """A guard with its limit as a scalar: passes where denominator > limit (or < -limit, hence `size`)."""
+
+    status: Status
+    size: Node
+    limit: Node
+    first: tuple[_Test, ...]
+
+
+def _tests(mechanics: Mechanics, guards: Sequence[Guard], scalar: Scalar) -> list[_Test]:
+    graph = mechanics.graph
+    tests = []
+    for guard in sorted(guards, key=lambda g: ORDER.index(g.status)):
+        threshold = _threshold(mechanics, guard, scalar)
+        scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
+        size = guard.denominator if guard.degree == 2 else graph.function("abs", (guard.denominator,))
+        first = tuple(_tests(mechanics, guard.first, scalar))
+        tests.append(_Test(guard.status, size, graph.const(threshold) * scale, first))
+    return tests
+
+
+def _threshold(mechanics: Mechanics, guard: Guard, scalar: Scalar) -> Fraction:
+    """8 n eps, squared for sums of squares; the model's own tolerance where it is larger."""
+    model = mechanics.model
+    value = (8 * mechanics.n * UNIT_ROUNDOFF[scalar]) ** guard.degree
+    own = {
+        Status.CONSTRAINT_RANK: model.constraint_rank_tolerance,
+        Status.ACTUATION_RANK: model.actuation_rank_tolerance,
+    }.get(guard.status)
+    return max(value, own) if own is not None else value
+
+
+def _kernel(mechanics: Mechanics, derived: Derived, scalar: Scalar) -> Kernel:
+    tests = _tests(mechanics, derived.guards, scalar)
+    roots = list(_roots(tests))
+    shared = share_angles(mechanics.graph, [*derived.outputs, *roots])
+    image = dict(zip(roots, shared[len(derived.outputs) :], strict=True))
+    writer = _Writer(mechanics, ARGUMENTS[derived.name])
+    outputs = shared[: len(derived.outputs)]
+    regular = [*outputs, *(image[node] for test in tests for node in (test.size, test.limit))]
+    angles = writer.angle_block(regular, scalar)
+    # outputs come last so that a denominator's statements stand before its test
+    statements = writer.write(regular[len(outputs) :]) + writer.write(outputs)
+    late, late_checks = writer.late_angles(regular, scalar)
+    checks = (*late_checks, *(writer.check(test, image) for test in tests))
+    sizes = {"q": mechanics.n, "qd": mechanics.n, "qdd": mechanics.n, "u": mechanics.m}
+    return Kernel(
+        name=derived.name,
+        arguments=tuple(Argument(name, sizes[name]) for name in ARGUMENTS[derived.name]),
+        loads=writer.loads(),
+        blocks=(angles, Block((*statements, *late), checks)),
+        outputs=tuple(writer.operand(node) for node in outputs),
+        shape=derived.shape,
+    )
+
+
+def _angles(outputs: Sequence[Node]) -> list[Node]:
+    return list(dict.fromkeys(node.args[0] for node in topological(outputs) if node.op in ("sin", "cos")))
+
+
+def _roots(tests: Sequence[_Test]) -> list[Node]:
+    return [node for test in tests for node in (test.size, test.limit, *_roots(test.first))]
+
+
+class _Writer:
+    """Turns scalars into statements, each once per kernel."""
+
+    def __init__(self, mechanics: Mechanics, arguments: Sequence[str]) -> None:
+        self._graph: Graph = mechanics.graph
+        self._arguments = arguments
+        self._written: dict[Node, Operand] = {}
+        self._loads: dict[str, Load] = {}
+        self._symbols = _symbol_loads(mechanics)
+        self._labels = {node: name for name, node in mechanics.definitions.items()}
+        taken = set(self._symbols) | set(mechanics.definitions)
+        self._taken = taken
+        self._count = 0
+
+    def loads(self) -> tuple[Load, ...]:
+        """The inputs used, arguments first, each in order of its index."""
+        order = {"q": 0, "qd": 1, "qdd": 2, "u": 3, "p": 4}
+        return tuple(sorted(self._loads.values(), key=lambda load: (order[load.argument], load.index)))
+
+    def operand(self, node: Node) -> Operand:
+        """The operand of a node that has been written, or of a constant or an input."""
+        if (value := node.constant) is not None:
+            return Literal(value)
+        if node.op == "symbol":
+            load = self._symbols[str(node.payload)]
+            if load.argument != "p" and load.argument not in self._arguments:
+                raise SymgenBug(f"schedule: {node.payload} is not an argument of this kernel")
+            self._loads[load.local] = load
+            return Local(load.local)
+        return self._written[node]
+
+    def angle_block(self, outputs: Sequence[Node], scalar: Scalar) -> Block:
+        """The arguments of the sines and cosines, and the tests of their range."""
+        plain = [argument for argument in _angles(outputs) if not _angles([argument])]
+        statements = self.write(plain)
+        tests, checks = self._range_checks(plain, scalar)
+        return Block((*statements, *tests), checks)
+
+    def late_angles(self, outputs: Sequence[Node], scalar: Scalar) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
+        """The range tests of arguments that are themselves computed from sines and cosines."""
+        return self._range_checks([argument for argument in _angles(outputs) if _angles([argument])], scalar)
+
+    def _range_checks(
+        self, arguments: Sequence[Node], scalar: Scalar
+    ) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
+        sizes = [self._graph.raw("abs", (argument,)) for argument in arguments]
+        statements = self.write(sizes)
+        limit = Literal(ANGLE_LIMIT[scalar])
+        checks = tuple(Check(Status.ANGLE_RANGE, limit, self.operand(size), inclusive=True) for size in sizes)
+        return tuple(statements), checks
+
+    def check(self, test: _Test, image: Mapping[Node, Node]) -> Check:
+        """The check of a test; what only a failure needs is written into its own block."""
+        first = None
+        if test.first:
+            saved = dict(self._written)
+            inner = [image[node] for t in test.first for node in (t.size, t.limit)]
+            statements = self.write(inner)
+            first = Block(tuple(statements), tuple(self.check(t, image) for t in test.first))
+            self._written = saved
+        return Check(test.status, self.operand(image[test.size]), self.operand(image[test.limit]), first=first)
+
+    def write(self, outputs: Sequence[Node]) -> list[Statement]:
+        """The statements that are still missing for the outputs."""
+        statements: list[Statement] = []
+        for node in topological(outputs):
+            if node in self._written or node.op in ("const", "symbol"):
+                continue
+            if node.op in ("sin", "cos"):
+                statements.append(self._pair(node))
+            else:
+                statements.append(self._plain(node))
+        for output in outputs:
+            self.operand(output)
+        return statements
+
+    def _plain(self, node: Node) -> Statement:
+        operands = tuple(self.operand(argument) for argument in node.args)
+        if node.op == "pow":
+            assert isinstance(node.payload, Fraction)
+            operands = (*operands, Literal(node.payload))
+        target = self._name(node)
+        self._written[node] = Local(target)
+        return Statement((target,), node.op, operands)  # type: ignore[arg-type]
+
+    def _pair(self, node: Node) -> Statement:
+        sine = self._graph.trig("sin", node.args[0])
+        cosine = self._graph.trig("cos", node.args[0])
+        targets = self._name(sine), self._name(cosine)
+        self._written[sine], self._written[cosine] = Local(targets[0]), Local(targets[1])
+        return Statement(targets, "sincos", (self.operand(node.args[0]),))
+
+    def _name(self, node: Node) -> str:
+        if (label := self._labels.get(node)) is not None:
+            return label
+        while True:
+            self._count += 1
+            name = f"t{self._count}"
+            if name not in self._taken:
+                return name
+
+
+def _symbol_loads(mechanics: Mechanics) -> dict[str, Load]:
+    model = mechanics.model
+    loads: dict[str, Load] = {}
+    for i, c in enumerate(model.coordinates):
+        loads[c.name] = Load(c.name, "q", i)
+        loads[c.rate] = Load(c.rate, "qd", i)
+        loads[c.acceleration] = Load(c.acceleration, "qdd", i)
+    for i, given in enumerate(model.inputs):
+        loads[given.name] = Load(given.name, "u", i)
+    for i, parameter in enumerate(model.parameters):
+        loads[parameter.name] = Load(parameter.name, "p", i, parameter.name)
+    return loads

@@ -1,0 +1,125 @@
+"""The portable sine/cosine pair as a straight-line function of + - * only.
+
+The argument is reduced by multiples of pi/2 in three parts (Cody and Waite, Software Manual for the Elementary
+Functions, ch. 8), whose leading parts are short enough that their products with the multiple are exact; minimax
+polynomials on |r| <= pi/4 give both values; the quadrant acts through products with 0 and +-1, so that there is no
+branch, no table, no integer and no library call, and every IEEE machine returns the same bits.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from symgen.graph.scalar import PI
+from symgen.ir.kernel import Function, Literal, Local, Operand, OperationName, Scalar, Statement
+
+# Beyond these the reduction is no longer accurate, and kernels answer ANGLE_RANGE.
+ANGLE_LIMIT: dict[Scalar, Fraction] = {"float64": Fraction(100_000), "float32": Fraction(100)}
+
+# Coefficients of sin r = r + r z S(z) and cos r = 1 - z/2 + z^2 C(z), z = r^2: minimax on [0, (pi/4 + 2^-8)^2] among
+# polynomials with coefficients of the scalar type.
+SINE: dict[Scalar, tuple[float, ...]] = {
+    "float64": (
+        -0.16666666666666666,
+        0.008333333333331227,
+        -0.0001984126983693633,
+        2.7557316140739467e-06,
+        -2.5051133587339657e-08,
+        1.591797214004237e-10,
+    ),
+    "float32": (
+        -0.166666641831398,
+        0.008332709781825542,
+        -0.00019581944798119366,
+    ),
+}
+COSINE: dict[Scalar, tuple[float, ...]] = {
+    "float64": (
+        -0.16666666666666666,
+        0.008333333333331227,
+        -0.0001984126983693633,
+        2.7557316140739467e-06,
+        -2.5051133587339657e-08,
+        1.591797214004237e-10,
+    ),
+    "float32": (
+        -0.166666641831398,
+        0.008332709781825542,
+        -0.00019581944798119366,
+    ),
+}
+# 1.5 * 2^(p-1): adding and subtracting it rounds to the nearest integer.
+ROUNDER: dict[Scalar, Fraction] = {"float64": Fraction(3 * 2**51), "float32": Fraction(3 * 2**22)}
+# Bits of the two leading parts of pi/2: with the bits of the multiple they fit into the significand.
+LEADING_BITS: dict[Scalar, int] = {"float64": 36, "float32": 16}
+
+
+def half_pi_parts(scalar: Scalar) -> tuple[Fraction, Fraction, Fraction]:
+    """pi/2 as a sum of two short parts and a rest."""
+    rest = PI / 2
+    parts = []
+    for _ in range(2):
+        shift = LEADING_BITS[scalar] - 1 - _exponent(rest)
+        part = Fraction(int(rest * 2**shift), 1) / 2**shift
+        parts.append(part)
+        rest -= part
+    return parts[0], parts[1], rest
+
+
+def _exponent(value: Fraction) -> int:
+    """floor(log2 value)."""
+    exponent = value.numerator.bit_length() - value.denominator.bit_length()
+    return exponent if value >= Fraction(2) ** exponent else exponent - 1
+
+
+class _Writer:
+    """Appends one statement per operation."""
+
+    def __init__(self) -> None:
+        self.statements: list[Statement] = []
+
+    def __call__(self, target: str, operation: OperationName, a: Operand, b: Operand) -> Local:
+        self.statements.append(Statement((target,), operation, (a, b)))
+        return Local(target)
+
+
+def sincos(scalar: Scalar) -> Function:
+    """The function (sine, cosine) = sincos(x) for one scalar type."""
+    emit = _Writer()
+    x = Local("x")
+    rounder = Literal(ROUNDER[scalar])
+    first, second, third = half_pi_parts(scalar)
+    turns = emit("turns", "mul", x, Literal(2 / PI))
+    shifted = emit("shifted", "add", turns, rounder)
+    k = emit("k", "sub", shifted, rounder)
+    r1 = emit("r1", "sub", x, emit("k1", "mul", k, Literal(first)))
+    r2 = emit("r2", "sub", r1, emit("k2", "mul", k, Literal(second)))
+    r = emit("r", "sub", r2, emit("k3", "mul", k, Literal(third)))
+    z = emit("z", "mul", r, r)
+    s = _horner(emit, "s", SINE[scalar], z)
+    rz = emit("rz", "mul", r, z)
+    sine = emit("sin_r", "add", r, emit("sz", "mul", rz, s))
+    c = _horner(emit, "c", COSINE[scalar], z)
+    zc = emit("zc", "mul", z, c)
+    inner = emit("ci", "sub", zc, Literal(Fraction(1, 2)))
+    cosine = emit("cos_r", "add", Literal(Fraction(1)), emit("cz", "mul", z, inner))
+    # m = k mod 4 in {-2..2}; turn = sin(m pi/2), keep = cos(m pi/2), all products exact
+    quarter = emit("quarter", "mul", k, Literal(Fraction(1, 4)))
+    whole = emit("whole", "sub", emit("pushed", "add", quarter, rounder), rounder)
+    m = emit("m", "sub", k, emit("four", "mul", whole, Literal(Fraction(4))))
+    m2 = emit("m2", "mul", m, m)
+    odd = emit("odd", "mul", m, emit("fade", "sub", Literal(Fraction(4)), m2))
+    turn = emit("turn", "mul", odd, Literal(Fraction(1, 3)))
+    even = emit("even", "mul", m2, emit("bend", "sub", Literal(Fraction(7)), m2))
+    keep = emit("keep", "sub", Literal(Fraction(1)), emit("sixth", "mul", even, Literal(Fraction(1, 6))))
+    emit("sine", "add", emit("ss", "mul", keep, sine), emit("sc", "mul", turn, cosine))
+    emit("cosine", "sub", emit("cc", "mul", keep, cosine), emit("cs", "mul", turn, sine))
+    return Function("sincos", ("x",), tuple(emit.statements), ("sine", "cosine"))
+
+
+def _horner(emit: _Writer, name: str, coefficients: tuple[float, ...], z: Local) -> Operand:
+    value: Operand = Literal(Fraction(coefficients[-1]))
+    for place in range(len(coefficients) - 2, -1, -1):
+        product = emit(f"{name}{place}p", "mul", z, value)
+        value = emit(f"{name}{place}", "add", product, Literal(Fraction(coefficients[place])))
+    return value
