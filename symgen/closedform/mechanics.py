@@ -50,7 +50,7 @@ def make_translator(model: Model, further: Iterable[Expression] = ()) -> Transla
     others = [model.kinetic_energy, model.potential_energy]
     others += [factor for control in model.inputs for _, factor in control.acts_on]
     others += [force.expression for force in model.applied_forces]
-    return Translator(variables, definitions, preferred, [*others, *further])
+    return Translator(variables, [c.name for c in model.coordinates], definitions, preferred, [*others, *further])
 
 
 def derive_mechanics(model: Model, translator: Translator) -> Mechanics:

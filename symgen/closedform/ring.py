@@ -31,8 +31,11 @@ class Opaque:
 class TrigRing:
     """The polynomial ring with one (s, c) pair per atom of `basis`, variables by name and opaque atoms."""
 
-    def __init__(self, variables: Sequence[str], basis: AngleBasis, opaque: Sequence[Opaque]) -> None:
+    def __init__(
+        self, variables: Sequence[str], configuration: Sequence[str], basis: AngleBasis, opaque: Sequence[Opaque]
+    ) -> None:
         self.variables = tuple(variables)
+        self.configuration = frozenset(configuration)
         self.basis = basis
         self.opaque = tuple(opaque)
         pairs = [f"_{kind}{index}" for index in range(len(basis.atoms)) for kind in "sc"]

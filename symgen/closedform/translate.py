@@ -27,6 +27,7 @@ class Translator:
     def __init__(
         self,
         variables: Iterable[str],
+        configuration: Iterable[str],
         definitions: Mapping[str, Expression],
         preferred: Iterable[Expression],
         others: Iterable[Expression],
@@ -35,7 +36,7 @@ class Translator:
         atoms: dict[Expression, Opaque] = {}
         arguments = [self._scan(group, atoms) for group in (preferred, others)]
         basis: AngleBasis = choose_basis(*arguments)
-        self.ring = TrigRing(tuple(variables), basis, tuple(atoms.values()))
+        self.ring = TrigRing(tuple(variables), tuple(configuration), basis, tuple(atoms.values()))
         self._opaque = {key: self.ring.opaque_position[i] for i, key in enumerate(atoms)}
         self._values: dict[Expression, Quotient] = {}
         self._slopes: dict[tuple[int, str], Quotient] = {}

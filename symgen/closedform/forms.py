@@ -1,0 +1,192 @@
+"""Closed forms of a model for the report: exact in the ring of sines and cosines, printed in the paper's style."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from sympy import Expr, ImmutableDenseMatrix, Symbol
+
+from symgen.closedform.display import latex_name
+from symgen.closedform.exact import Exact, TooLarge
+from symgen.closedform.mechanics import derive_mechanics, make_translator
+from symgen.closedform.points import generic_points
+from symgen.closedform.quotient import Matrix
+from symgen.closedform.singular import SingularSet, derive_singular_sets
+from symgen.closedform.spelling import Speller
+from symgen.closedform.structure import Integrability, Structure, derive_integrability, derive_structure
+from symgen.closedform.structured import Structured, structured_control_pseudoinverse, structured_projector
+from symgen.model.expression import Expression
+from symgen.model.model import Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
+
+LONG_MATRIX = 60
+"""A derived matrix whose numerators have more terms than this is printed in named minors when such a form exists."""
+
+LONGEST_MATRIX = 600
+"""A matrix with more terms than this is not printed."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedForm:
+    """One quantity: its matrix in SymPy (None when not attempted), intermediates in order of use, and what to say."""
+
+    quantity: str
+    matrix: ImmutableDenseMatrix | None
+    intermediates: tuple[tuple[Symbol, Expr], ...]
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedForms:
+    """All closed forms of a model and its structure; `exact` holds the same in the ring."""
+
+    model: str
+    forms: Mapping[str, ClosedForm]
+    structure: Structure
+    integrability: tuple[Integrability, ...]
+    singular_sets: tuple[SingularSet, ...]
+    symbol_table: Mapping[str, str]
+    exact: Exact
+
+
+def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int] | None = None) -> ClosedForms:
+    """Derive every closed form of a model that is worth printing.
+
+    `straight_line_operations` are the operation counts of the generated kernels: a closed form that is estimated at more
+    than ten times that is given in named intermediates or not at all.  Raises ArithmeticError for a model that divides by
+    something identically zero.
+    """
+    translator = make_translator(model, published_expressions(model))
+    mechanics = derive_mechanics(model, translator)
+    points = generic_points(model, mechanics, 3)
+    structure = derive_structure(model, mechanics, points)
+    exact = Exact(model, mechanics, structure)
+    speller = Speller(exact.ring)
+    writer = _Writer(model, exact, speller, straight_line_operations or {})
+    return ClosedForms(
+        model=model.name,
+        forms={form.quantity: form for form in writer.all_forms()},
+        structure=structure,
+        integrability=derive_integrability(model, mechanics),
+        singular_sets=derive_singular_sets(model, exact, speller),
+        symbol_table=writer.symbol_table(),
+        exact=exact,
+    )
+
+
+def published_expressions(model: Model) -> Iterable[Expression]:
+    """Every expression of the model's published formulas, so that the ring can hold them."""
+    for item in model.published:
+        match item:
+            case PublishedMatrix():
+                for matrix in (item.value, item.corrected or ()):
+                    for row in matrix:
+                        yield from row
+                yield from (value for _, value in item.where)
+            case PublishedEquations():
+                for left, right in (*item.equations, *item.corrected):
+                    yield from (left, right)
+                yield from (value for _, value in item.where)
+            case PublishedSingularSet():
+                yield item.where_zero
+                if item.corrected is not None:
+                    yield item.corrected
+
+
+class _Writer:
+    """Chooses the form of every quantity."""
+
+    def __init__(self, model: Model, exact: Exact, speller: Speller, operations: Mapping[str, int]) -> None:
+        self.model = model
+        self.exact = exact
+        self.speller = speller
+        self.operations = operations
+        self.taken = frozenset(exact.ring.variables)
+        self.names: set[str] = set()
+
+    def all_forms(self) -> Iterable[ClosedForm]:
+        """The forms in the order of the derivation."""
+        mechanics, exact, model = self.exact.mechanics, self.exact, self.model
+        yield self._direct("mass_matrix", lambda: mechanics.mass)
+        yield self._direct("coriolis_matrix", lambda: mechanics.coriolis)
+        yield self._direct("coriolis_force", lambda: mechanics.coriolis_force)
+        yield self._direct("potential_force", lambda: mechanics.potential_force)
+        yield self._direct("applied_force", lambda: mechanics.applied_force)
+        if mechanics.residual:
+            yield self._direct("constraint_residual", lambda: mechanics.residual)
+        if model.constraints:
+            yield self._direct("constraint_jacobian", lambda: mechanics.jacobian)
+            yield self._direct("constraint_jacobian_dot", lambda: mechanics.jacobian_dot)
+            yield self._direct("constraint_pseudoinverse", lambda: exact.pseudoinverse, "B^+ = B^T (B B^T)^{-1}")
+        yield self._direct(
+            "nullspace_projector",
+            lambda: exact.projector,
+            "N_B = I - B^+ B",
+            lambda: structured_projector(exact, self.speller, self.taken),
+        )
+        yield self._direct(
+            "nullspace_projector_dot", lambda: exact.projector_dot, "the derivative of N_B is -X - X^T, X = B^+ Bdot N_B"
+        )
+        if model.independent_velocities:
+            yield self._direct("orthogonal_complement", self._complement)
+        if model.inputs:
+            yield self._direct("control_matrix", lambda: mechanics.control)
+            yield self._direct("projected_control_matrix", lambda: exact.projected_control, "N_B M")
+            full = exact.structure.degree_of_actuation == exact.delta
+            yield self._direct(
+                "projected_control_pseudoinverse",
+                lambda: exact.control_pseudoinverse,
+                "(28)",
+                (lambda: structured_control_pseudoinverse(exact, self.speller, self.taken)) if full else None,
+            )
+            yield self._direct("inverse_dynamics", lambda: exact.inverse_dynamics, "the pseudoinverse of N_B M times tau")
+
+    def _complement(self) -> Matrix:
+        matrix = self.exact.complement(self.model.independent_velocities)
+        if matrix is None:
+            raise TooLarge("the chosen velocities are never independent")
+        return matrix
+
+    def _direct(
+        self,
+        quantity: str,
+        build: Callable[[], Matrix],
+        formula: str = "",
+        structured: Callable[[], Structured] | None = None,
+    ) -> ClosedForm:
+        """The matrix written out when it is short, else in named minors, else only the formula with the reason."""
+        try:
+            matrix = build()
+            terms = sum(len(e.numerator) + len(e.denominator) - 1 for row in matrix for e in row)
+            reason = self._too_long(quantity, terms, LONG_MATRIX if structured else LONGEST_MATRIX)
+        except TooLarge as large:
+            matrix, reason = (), f"not written out: {large}"
+        if not reason:
+            printed = ImmutableDenseMatrix([[self.speller.quotient(e) for e in row] for row in matrix])
+            return self._record(ClosedForm(quantity, printed, (), ""))
+        if structured is not None:
+            try:
+                form = structured()
+                return self._record(ClosedForm(quantity, form.matrix, form.intermediates, reason))
+            except TooLarge as large:
+                reason = f"not written out: {large}"
+        return ClosedForm(quantity, None, (), f"{reason}; {formula}" if formula else reason)
+
+    def _too_long(self, quantity: str, terms: int, limit: int) -> str:
+        operations = self.operations.get(quantity)
+        if terms > limit:
+            return f"not written out: {terms} terms"
+        if operations is not None and limit == LONG_MATRIX and terms > 10 * max(operations, 10):
+            return f"not written out: {terms} terms, more than ten times the {operations} operations of the kernel"
+        return ""
+
+    def _record(self, form: ClosedForm) -> ClosedForm:
+        if form.matrix is not None:
+            self.names |= {s.name for s in form.matrix.free_symbols}
+        for symbol, meaning in form.intermediates:
+            self.names |= {symbol.name} | {s.name for s in meaning.free_symbols}
+        return form
+
+    def symbol_table(self) -> Mapping[str, str]:
+        """LaTeX for every name of the model and of the forms."""
+        return {name: latex_name(name) for name in sorted(self.names | self.taken) if not name.startswith("_")}

@@ -1,0 +1,172 @@
+"""Points of a model at 40 digits: evaluation of ring elements, configurations on V, and ranks."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+import mpmath
+from mpmath import mp, mpf
+from sympy.polys.rings import PolyElement
+
+from symgen.closedform.mechanics import Mechanics
+from symgen.closedform.quotient import Matrix, Quotient
+from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.model import Model
+
+DIGITS = 40
+RANK_THRESHOLD = mpf(10) ** -18
+
+
+def number(value: Fraction) -> mpf:
+    """An exact rational at working precision."""
+    return mpf(value.numerator) / mpf(value.denominator)
+
+
+def evaluate_expression(expression: Expression, values: Mapping[str, mpf], definitions: Mapping[str, Expression]) -> mpf:
+    """The value of a model expression; raises ValueError where it is not a real number."""
+    match expression:
+        case Number(value):
+            return number(value)
+        case Pi():
+            return mp.pi
+        case Name(name):
+            if name in definitions:
+                return evaluate_expression(definitions[name], values, definitions)
+            return values[name]
+        case Negation(operand):
+            return -evaluate_expression(operand, values, definitions)
+        case Binary(operator, left, right):
+            a = evaluate_expression(left, values, definitions)
+            b = evaluate_expression(right, values, definitions)
+            return a + b if operator == "+" else a - b if operator == "-" else a * b if operator == "*" else a / b
+        case Power(base, exponent):
+            power = evaluate_expression(base, values, definitions) ** number(exponent)
+            return _real(power)
+        case Call(function, arguments):
+            inner = [evaluate_expression(a, values, definitions) for a in arguments]
+            return _real(getattr(mpmath, function)(*inner))
+
+
+def _real(value: object) -> mpf:
+    if isinstance(value, mpmath.mpc):
+        raise ValueError("not a real number")
+    return value
+
+
+class Point:
+    """Values of all variables of a ring, ready to evaluate its elements."""
+
+    def __init__(self, mechanics: Mechanics, values: Mapping[str, mpf]) -> None:
+        self.values = dict(values)
+        ring, definitions = mechanics.ring, mechanics.translator.definitions
+        generators = [self.values.get(name, mpf(0)) for name in ring.variables]
+        for atom in ring.basis.atoms:
+            angle = mpf(0)
+            for base, factor in atom:
+                angle += number(factor) * evaluate_expression(base, self.values, definitions)
+            generators += [mpmath.sin(angle), mpmath.cos(angle)]
+        for opaque in ring.opaque:
+            generators.append(evaluate_expression(opaque.expression, self.values, definitions))
+        self._generators = generators
+
+    def polynomial(self, p: PolyElement) -> mpf:
+        """The value of a ring element."""
+        total = mpf(0)
+        for monomial, coefficient in p.items():
+            term = mpf(int(coefficient.numerator)) / int(coefficient.denominator)
+            for exponent, value in zip(monomial, self._generators, strict=True):
+                if exponent:
+                    term *= value**exponent
+            total += term
+        return total
+
+    def quotient(self, value: Quotient) -> mpf:
+        """The value of a fraction."""
+        top = self.polynomial(value.numerator)
+        return top if value.is_polynomial else top / self.polynomial(value.denominator)
+
+    def matrix(self, matrix: Matrix) -> list[list[mpf]]:
+        """The values of a matrix."""
+        return [[self.quotient(entry) for entry in row] for row in matrix]
+
+
+def parameter_values(model: Model) -> dict[str, mpf]:
+    """The parameters' default values."""
+    values: dict[str, mpf] = {}
+    for parameter in model.parameters:
+        values[parameter.name] = evaluate_expression(parameter.value, values, {})
+    return values
+
+
+def generic_points(model: Model, mechanics: Mechanics, count: int) -> list[Point]:
+    """Points on V at the default parameters, random (but the same every time) in everything else.
+
+    Fewer than `count` when Newton's method does not reach V.
+    """
+    mp.dps = DIGITS + 10
+    source = random.Random(1)
+    parameters = parameter_values(model)
+    start = dict(model.configuration)
+    points: list[Point] = []
+    for attempt in range(6 * count):
+        if len(points) == count:
+            break
+        values = dict(parameters)
+        for c in model.coordinates:
+            spread = 0.3 if c.name in start and mechanics.residual else 2.0
+            middle = number(start.get(c.name, Fraction(0)))
+            values[c.name] = middle + mpf(source.uniform(-spread, spread) / (1 + attempt // 3))
+        for name in mechanics.ring.variables:
+            values.setdefault(name, mpf(source.uniform(-2, 2)))
+        try:
+            point = _onto_constraints(model, mechanics, values)
+        except (ValueError, ZeroDivisionError):
+            continue
+        if point is not None:
+            points.append(point)
+    return points
+
+
+def _onto_constraints(model: Model, mechanics: Mechanics, values: dict[str, mpf]) -> Point | None:
+    """Gauss-Newton steps from `values` onto V; None when they do not converge."""
+    names = [c.name for c in model.coordinates]
+    for _ in range(60):
+        point = Point(mechanics, values)
+        if not mechanics.residual:
+            return point
+        residual = [row[0] for row in point.matrix(mechanics.residual)]
+        if max(abs(x) for x in residual) < mpf(10) ** -DIGITS:
+            return point
+        jacobian = point.matrix(mechanics.jacobian[: len(residual)])
+        gram = mpmath.matrix(
+            [[mpmath.fdot(a, b) for b in jacobian] for a in jacobian]
+        )
+        scale = max(gram[i, i] for i in range(len(residual)))
+        for i in range(len(residual)):
+            gram[i, i] += scale * mpf(10) ** -30  # dependent constraints: any solution of the consistent system does
+        multipliers = mpmath.lu_solve(gram, mpmath.matrix(residual))
+        for j, name in enumerate(names):
+            values[name] -= mpmath.fsum(row[j] * multipliers[i] for i, row in enumerate(jacobian))
+            if abs(values[name]) > 1e6:
+                return None
+    return None
+
+
+def rank(matrix: Sequence[Sequence[mpf]]) -> int:
+    """The numerical rank by elimination with complete pivoting."""
+    rows = [list(row) for row in matrix]
+    scale = max((abs(x) for row in rows for x in row), default=mpf(0))
+    found = 0
+    columns = list(range(len(rows[0]))) if rows else []
+    while rows and columns:
+        i, j = max(((i, j) for i in range(len(rows)) for j in columns), key=lambda at: abs(rows[at[0]][at[1]]))
+        pivot = rows[i][j]
+        if abs(pivot) <= RANK_THRESHOLD * scale:
+            break
+        head = rows.pop(i)
+        rows = [[a - row[j] / pivot * b for a, b in zip(row, head, strict=True)] for row in rows]
+        columns.remove(j)
+        found += 1
+    return found

@@ -1,0 +1,113 @@
+"""Singular configurations: where constraints, actuation or chosen velocities lose rank, as factored determinants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from sympy import Expr, Integer
+from sympy.polys.rings import PolyElement
+
+from symgen.closedform.exact import Exact, TooLarge
+from symgen.closedform.homogeneous import common_factor, factorise, homogeneous, never_zero, parity_classes
+from symgen.closedform.minors import common_denominator
+from symgen.closedform.quotient import polynomial
+from symgen.closedform.ring import TrigRing
+from symgen.closedform.spelling import Speller
+from symgen.model.model import Model
+
+
+@dataclass(frozen=True, slots=True)
+class SingularSet:
+    """Where something loses rank: all of `vanishing` are zero at once; empty when that never happens.
+
+    `decided` is False where the expressions are sums whose common zeros were not worked out.
+    """
+
+    kind: Literal["constraint", "input", "parameter"]
+    quantity: str
+    vanishing: tuple[Expr, ...]
+    decided: bool
+    explanation: str
+
+
+def derive_singular_sets(model: Model, exact: Exact, speller: Speller) -> tuple[SingularSet, ...]:
+    """Constraint singularities, input singularities, and those of the chosen independent velocities."""
+    found: list[SingularSet] = []
+    try:
+        if model.constraints:
+            minors = [v for one in exact.minor_sets for v in one.values.values()]
+            contents = [one.content for one in exact.minor_sets]
+            content = contents[0] if len(contents) == 1 else exact.ring.one
+            found.append(
+                _common_zeros(exact, speller, "constraint", "constraint_jacobian", minors, content, "the rank of B drops")
+            )
+        if model.inputs and exact.structure.degree_of_actuation == exact.delta:
+            deltas = [v for one in exact.actuations for v in one.determinants.values()]
+            text = "the degree of actuation drops"
+            quantity = "projected_control_pseudoinverse"
+            found.append(_common_zeros(exact, speller, "input", quantity, deltas, exact.ring.one, text))
+        if model.independent_velocities:
+            complement = exact.complement(model.independent_velocities)
+            if complement is not None:
+                bottom = common_denominator(exact.ring, [e for row in complement for e in row])
+                text = "the chosen velocities are not independent; no property of the mechanism"
+                found.append(
+                    _common_zeros(exact, speller, "parameter", "orthogonal_complement", [bottom], exact.ring.one, text)
+                )
+    except TooLarge as large:
+        found.append(SingularSet("constraint", "constraint_jacobian", (), False, f"not worked out: {large}"))
+    return tuple(found)
+
+
+def essential_factors(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, ...]:
+    """The distinct factors that can vanish: not parameters alone, not sums of squares without common zeros."""
+    names = set(ring.angle_positions) | set(ring.opaque_position)
+    coordinates = {i for name, i in ring.position.items() if name in ring.configuration}
+    return tuple(
+        factor
+        for factor, _ in factorise(ring, p)[1]
+        if set(ring.shape(factor)) & (names | coordinates) and not positive(ring, factor)
+    )
+
+
+def positive(ring: TrigRing, p: PolyElement) -> bool:
+    """Whether p is certainly free of zeros (parameters other than 0)."""
+    classes = parity_classes(ring, ring.normal(p))
+    return len(classes) == 1 and never_zero(ring, homogeneous(ring, classes[0]))
+
+
+def _common_zeros(
+    exact: Exact,
+    speller: Speller,
+    kind: Literal["constraint", "input", "parameter"],
+    quantity: str,
+    values: list[PolyElement],
+    content: PolyElement,
+    text: str,
+) -> SingularSet:
+    """The common zeros of ring elements, one shared factor taken out."""
+    ring = exact.ring
+    values = [v for v in values if v]
+    shared = ring.normal(common_factor(ring, values) * content)
+    factors = essential_factors(ring, shared)
+    single = len(values) == 1
+    own = values if not single else []
+    never = single or any(v.is_ground or not _can_vanish(ring, v) for v in own)
+    if not never and sum(len(v) ** 2 for v in own) <= 4000:
+        total = ring.normal(sum((v * v for v in own), ring.zero))
+        never = not essential_factors(ring, total)
+    spelled = tuple(speller.quotient(polynomial(ring, ring.normal(f))) for f in factors)
+    if never:
+        if not spelled:
+            return SingularSet(kind, quantity, (), True, f"{text} nowhere")
+        product: Expr = Integer(1)
+        for factor in spelled:
+            product *= factor
+        return SingularSet(kind, quantity, (product,), True, f"{text} where this product vanishes")
+    printed = tuple(speller.quotient(polynomial(ring, v)) for v in own)
+    return SingularSet(kind, quantity, printed, False, f"{text} where all of these vanish at once")
+
+
+def _can_vanish(ring: TrigRing, p: PolyElement) -> bool:
+    return bool(essential_factors(ring, p))

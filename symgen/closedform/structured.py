@@ -1,0 +1,133 @@
+"""Structured closed forms: N_B and the pseudoinverse of N_B M in terms of named minors, when written out they are long."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+from sympy import Expr, ImmutableDenseMatrix, Integer, Symbol
+from sympy.polys.rings import PolyElement
+
+from symgen.closedform.exact import Exact
+from symgen.closedform.minors import left_inverse_terms
+from symgen.closedform.quotient import polynomial
+from symgen.closedform.spelling import Speller
+
+
+@dataclass(slots=True)
+class Naming:
+    """Names for ring elements: equal or opposite elements share one symbol."""
+
+    speller: Speller
+    taken: frozenset[str]
+    meanings: dict[Symbol, Expr] = field(default_factory=dict)
+    known: dict[PolyElement, Expr] = field(default_factory=dict)
+
+    def symbol(self, name: str) -> Symbol:
+        """A symbol no coordinate, parameter or input of the model uses."""
+        while name in self.taken:
+            name += "_"
+        return Symbol(name)
+
+    def name(self, value: PolyElement, name: str) -> Expr:
+        """The symbol for a ring element with a sign, the element itself when it is a monomial; new names are recorded."""
+        if len(value) <= 1:
+            return self.speller.quotient(polynomial(self.speller.ring, value))
+        if value not in self.known:
+            symbol = self.symbol(name)
+            self.meanings[symbol] = self.speller.quotient(polynomial(self.speller.ring, value))
+            self.known[value] = symbol
+            self.known[-value] = -symbol
+        return self.known[value]
+
+
+@dataclass(frozen=True, slots=True)
+class Structured:
+    """A matrix in named intermediates, listed in order of use."""
+
+    matrix: ImmutableDenseMatrix
+    intermediates: tuple[tuple[Symbol, Expr], ...]
+
+
+def label(kind: str, indices: Sequence[int], choice: int, choices: int) -> str:
+    """Phi_1_3 and the like; a prefix tells choices of rows apart."""
+    name = "_".join([kind, *(str(i + 1) for i in indices)])
+    return name if choices == 1 else f"{name}_rows{choice + 1}"
+
+
+def name_minors(exact: Exact, naming: Naming) -> list[Mapping[tuple[int, ...], Expr]]:
+    """A symbol (or a monomial) for every minor Phi_J."""
+    sets = exact.minor_sets
+    return [
+        {subset: naming.name(value, label("Phi", subset, i, len(sets))) for subset, value in minors.values.items()}
+        for i, minors in enumerate(sets)
+    ]
+
+
+def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) -> Structured:
+    """N_B = sum_K Phi_K Phi_K^T / Sigma_Phi with every Phi_J as a product of its factors."""
+    naming = Naming(speller, taken)
+    phis = name_minors(exact, naming)
+    total = naming.symbol("Sigma_Phi")
+    meaning = sum((e**2 for phi in phis for e in phi.values()), Integer(0))
+    size = range(exact.model.n)
+    rest = list(combinations(size, exact.delta - 1))
+
+    def signed(phi: Mapping[tuple[int, ...], Expr], indices: tuple[int, ...]) -> Expr:
+        if len(set(indices)) < len(indices):
+            return Integer(0)
+        inversions = sum(a > b for a, b in combinations(indices, 2))
+        return phi[tuple(sorted(indices))] * (-1) ** inversions
+
+    entries = [
+        [sum((signed(phi, (i, *k)) * signed(phi, (j, *k)) for phi in phis for k in rest), Integer(0)) / total for j in size]
+        for i in size
+    ]
+    return _finish(entries, naming, [(total, meaning)])
+
+
+def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[str]) -> Structured:
+    """M~^+ = sum_J Delta_J v_L / Sigma_Delta, L = J without the input of the row; Delta_J as products of their factors."""
+    naming = Naming(speller, taken)
+    name_minors(exact, naming)
+    scale = speller.quotient(polynomial(exact.ring, exact.control_scale))
+    total = naming.symbol("Sigma_Delta")
+    squares: Expr = Integer(0)
+    entries = [[Integer(0) for _ in range(exact.model.n)] for _ in range(exact.model.m)]
+    choices = len(exact.actuations)
+    for i, actuation in enumerate(exact.actuations):
+        deltas = {j: naming.name(value, label("Delta", j, i, choices)) for j, value in actuation.determinants.items()}
+        vectors = {
+            rest: [naming.name(e, label("v", (*rest, a), i, choices)) for a, e in enumerate(vector)]
+            for rest, vector in actuation.vectors.items()
+        }
+        squares += sum((e**2 for e in deltas.values()), Integer(0))
+        for k in range(exact.model.m):
+            for sign, j, rest in left_inverse_terms(actuation, k):
+                for a in range(exact.model.n):
+                    entries[k][a] += sign * deltas[j] * vectors[rest][a]
+    entries = [[scale * e / total for e in row] for row in entries]
+    return _finish(entries, naming, [(total, squares)])
+
+
+def determinant_terms(exact: Exact, speller: Speller, taken: frozenset[str]) -> tuple[tuple[Symbol, Expr], ...]:
+    """Every Delta_J with its factors: the curves of Fig. 6 are Delta_J^2 / Sigma_Phi."""
+    naming = Naming(speller, taken)
+    choices = len(exact.actuations)
+    return tuple(
+        (naming.symbol(label("Delta", j, i, choices)), speller.quotient(polynomial(exact.ring, value)))
+        for i, actuation in enumerate(exact.actuations)
+        for j, value in actuation.determinants.items()
+    )
+
+
+def _finish(
+    entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]
+) -> Structured:
+    """Keep the intermediates that the matrix and the sums use."""
+    matrix = ImmutableDenseMatrix(entries)
+    last = tuple(sums)
+    used = set(matrix.free_symbols).union(*(meaning.free_symbols for _, meaning in last))
+    first = tuple((symbol, meaning) for symbol, meaning in naming.meanings.items() if symbol in used)
+    return Structured(matrix, (*first, *last))
