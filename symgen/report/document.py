@@ -1,0 +1,136 @@
+"""A report as data: sections of paragraphs, formulas, tables and figures, the one source of HTML, LaTeX and PDF."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from symgen.report.layout import Layout
+
+
+@dataclass(frozen=True, slots=True)
+class InlineMath:
+    """A formula inside a sentence."""
+
+    node: Layout
+
+
+@dataclass(frozen=True, slots=True)
+class InlineCode:
+    """A name from the model file or the command line inside a sentence."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The number of a labelled formula."""
+
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class Emphasis:
+    """A few words in italics."""
+
+    text: str
+
+
+Inline: TypeAlias = str | InlineMath | InlineCode | Reference | Emphasis
+Text: TypeAlias = tuple[Inline, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    """Sentences."""
+
+    text: Text
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """Displayed equations, one below the other; numbered where they have a label."""
+
+    equations: tuple[Layout, ...]
+    label: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Items:
+    """A list with bullets."""
+
+    items: tuple[Text, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table with one line of headings; `widths` are relative, 0 = as wide as its content."""
+
+    headings: tuple[Text, ...]
+    rows: tuple[tuple[Text, ...], ...]
+    widths: tuple[int, ...]
+    caption: Text = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A drawing as SVG text, with its caption."""
+
+    svg: str
+    caption: Text
+
+
+@dataclass(frozen=True, slots=True)
+class CodeLine:
+    """One line in fixed pitch on a line of its own."""
+
+    text: str
+
+
+Block: TypeAlias = Paragraph | Formula | Items | Table | Figure | CodeLine
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A numbered section; subsections are sections of level 2."""
+
+    title: Text
+    blocks: tuple[Block, ...]
+    level: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A whole report."""
+
+    title: str
+    subtitle: str
+    summary: Text
+    sections: tuple[Section, ...]
+    colophon: str
+
+    def formulas(self) -> Iterator[Formula]:
+        """All displayed formulas in order."""
+        for section in self.sections:
+            for block in section.blocks:
+                if isinstance(block, Formula):
+                    yield block
+
+    def numbers(self) -> dict[str, str]:
+        """The number of every labelled formula, counted from 1 in order of appearance."""
+        labels = (formula.label for formula in self.formulas() if formula.label is not None)
+        return {label: str(position) for position, label in enumerate(labels, start=1)}
+
+    def section_numbers(self) -> tuple[str, ...]:
+        """The number of every section: 1, 2, 2.1, 2.2, 3."""
+        chapter = part = 0
+        numbers = []
+        for section in self.sections:
+            if section.level == 1:
+                chapter, part = chapter + 1, 0
+                numbers.append(str(chapter))
+            else:
+                part += 1
+                numbers.append(f"{chapter}.{part}")
+        return tuple(numbers)

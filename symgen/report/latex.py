@@ -1,0 +1,132 @@
+"""The report as LaTeX source for pdflatex with amsmath."""
+
+from __future__ import annotations
+
+from symgen.emit.render import render
+from symgen.report.breaking import break_lines
+from symgen.report.document import (
+    Block,
+    CodeLine,
+    Document,
+    Emphasis,
+    Figure,
+    Formula,
+    InlineCode,
+    InlineMath,
+    Items,
+    Paragraph,
+    Reference,
+    Section,
+    Table,
+    Text,
+)
+from symgen.report.latex_math import GREEK, RELATIONS, latex_math
+from symgen.report.layout import Layout
+from symgen.report.measure import page_width
+
+ROOM = 40.0
+SPECIAL: dict[str, str] = {
+    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
+    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}",
+    "|": r"\textbar{}", '"': r"\textquotedbl{}", "`": r"\textasciigrave{}", "–": "--", "—": "---", "’": "'",
+    "‘": "`", "“": "``", "”": "''", "…": r"\ldots{}", "\u00a0": "~", "−": "$-$", "·": r"$\cdot$", "×": r"$\times$",
+    "°": r"$^\circ$", "√": r"$\surd$", "→": r"$\to$", "\n": " ", "\r": " ", "\t": " ",
+    "⁻": r"$^{-}$", "²": "$^2$", "³": "$^3$",
+}  # fmt: skip
+
+
+def latex_text(text: str) -> str:
+    """Any text as LaTeX text; letters beyond Latin and Greek appear as their code points."""
+    return "".join(_character(character) for character in text)
+
+
+def _character(character: str) -> str:
+    if character in SPECIAL:
+        return SPECIAL[character]
+    if character in GREEK:
+        return f"${GREEK[character]}$"
+    if character in RELATIONS:
+        return f"${RELATIONS[character]}$" if not character.isascii() else character
+    if " " <= character <= "~" or "À" <= character <= "ſ":
+        return character
+    return rf"\texttt{{U+{ord(character):04X}}}"
+
+
+def render_latex(document: Document) -> str:
+    """The whole source file."""
+    return render("report/report.tex.j2", _LatexView(document))
+
+
+class _LatexView:
+    """What the template prints: prepared source."""
+
+    def __init__(self, document: Document) -> None:
+        self._numbers = document.numbers()
+        self.title = latex_text(document.title)
+        self.subtitle = latex_text(document.subtitle)
+        self.summary = self._text(document.summary)
+        self.colophon = latex_text(document.colophon)
+        self.sections = [self._section(section) for section in document.sections]
+
+    def _section(self, section: Section) -> str:
+        command = "section" if section.level == 1 else "subsection"
+        return "\n\n".join([rf"\{command}{{{self._text(section.title)}}}", *map(self._block, section.blocks)])
+
+    def _text(self, text: Text) -> str:
+        return "".join(self._inline(part) for part in text)
+
+    def _inline(self, part: object) -> str:
+        match part:
+            case str():
+                return latex_text(part)
+            case InlineMath(node=node):
+                return f"${latex_math(node)}$"
+            case InlineCode(text=text):
+                return rf"\texttt{{{latex_text(text)}}}"
+            case Emphasis(text=text):
+                return rf"\emph{{{latex_text(text)}}}"
+            case Reference(label=label):
+                return f"({self._numbers[label]})"
+        raise AssertionError(part)
+
+    def _block(self, block: Block) -> str:
+        match block:
+            case Paragraph(text=text):
+                return self._text(text)
+            case Formula(equations=equations, label=label):
+                return self._formula(equations, label)
+            case Items(items=items):
+                body = "\n".join(rf"\item {self._text(item)}" for item in items)
+                return f"\\begin{{itemize}}\n{body}\n\\end{{itemize}}"
+            case CodeLine(text=text):
+                return rf"\noindent\texttt{{{latex_text(text)}}}"
+            case Figure(caption=caption):
+                return rf"\emph{{Figure (drawn in the PDF and HTML versions): {self._text(caption)}}}"
+            case Table():
+                return self._table(block)
+
+    def _formula(self, equations: tuple[Layout, ...], label: str | None) -> str:
+        lines = []
+        for node in equations:
+            for position, line in enumerate(break_lines(node, page_width, ROOM)):
+                indent = r"\quad " if position else ""
+                lines.append(f"& {indent}{latex_math(line).strip()}")
+        if label is not None:
+            lines[0] += rf" \tag{{{self._numbers[label]}}}"
+        body = " \\\\\n".join(lines)
+        return f"\\begin{{align*}}\n{body}\n\\end{{align*}}"
+
+    def _table(self, table: Table) -> str:
+        whole = sum(table.widths)
+        share = 0.92 if 0 not in table.widths else 0.62
+        columns = "".join(
+            rf">{{\raggedright\arraybackslash}}p{{{share * width / whole:.3f}\linewidth}}" if width else "l"
+            for width in table.widths
+        )
+        head = " & ".join(rf"\textbf{{{self._text(heading)}}}" for heading in table.headings)
+        rows = "\n".join(" & ".join(self._text(cell) for cell in row) + r" \\" for row in table.rows)
+        caption = f"\\noindent {self._text(table.caption)}\n\n" if table.caption else ""
+        return (
+            f"{caption}\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n\\hline\n{head} \\\\\n\\hline\n\\endhead\n"
+            f"{rows}\n\\hline\n\\end{{longtable}}"
+        )

@@ -1,0 +1,38 @@
+"""Exact rational numbers as they are set: integers, short decimals, or fractions."""
+
+from __future__ import annotations
+
+from fractions import Fraction as Rational
+
+from symgen.report.layout import Fraction, Layout, Numeral, minus
+
+LARGEST_FRACTION_DENOMINATOR = 12
+DECIMAL_PLACES = 9
+
+
+def decimal_text(value: Rational) -> str | None:
+    """A terminating decimal of at most DECIMAL_PLACES places, or None."""
+    scaled = value * 10**DECIMAL_PLACES
+    if scaled.denominator != 1:
+        return None
+    sign = "-" if scaled < 0 else ""
+    digits = str(abs(scaled.numerator)).rjust(DECIMAL_PLACES + 1, "0")
+    whole, places = digits[:-DECIMAL_PLACES], digits[-DECIMAL_PLACES:].rstrip("0")
+    return f"{sign}{whole}.{places}" if places else f"{sign}{whole}"
+
+
+def rational_text(value: Rational) -> str:
+    """A rational number on one line of plain text."""
+    return decimal_text(value) or str(value)
+
+
+def rational_layout(value: Rational, prefer_decimal: bool = False) -> Layout:
+    """A rational number; small denominators stay fractions unless the number was written as a decimal."""
+    if value < 0:
+        return minus(rational_layout(-value, prefer_decimal))
+    if value.denominator == 1:
+        return Numeral(str(value.numerator))
+    text = decimal_text(value)
+    if text is not None and (prefer_decimal or value.denominator > LARGEST_FRACTION_DENOMINATOR):
+        return Numeral(text)
+    return Fraction(Numeral(str(value.numerator)), Numeral(str(value.denominator)))

@@ -1,0 +1,132 @@
+"""Sentences with formulas in them, and the symbols of the paper."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+from symgen.report.document import Emphasis, Inline, InlineCode, InlineMath, Paragraph, Reference, Text
+from symgen.report.layout import Accent, Layout, Letter, Numeral, Product, Punctuation, Relation, Row, Scripts
+
+Slot: TypeAlias = str | Layout | InlineCode | Emphasis | Reference
+
+
+def say(pattern: str, *slots: Slot) -> Text:
+    """The pattern with every {} replaced by the next slot; strings in slots are text as it is, never a pattern."""
+    pieces = pattern.split("{}")
+    if len(pieces) != len(slots) + 1:
+        raise ValueError(f"{len(slots)} slots for {len(pieces) - 1} places: {pattern}")
+    parts: list[Inline] = [pieces[0]]
+    for slot, piece in zip(slots, pieces[1:], strict=True):
+        parts.append(slot if isinstance(slot, (str, InlineCode, Emphasis, Reference)) else InlineMath(slot))
+        parts.append(piece)
+    return tuple(part for part in parts if part != "")
+
+
+def paragraph(pattern: str, *slots: Slot) -> Paragraph:
+    """A paragraph written with `say`."""
+    return Paragraph(say(pattern, *slots))
+
+
+def bold(text: str) -> Letter:
+    """A matrix or vector."""
+    return Letter(text, "bold")
+
+
+def transposed(node: Layout) -> Layout:
+    """The transpose."""
+    return _raised(node, Letter("T", "upright"))
+
+
+def pseudoinverse(node: Layout) -> Layout:
+    """The Moore-Penrose inverse."""
+    return _raised(node, Letter("+", "upright"))
+
+
+def inverse(node: Layout) -> Layout:
+    """The inverse."""
+    return _raised(node, Letter("−1", "upright"))
+
+
+def _raised(node: Layout, upper: Layout) -> Layout:
+    if isinstance(node, Scripts) and node.upper is None:
+        return Scripts(node.base, node.lower, upper)
+    return Scripts(node, None, upper)
+
+
+def juxtaposed(*factors: Layout) -> Product:
+    """A matrix product."""
+    return Product(factors)
+
+
+def equals(*sides: Layout) -> Row:
+    """sides[0] = sides[1] = …"""
+    pieces: list[Layout] = [sides[0]]
+    for side in sides[1:]:
+        pieces += (Relation("="), side)
+    return Row(tuple(pieces))
+
+
+def listed(nodes: tuple[Layout, ...]) -> Row:
+    """(a, b, c) without the parentheses."""
+    pieces: list[Layout] = []
+    for position, node in enumerate(nodes):
+        if position:
+            pieces.append(Punctuation(","))
+        pieces.append(node)
+    return Row(tuple(pieces))
+
+
+def number(value: int) -> Numeral:
+    """A natural number."""
+    return Numeral(str(value))
+
+
+q, u, lam, g, tau, nu = bold("q"), bold("u"), bold("λ"), bold("g"), bold("τ"), bold("ν")
+qd, qdd = Accent(q, "dot"), Accent(q, "ddot")
+G, C, Q, B, M, F, N, W, IDENTITY = (bold(letter) for letter in "GCQBMFNWI")
+Qa = Scripts(Q, Letter("a", "italic"))
+NB = Scripts(N, B)
+BG = Scripts(B, G)
+NBG = Scripts(N, listed((B, G)))
+Mt = Accent(M, "tilde")
+T, U = Letter("T"), Letter("U")
+delta, alpha = Letter("δ"), Letter("α")
+delta_loc, delta_diff = Scripts(delta, Letter("loc", "upright")), Scripts(delta, Letter("diff", "upright"))
+small_n, small_r, small_m, rho = Letter("n"), Letter("r"), Letter("m"), Letter("ρ")
+NB_dot = Scripts(Accent(N, "dot"), B)
+B_dot = Accent(B, "dot")
+
+SYMBOLS: dict[str, Layout] = {
+    "mass_matrix": G,
+    "coriolis_matrix": C,
+    "coriolis_force": juxtaposed(C, qd),
+    "potential_force": Q,
+    "applied_force": Qa,
+    "constraint_residual": g,
+    "constraint_jacobian": B,
+    "constraint_jacobian_dot": B_dot,
+    "constraint_pseudoinverse": pseudoinverse(B),
+    "nullspace_projector": NB,
+    "nullspace_projector_dot": NB_dot,
+    "weighted_pseudoinverse": pseudoinverse(BG),
+    "weighted_nullspace_projector": NBG,
+    "control_matrix": M,
+    "projected_control_matrix": Mt,
+    "projected_control_pseudoinverse": pseudoinverse(Mt),
+    "orthogonal_complement": F,
+    "projected_mass_matrix": Accent(G, "tilde"),
+    "projected_coriolis_matrix": Accent(C, "tilde"),
+    "projected_potential_force": Accent(Q, "tilde"),
+    "projected_applied_force": juxtaposed(NB, Qa),
+    "minimal_mass_matrix": Accent(G, "bar"),
+    "minimal_coriolis_matrix": Accent(C, "bar"),
+    "minimal_potential_force": Accent(Q, "bar"),
+    "minimal_applied_force": juxtaposed(transposed(F), Qa),
+    "minimal_control_matrix": Accent(M, "bar"),
+    "inverse_dynamics": u,
+    "forward_dynamics": qdd,
+    "multipliers": lam,
+    "actuator_velocity": nu,
+    "actuator_mass_matrix": juxtaposed(transposed(W), G, W),
+}
+"""How the quantities of section 2 of the interface are written in formulas."""

@@ -1,0 +1,186 @@
+"""The section on the model: coordinates, parameters, energies, constraints and inputs, as the file gives them."""
+
+from __future__ import annotations
+
+from symgen.model.expression import Expression, Number
+from symgen.model.model import Input, Range
+from symgen.report.context import Context, text_of
+from symgen.report.document import Block, Formula, InlineCode, InlineMath, Section, Table, Text
+from symgen.report.from_expression import expression_layout
+from symgen.report.layout import Fenced, Layout, Letter, Numeral, Product, Punctuation, Row, Scripts, Sum, equation, signed
+from symgen.report.names import name_layout
+from symgen.report.numerals import rational_text
+from symgen.report.prose import B, Q, Qa, T, U, equals, lam, number, paragraph, q, say, small_m, small_n, small_r, u
+
+ZERO = Numeral("0")
+SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+def system(context: Context) -> Section:
+    """Everything the model file says, with units, descriptions and defaults."""
+    model = context.model
+    blocks: list[Block] = [
+        paragraph(
+            "The configuration is described by {} coordinates, the entries of {} in this order. A dot denotes the time "
+            "derivative; states for verification are drawn from the ranges.",
+            equals(small_n, number(model.n)),
+            q,
+        ),
+        _coordinates(context),
+    ]
+    if model.parameters:
+        blocks.append(paragraph("The parameters are run-time arguments of the generated code; the values are their defaults."))
+        blocks.append(_parameters(context))
+    else:
+        blocks.append(paragraph("The model has no parameters."))
+    if model.definitions:
+        named = tuple(equation(name_layout(d.name), expression_layout(d.value)) for d in model.definitions)
+        blocks += [paragraph("These expressions have names of their own:"), Formula(named)]
+    blocks += [*_energies(context), *_constraints(context), *_inputs(context), *_applied_forces(context)]
+    return Section(say("The system"), tuple(blocks))
+
+
+def unit_text(unit: str | None) -> str:
+    """A unit as it is written on paper: kg·m²."""
+    if not unit:
+        return "–"
+    head, *powers = unit.replace(" ", "").split("**")
+    text = head
+    for part in powers:
+        digits = len(part) - len(part.lstrip("-0123456789"))
+        text += part[:digits].translate(SUPERSCRIPTS) + part[digits:]
+    return text.replace("*", "·")
+
+
+def _coordinates(context: Context) -> Table:
+    rows = tuple(
+        (
+            (InlineMath(name_layout(c.name)),),
+            (InlineCode(c.name),),
+            say("{}", unit_text(c.unit)),
+            say("{}", text_of(c.description) or "–"),
+            say("{}", _range_text(c.range)),
+        )
+        for c in context.model.coordinates
+    )
+    return Table((say("Symbol"), say("Name"), say("Unit"), say("Meaning"), say("Range")), rows, (0, 0, 0, 1, 0))
+
+
+def _range_text(bounds: Range) -> str:
+    low, high = (f"{float(bound):.4g}".replace("-", "−") for bound in bounds)
+    return f"{low} … {high}"
+
+
+def _parameters(context: Context) -> Table:
+    rows = tuple(
+        (
+            (InlineMath(name_layout(p.name)),),
+            (InlineCode(p.name),),
+            say("{}", unit_text(p.unit)),
+            _default(p.value),
+            say("{}", text_of(p.description) or "–"),
+        )
+        for p in context.model.parameters
+    )
+    return Table((say("Symbol"), say("Name"), say("Unit"), say("Default"), say("Meaning")), rows, (0, 0, 0, 0, 1))
+
+
+def _default(value: Expression) -> Text:
+    if isinstance(value, Number):
+        return say("{}", rational_text(value.value))
+    return (InlineMath(expression_layout(value)),)
+
+
+def _energies(context: Context) -> list[Block]:
+    potential = expression_layout(context.model.potential_energy)
+    blocks: list[Block] = [
+        paragraph("The kinetic energy is quadratic in the rates:"),
+        Formula((equation(T, expression_layout(context.model.kinetic_energy)),), "T"),
+    ]
+    if potential == ZERO:
+        blocks.append(paragraph("There is no potential energy, {}.", equals(U, ZERO)))
+    else:
+        blocks += [paragraph("The potential energy is"), Formula((equation(U, potential),), "U")]
+    return blocks
+
+
+def _constraints(context: Context) -> list[Block]:
+    model = context.model
+    if not model.constraints:
+        return [paragraph("There are no constraints, {}: every velocity is admissible.", equals(small_r, ZERO))]
+    blocks: list[Block] = []
+    intros = {
+        "geometric": "Geometric constraints, paper (4), define the configuration space:",
+        "nonholonomic": "Constraints linear in the rates, paper (1), restrict the velocities:",
+    }
+    for kind, intro in intros.items():
+        rows = [row for row in model.constraints if row.kind == kind]
+        if rows:
+            equations = tuple(equation(expression_layout(row.expression), ZERO) for row in rows)
+            blocks += [paragraph(intro), Formula(equations, f"constraints_{kind}")]
+    names: list[InlineCode | str] = []
+    for row in model.constraints:
+        names += [", ", InlineCode(row.name)] if names else [InlineCode(row.name)]
+    pattern = "In the file they are called " + "{}" * len(names)
+    blocks.append(
+        paragraph(f"{pattern}; their order is that of the rows of {{}} and of the multipliers {{}}.", *names, B, lam)
+    )
+    return blocks
+
+
+def _inputs(context: Context) -> list[Block]:
+    model = context.model
+    if not model.inputs:
+        return [paragraph("There are no inputs, {}.", equals(small_m, ZERO))]
+    rows = tuple(
+        (
+            (InlineMath(name_layout(i.name)),),
+            (InlineCode(i.name),),
+            say("{}", unit_text(i.unit)),
+            say("{}", text_of(i.description) or "–"),
+            (InlineMath(_virtual_power(i)),),
+        )
+        for i in model.inputs
+    )
+    return [
+        paragraph(
+            "The {} inputs {} are given by their virtual power: the coefficient of a rate is the generalized force per "
+            "unit of the input.",
+            equals(small_m, number(model.m)),
+            u,
+        ),
+        Table((say("Symbol"), say("Name"), say("Unit"), say("Meaning"), say("Power per unit")), rows, (0, 0, 0, 1, 0)),
+    ]
+
+
+def _virtual_power(control: Input) -> Layout:
+    terms = []
+    for coordinate, coefficient in control.acts_on:
+        sign, factor = signed(expression_layout(coefficient))
+        rate = name_layout(f"{coordinate}_dot")
+        if factor == Numeral("1"):
+            terms.append((sign, rate))
+        elif isinstance(factor, Sum):
+            terms.append((sign, Product((rate, Fenced(factor)))))
+        else:
+            terms.append((sign, Product((rate, *(factor.factors if isinstance(factor, Product) else (factor,))))))
+    return Sum(tuple(terms)) if terms else ZERO
+
+
+def _applied_forces(context: Context) -> list[Block]:
+    forces = context.model.applied_forces
+    if not forces:
+        return []
+    equations = tuple(
+        equation(_component(name_layout(force.coordinate)), expression_layout(force.expression))
+        for force in forces
+    )
+    return [
+        paragraph("Further generalized forces {}, damping for example, stand on the right-hand side:", Qa),
+        Formula(equations),
+    ]
+
+
+def _component(index: Layout) -> Layout:
+    """The component of the applied force at a coordinate."""
+    return Scripts(Q, Row((Letter("a"), Punctuation(","), index)))
