@@ -22,7 +22,7 @@ PI = Fraction(314159265358979323846264338327950288419716939937510582097494459230
 class Scalar:
     """One node; compared by identity because equal nodes are the same object within a graph."""
 
-    __slots__ = ("args", "graph", "op", "payload", "serial")
+    __slots__ = ("args", "constant", "graph", "is_one", "is_zero", "op", "payload", "serial")
 
     def __init__(self, graph: Graph, serial: int, op: str, args: tuple[Scalar, ...], payload: object) -> None:
         self.graph = graph
@@ -30,21 +30,10 @@ class Scalar:
         self.op = op
         self.args = args
         self.payload = payload
-
-    @property
-    def constant(self) -> Fraction | None:
-        """The value of a constant node, else None."""
-        return self.payload if isinstance(self.payload, Fraction) and self.op == "const" else None
-
-    @property
-    def is_zero(self) -> bool:
-        """Whether the node is the constant 0."""
-        return self is self.graph.zero
-
-    @property
-    def is_one(self) -> bool:
-        """Whether the node is the constant 1."""
-        return self is self.graph.one
+        # the value of a constant node, else None
+        self.constant: Fraction | None = payload if op == "const" and type(payload) is Fraction else None
+        self.is_zero = self.constant is not None and self.constant == 0
+        self.is_one = self.constant is not None and self.constant == 1
 
     def __add__(self, other: Number) -> Scalar:
         return self.graph.add(self, self.graph.lift(other))

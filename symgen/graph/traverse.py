@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.graph.scalar import Graph, Scalar
 
 
-def topological(outputs: Iterable[Scalar]) -> list[Scalar]:
-    """Every node the outputs reach, depth first, operands before the node that uses them."""
+def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> list[Scalar]:
+    """Every node the outputs reach, depth first, operands before the node that uses them; `known` ones are left out."""
     order: list[Scalar] = []
-    seen: set[int] = set()
+    seen: set[Scalar] = set()
     for output in outputs:
-        stack = [(output, False)]
+        stack = [output]
         while stack:
-            node, expanded = stack.pop()
-            if expanded:
+            node = stack[-1]
+            if node in seen or node in known:
+                stack.pop()
+                continue
+            missing = [a for a in node.args if a not in seen and a not in known]
+            if missing:
+                stack.extend(reversed(missing))
+            else:
+                seen.add(node)
                 order.append(node)
-            elif node.serial not in seen:
-                seen.add(node.serial)
-                stack.append((node, True))
-                stack.extend((argument, False) for argument in reversed(node.args) if argument.serial not in seen)
+                stack.pop()
     return order
 
 

@@ -42,7 +42,8 @@ ARGUMENTS = {quantity.name: quantity.arguments for quantity in QUANTITIES}
 
 def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalar: Scalar) -> Program:
     """All quantities as kernels for one scalar type."""
-    kernels = tuple(_kernel(mechanics, derived, scalar) for derived in quantities)
+    limits = _Limits(mechanics, scalar)
+    kernels = tuple(_kernel(mechanics, derived, limits, scalar) for derived in quantities)
     return Program(scalar, sincos(scalar), kernels)
 
 
@@ -56,16 +57,26 @@ class _Test:
     first: tuple[_Test, ...]
 
 
-def _tests(mechanics: Mechanics, guards: Sequence[Guard], scalar: Scalar) -> list[_Test]:
-    graph = mechanics.graph
-    tests = []
-    for guard in sorted(guards, key=lambda g: ORDER.index(g.status)):
-        threshold = _threshold(mechanics, guard, scalar)
-        scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
-        size = guard.denominator if guard.degree == 2 else graph.function("abs", (guard.denominator,))
-        first = tuple(_tests(mechanics, guard.first, scalar))
-        tests.append(_Test(guard.status, size, graph.const(threshold) * scale, first))
-    return tests
+class _Limits:
+    """The tests of guards for one scalar type, each made once."""
+
+    def __init__(self, mechanics: Mechanics, scalar: Scalar) -> None:
+        self._mechanics, self._scalar = mechanics, scalar
+        self._known: dict[Guard, _Test] = {}
+
+    def tests(self, guards: Sequence[Guard]) -> list[_Test]:
+        """The tests in the order in which statuses are reported."""
+        return [self._test(guard) for guard in sorted(guards, key=lambda g: ORDER.index(g.status))]
+
+    def _test(self, guard: Guard) -> _Test:
+        if guard not in self._known:
+            graph = self._mechanics.graph
+            threshold = _threshold(self._mechanics, guard, self._scalar)
+            scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
+            size = guard.denominator if guard.degree == 2 else graph.function("abs", (guard.denominator,))
+            first = tuple(self.tests(guard.first))
+            self._known[guard] = _Test(guard.status, size, graph.const(threshold) * scale, first)
+        return self._known[guard]
 
 
 def _threshold(mechanics: Mechanics, guard: Guard, scalar: Scalar) -> Fraction:
@@ -79,8 +90,8 @@ def _threshold(mechanics: Mechanics, guard: Guard, scalar: Scalar) -> Fraction:
     return max(value, own) if own is not None else value
 
 
-def _kernel(mechanics: Mechanics, derived: Derived, scalar: Scalar) -> Kernel:
-    tests = _tests(mechanics, derived.guards, scalar)
+def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, scalar: Scalar) -> Kernel:
+    tests = limits.tests(derived.guards)
     roots = list(_roots(tests))
     shared = share_angles(mechanics.graph, [*derived.outputs, *roots])
     image = dict(zip(roots, shared[len(derived.outputs) :], strict=True))
@@ -176,8 +187,9 @@ class _Writer:
     def write(self, outputs: Sequence[Node]) -> list[Statement]:
         """The statements that are still missing for the outputs."""
         statements: list[Statement] = []
-        for node in topological(outputs):
+        for node in topological(outputs, self._written):
             if node in self._written or node.op in ("const", "symbol"):
+                # a pair writes both its values, so the second one may be known by now
                 continue
             if node.op in ("sin", "cos"):
                 statements.append(self._pair(node))

@@ -1,0 +1,61 @@
+"""derivation.json: structure, choices and operation counts, a function of the model and symgen's version alone.
+
+The counts are the baseline against which a change of symgen is held.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from symgen import __version__
+from symgen.derive.select import Derivations
+from symgen.derive.structure import Structure
+from symgen.emit.operations import count_operations
+from symgen.ir.kernel import Program
+from symgen.model.model import Model
+
+
+def derivation_json(model: Model, derivations: Derivations, structure: Structure, program: Program) -> str:
+    """The file's text; keys in a fixed order."""
+    generic = derivations.generic
+    ways = {choice.quantity: choice for choice in derivations.choices}
+    kernels: dict[str, Any] = {}
+    for kernel in program.kernels:
+        counts = count_operations(kernel.statements)
+        choice = ways[kernel.name]
+        kernels[kernel.name] = {
+            "shape": list(kernel.shape),
+            "way": choice.way,
+            "counted_cost": dict(choice.costs),
+            "operations": {
+                "add": counts.add,
+                "mul": counts.mul,
+                "div": counts.div,
+                "sqrt": counts.sqrt,
+                "sincos": counts.sincos,
+                "other": counts.other,
+            },
+            "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),
+        }
+    content = {
+        "symgen": __version__,
+        "model": model.name,
+        "model_sha256": model.text_hash,
+        "sizes": {
+            "n": generic.n,
+            "r": generic.r,
+            "rank": generic.rank,
+            "m": generic.m,
+            "delta_loc": generic.delta_loc,
+            "delta_diff": generic.delta,
+            "alpha": generic.alpha,
+        },
+        "actuation": structure.actuation,
+        "blocks": [{"rows": list(rows), "coordinates": list(columns)} for rows, columns in structure.blocks],
+        "dependent_rows": list(structure.dependent_rows),
+        "skipped": [{"what": d.what, "why": d.why} for d in structure.decisions],
+        "absent": [{"quantity": name, "why": why} for name, why in derivations.absent],
+        "kernels": kernels,
+    }
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
