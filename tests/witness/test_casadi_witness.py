@@ -1,0 +1,178 @@
+"""The CasADi witness against NumPy's pseudoinverses, difference quotients and laws that need no second derivation."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from symgen.model.load import load_model, load_text
+from symgen.model.model import Model
+from symgen.witness.casadi_derivation import witness_functions
+from symgen.witness.configurations import configurations
+from symgen.witness.lagrange import differentiate
+from symgen.witness.ranks import Ranks, generic_ranks
+from symgen.witness.translate import default_parameters
+
+MODELS = Path(__file__).parents[2] / "models"
+
+# A beam on three parallel cranks: six loop closures of rank five, whatever rows are chosen.
+CRANKS = """
+model: cranks
+coordinates: {a: {}, b: {}, c: {}, x: {}, y: {}, turn: {}}
+parameters: {l: 0.5, m: 2, J: 0.3, g: 9.81}
+kinetic_energy: m/2*(x_dot**2 + y_dot**2) + J/2*(turn_dot**2 + a_dot**2) + J/3*b_dot**2 + J/5*c_dot**2
+potential_energy: g*m*y
+constraints:
+  geometric:
+    ax: l*cos(a) - x
+    ay: l*sin(a) - y
+    bx: l*cos(b) + 1 - x - cos(turn)
+    by: l*sin(b) - y - sin(turn)
+    cx: l*cos(c) + 2 - x - 2*cos(turn)
+    cy: l*sin(c) - y - 2*sin(turn)
+inputs: {drive: {acts_on: {a: 1}}}
+configuration: {a: 1.5, b: 1.5, c: 1.5, x: 0.035, y: 0.499, turn: 0}
+outputs: all
+"""
+
+# Two inputs that pull in the same direction, three degrees of freedom.
+UNDER_ACTUATED = """
+model: under_actuated
+coordinates: {x: {}, y: {}, z: {}}
+kinetic_energy: x_dot**2 + (2 + cos(y))*y_dot**2 + z_dot**2 + x_dot*y_dot*sin(z)
+potential_energy: x*z
+inputs: {pull: {acts_on: {x: 1, y: cos(z)}}, push: {acts_on: {x: 2, y: 2*cos(z)}}}
+applied_forces: {x: -y*x_dot}
+outputs: all
+"""
+
+
+class Case:
+    """One model, its witness functions and an admissible state with arbitrary rates."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.functions = witness_functions(model)
+        self.parameters = default_parameters(model)
+        generator = np.random.default_rng(7)
+        self.q = next(configurations(model, differentiate(model), self.parameters, seed=3, trials=50))
+        self.qd, self.qdd = generator.normal(size=model.n), generator.normal(size=model.n)
+        self.u = generator.normal(size=model.m)
+
+    def __call__(self, name: str, **changed: Any) -> Any:
+        values = {"q": self.q, "qd": self.qd, "qdd": self.qdd, "u": self.u, "p": self.parameters} | changed
+        return self.functions[name](*(values[argument] for argument in self.functions[name].name_in())).full()
+
+
+@functools.cache
+def case(name: str) -> Case:
+    texts = {"cranks": CRANKS, "under_actuated": UNDER_ACTUATED}
+    return Case(load_text(texts[name], name) if name in texts else load_model(MODELS / f"{name}.yaml"))
+
+
+EVERY = [*sorted(path.stem for path in MODELS.glob("*.yaml")), "cranks", "under_actuated"]
+CONSTRAINED = [name for name in EVERY if name not in ("double_pendulum", "under_actuated")]
+
+
+@pytest.mark.parametrize(
+    ("name", "ranks"),
+    [
+        ("front_car", Ranks(2, 0, 2)),
+        ("rapkm_2rrr_rr", Ranks(4, 4, 2)),
+        ("slider_crank", Ranks(2, 2, 1)),
+        ("cranks", Ranks(5, 5, 1)),
+        ("under_actuated", Ranks(0, 0, 1)),
+    ],
+)
+def test_generic_ranks(name: str, ranks: Ranks) -> None:
+    assert generic_ranks(case(name).model, differentiate(case(name).model)) == ranks
+
+
+@pytest.mark.parametrize("name", CONSTRAINED)
+def test_projectors_are_numpys(name: str) -> None:
+    c = case(name)
+    B, N = c("constraint_jacobian"), c("nullspace_projector")
+    B_plus = np.linalg.pinv(B, rcond=1e-9)
+    assert c("constraint_pseudoinverse") == pytest.approx(B_plus, abs=1e-10)
+    assert N.tolist() == pytest.approx(np.eye(c.model.n) - B_plus @ B, abs=1e-10)
+    if c.model.inputs:
+        M_plus = np.linalg.pinv(N @ c("control_matrix"), rcond=1e-9)
+        assert c("projected_control_pseudoinverse") == pytest.approx(M_plus, rel=1e-8, abs=1e-10)
+
+
+@pytest.mark.parametrize("name", CONSTRAINED)
+def test_projector_rate_is_a_difference_quotient(name: str) -> None:
+    """Along an admissible velocity, on which Remark 9 and the derivative agree whatever the rank."""
+    c = case(name)
+    v, h = c("admissible_velocity").ravel(), 1e-6
+
+    def moved(step: float) -> Any:
+        q = c.q + step * v
+        return c("nullspace_projector", q=c("projected_configuration", q=q))
+
+    quotient = (moved(h) - moved(-h)) / (2 * h)
+    assert c("nullspace_projector_dot", qd=v) == pytest.approx(quotient, abs=1e-6 * (1 + np.linalg.norm(quotient)))
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_christoffel_matrix(name: str) -> None:
+    """Ġ − 2C is skew, and C q̇ is what the Lagrange equations leave at q̈ = 0."""
+    c, h = case(name), 1e-6
+    G_dot = (c("mass_matrix", q=c.q + h * c.qd) - c("mass_matrix", q=c.q - h * c.qd)) / (2 * h)
+    C = c("coriolis_matrix")
+    skew = G_dot - 2 * C
+    assert skew + skew.T == pytest.approx(np.zeros_like(C), abs=1e-6 * (1 + np.linalg.norm(G_dot)))
+    assert (C @ c.qd).tolist() == pytest.approx(c("coriolis_force").ravel(), rel=1e-12, abs=1e-12 * np.linalg.norm(C))
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_forward_dynamics_satisfies_the_equations_of_motion(name: str) -> None:
+    c = case(name)
+    qdd = c("forward_dynamics").ravel()
+    balance = c("mass_matrix") @ qdd + (c("coriolis_force") + c("potential_force") - c("applied_force")).ravel()
+    scale = 1 + np.linalg.norm(balance)
+    if c.model.inputs:
+        balance = balance - c("control_matrix") @ c.u
+    if c.model.constraints:
+        B, N = c("constraint_jacobian"), c("nullspace_projector")
+        multipliers = c("multipliers").ravel()
+        balance = balance + B.T @ multipliers
+        reachable = B @ np.linalg.pinv(B, rcond=1e-9)
+        assert B @ qdd == pytest.approx(-(reachable @ c("constraint_jacobian_dot") @ c.qd), abs=1e-9)
+        assert reachable @ multipliers == pytest.approx(multipliers, rel=1e-8)
+        assert c("weighted_nullspace_projector") @ N == pytest.approx(N, abs=1e-9)
+    assert balance == pytest.approx(np.zeros(c.model.n), abs=1e-9 * scale)
+
+
+@pytest.mark.parametrize("name", [name for name in EVERY if name != "double_pendulum"])
+def test_inverse_dynamics_returns_the_inputs_of_least_norm(name: str) -> None:
+    """An admissible motion under inputs u₀ needs M̃⁺M̃ u₀, and nothing is left over."""
+    c = case(name)
+    v = c("admissible_velocity").ravel()
+    qdd = c("forward_dynamics", qd=v).ravel()
+    expected = c("projected_control_pseudoinverse") @ c("projected_control_matrix") @ c.u
+    assert c("inverse_dynamics", qd=v, qdd=qdd).ravel() == pytest.approx(expected, rel=1e-7, abs=1e-7)
+    assert c("inverse_dynamics_residual", qd=v, qdd=qdd).ravel() == pytest.approx(np.zeros(c.model.n), abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["skate", "front_car", "rapkm_two_drives"])
+def test_actuator_equations_are_the_inverse_dynamics(name: str) -> None:
+    """Remark 10: WᵀGW ν̇ + bias = u along an admissible motion, ν̇ by a difference quotient of Mᵀ q̇."""
+    c, h = case(name), 1e-6
+    v = c("admissible_velocity").ravel()
+    qdd = c("forward_dynamics", qd=v).ravel()
+    moved = [c("actuator_velocity", q=c.q + s * v, qd=v + s * qdd).ravel() for s in (h, -h)]
+    rate = (moved[0] - moved[1]) / (2 * h)
+    left = c("actuator_mass_matrix") @ rate + c("actuator_bias", qd=v).ravel()
+    assert left == pytest.approx(c.u, rel=1e-5, abs=1e-5)
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_singularity_lies_between_zero_and_one(name: str) -> None:
+    values = case(name)("singularity").ravel()
+    assert np.all(values >= 0)
+    assert np.all(values <= 1 + 1e-12)
