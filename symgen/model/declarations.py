@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from symgen.diagnostics import Mistake
 from symgen.model.constants import range_of
 from symgen.model.expression import Expression, Number
 from symgen.model.model import AppliedForce, ConstraintRow, Definition, Input, Parameter, Range
-from symgen.model.names import did_you_mean
+from symgen.model.names import QUOTING, did_you_mean, is_name
 from symgen.model.parser import parse_expression
 from symgen.model.reading import description_of, entries, member, text_of
-from symgen.model.scope import CONFIGURATION, PARAMETERS, STATE, Scope
+from symgen.model.scope import CONFIGURATION, PARAMETERS, STATE, Kind, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 from symgen.model.walk import names_in
 
@@ -19,11 +20,12 @@ DeclaredRanges = dict[str, Range]
 
 def declare_names(scope: Scope, tree: MappingNode) -> None:
     """Enters every name of the file, so that each expression can be checked against all of them."""
-    for block, kind in (("coordinates", "coordinate"), ("parameters", "parameter"), ("definitions", "definition")):
+    blocks: tuple[tuple[str, Kind], ...] = (
+        ("coordinates", "coordinate"), ("parameters", "parameter"), ("definitions", "definition"), ("inputs", "input"),
+    )  # fmt: skip
+    for block, kind in blocks:
         for key, _ in entries(tree.get(block)):
-            scope.declare(key, kind)  # type: ignore[arg-type]
-    for key, _ in entries(tree.get("inputs")):
-        scope.declare(key, "input")
+            scope.declare(key, kind)
     for block in ("geometric", "nonholonomic"):
         for key, _ in entries(member(tree.get("constraints"), block)):
             if scope.declare(key, "constraint row"):
@@ -65,9 +67,7 @@ def read_parameters(scope: Scope, tree: MappingNode, ranges: DeclaredRanges) -> 
         # A faulty value stands in as 1, so that what uses the parameter is still checked.
         value = value or Number(Fraction(1))
         unit = text_of(member(node, "unit"))
-        parameters.append(
-            Parameter(key.value, unit, description_of(node), value, ranges.get(key.value), key.span)
-        )
+        parameters.append(Parameter(key.value, unit, description_of(node), value, ranges.get(key.value), key.span))
     return tuple(parameters)
 
 
@@ -135,12 +135,14 @@ def _is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:
         return True
     coordinates = [name for name, kind in scope.kinds.items() if kind == "coordinate"]
     remedy = did_you_mean(key.value, coordinates, "forces act on coordinates; name one of them")
+    if not is_name(key.value):
+        remedy = QUOTING
     scope.wrong(f"`{key.value}` in {where} is no coordinate", remedy, key.span)
     return False
 
 
 def _ordered(
-    scope: Scope, key: ScalarNode, node: Node | None, where: str, allowed: frozenset, known: list[str],
+    scope: Scope, key: ScalarNode, node: Node | None, where: str, allowed: frozenset[Kind], known: list[str],
     cycles: dict[str, str],
 ) -> Expression | None:  # fmt: skip
     if key.value in cycles:
@@ -156,8 +158,8 @@ def _cyclic(block: tuple[tuple[ScalarNode, Node], ...]) -> dict[str, str]:
     for key, node in block:
         scalar = node if isinstance(node, ScalarNode) else member(node, "value")
         parsed = parse_expression(scalar) if isinstance(scalar, ScalarNode) and scalar.value.strip() else None
-        if parsed is not None and not hasattr(parsed, "remedy"):
-            uses[key.value] = list(dict.fromkeys(name.name for name in names_in(parsed)))  # type: ignore[arg-type]
+        if parsed is not None and not isinstance(parsed, Mistake):
+            uses[key.value] = list(dict.fromkeys(name.name for name in names_in(parsed)))
     cycles: dict[str, str] = {}
     for start in uses:
         previous: dict[str, str] = {}

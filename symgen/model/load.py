@@ -8,7 +8,9 @@ from pathlib import Path
 from symgen.diagnostics import Mistake, ModelError, Span
 from symgen.model.model import Model
 from symgen.model.resolve import resolve
+from symgen.model.schema import MODEL
 from symgen.model.scope import Scope
+from symgen.model.shape import check_shape
 from symgen.model.source import read_tree
 
 
@@ -29,7 +31,7 @@ def load_text(text: str, file: str) -> Model:
     tree, mistakes = read_tree(text)
     if tree is None:
         raise ModelError(file, text, mistakes)
-    scope = Scope(mistakes=list(mistakes))
+    scope = Scope(mistakes=[*mistakes, *check_shape(MODEL, tree, "the model")])
     model = resolve(scope, tree, text)
     if scope.mistakes:
         raise ModelError(file, text, tuple(scope.mistakes))

@@ -11,10 +11,12 @@ from symgen.model.expression import FUNCTION_ARITY
 from symgen.model.source import ScalarNode
 
 MAXIMUM_NAME = 40
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
+NAME_PATTERN = "[A-Za-z][A-Za-z0-9_]*"
+QUOTING = "inside { } and [ ] quote an expression or text that has a comma, colon, bracket or #, or use block style"
+_NAME = re.compile(NAME_PATTERN, re.ASCII)
 
-_C = """auto break case char const continue default do double else enum extern float for goto if inline int long register
-restrict return short signed sizeof static struct switch typedef union unsigned void volatile while"""
+_C = """auto break case char const continue default do double else enum extern float for goto if inline int long
+register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while"""
 _CPP = """alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t class co_await co_return
 co_yield compl concept const_cast consteval constexpr constinit decltype delete dynamic_cast explicit export false
 friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public reinterpret_cast
@@ -33,16 +35,20 @@ RESERVED: dict[str, str] = {
 }
 
 
+def is_name(text: str) -> bool:
+    """Whether `text` has the form of a name, reserved or not."""
+    return _NAME.fullmatch(text) is not None
+
+
 def name_mistake(node: ScalarNode, what: str) -> Mistake | None:
     """What is wrong with `node` as a name of a `what` ("coordinate"); None for a good name."""
     name = node.value
     shown = name if len(name) <= MAXIMUM_NAME else name[:MAXIMUM_NAME] + "..."
     if not _NAME.fullmatch(name):
         message = f"`{shown}` is no name for a {what}"
-        if set(name) & set("()+*/, "):
-            remedy = "names are letters, digits and _; inside { } quote an expression that has a comma, or use block style"
-        else:
-            remedy = "names start with a letter and go on with letters a-z, A-Z, digits and _"
+        remedy = "names start with a letter and go on with letters a-z, A-Z, digits and _"
+        if set(name) & set("()[]+*, "):
+            remedy = QUOTING
         return Mistake(message, remedy, node.span)
     if len(name) > MAXIMUM_NAME:
         message = f"the name `{shown}` has {len(name)} characters, at most {MAXIMUM_NAME} are allowed"

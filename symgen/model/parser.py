@@ -24,8 +24,9 @@ from symgen.model.expression import (
     Pi,
     Power,
 )
+from symgen.model.names import QUOTING
 from symgen.model.source import ScalarNode
-from symgen.model.tokens import ExpressionMistake, Token, tokenize
+from symgen.model.tokens import ExpressionError, Token, tokenize
 
 MAXIMUM_LENGTH = 20_000
 MAXIMUM_TOKENS = 8_000
@@ -36,7 +37,7 @@ MAXIMUM_DECIMAL_EXPONENT = 300
 MAXIMUM_POWER = 64
 MAXIMUM_ROOT = 12
 SPLIT_REMEDY = "name parts of it under `definitions`"
-QUOTE_REMEDY = "balance the parentheses; inside { } and [ ] quote an expression that has a comma, or use block style"
+QUOTE_REMEDY = f"balance the parentheses; {QUOTING}"
 _PRECEDENCE = {"+": 1, "-": 1, "*": 2, "/": 2}
 
 
@@ -45,12 +46,12 @@ def parse_expression(node: ScalarNode) -> Expression | Mistake:
     text = node.value
     try:
         if not text.strip():
-            raise ExpressionMistake("an expression is missing", "write a number or an expression", 0)
+            raise ExpressionError("an expression is missing", "write a number or an expression", 0)
         if len(text) > MAXIMUM_LENGTH:
             message = f"an expression of {len(text)} characters, at most {MAXIMUM_LENGTH} are read"
-            raise ExpressionMistake(message, SPLIT_REMEDY, 0)
+            raise ExpressionError(message, SPLIT_REMEDY, 0)
         return _Parser(node, tokenize(text)).whole()
-    except ExpressionMistake as mistake:
+    except ExpressionError as mistake:
         return Mistake(mistake.message, mistake.remedy, node.place(mistake.offset, mistake.length))
 
 
@@ -60,7 +61,7 @@ class _Parser:
     def __init__(self, node: ScalarNode, tokens: list[Token]) -> None:
         if len(tokens) > MAXIMUM_TOKENS:
             message = f"an expression of {len(tokens)} words, at most {MAXIMUM_TOKENS} are read"
-            raise ExpressionMistake(message, SPLIT_REMEDY, 0)
+            raise ExpressionError(message, SPLIT_REMEDY, 0)
         self._node, self._tokens, self._next, self._nesting = node, tokens, 0, 0
 
     def whole(self) -> Expression:
@@ -135,10 +136,10 @@ class _Parser:
             component = self._tokens[self._next + 1].text
             message = f"`{token.text}.{component}` is a component of a point, and this version has no `points`"
             remedy = "write the position with coordinates and parameters"
-            raise ExpressionMistake(message, remedy, token.offset, len(token.text) + 1 + len(component))
+            raise ExpressionError(message, remedy, token.offset, len(token.text) + 1 + len(component))
         if token.text in FUNCTION_ARITY:
             message = f"the function `{token.text}` has no argument"
-            raise ExpressionMistake(message, f"write `{token.text}(...)`", token.offset, len(token.text))
+            raise ExpressionError(message, f"write `{token.text}(...)`", token.offset, len(token.text))
         if token.text == "pi":
             return Pi(self._span(token)), 1
         return Name(token.text, self._span(token)), 1
@@ -159,7 +160,7 @@ class _Parser:
             takes = "one argument" if arity == 1 else f"{arity} arguments"
             message = f"`{name.text}` takes {takes}, here are {len(arguments)}"
             remedy = "a decimal point is `.`, never a comma" if arity == 1 else "write `atan2(y, x)`"
-            raise ExpressionMistake(message, remedy, name.offset, len(name.text))
+            raise ExpressionError(message, remedy, name.offset, len(name.text))
         height = self._checked(max(height for _, height in arguments) + 1, name)
         return Call(cast(FunctionName, name.text), tuple(tree for tree, _ in arguments), self._span(name)), height
 
@@ -167,13 +168,13 @@ class _Parser:
         self._nesting += 1
         if self._nesting > MAXIMUM_NESTING:
             message = f"parentheses, signs or powers nested deeper than {MAXIMUM_NESTING} levels"
-            raise ExpressionMistake(message, SPLIT_REMEDY, token.offset)
+            raise ExpressionError(message, SPLIT_REMEDY, token.offset)
 
     def _close(self, opening: Token) -> None:
         token = self._tokens[self._next]
         if token.text != ")":
             if token.kind == "end":
-                raise ExpressionMistake("this parenthesis is never closed", QUOTE_REMEDY, opening.offset)
+                raise ExpressionError("this parenthesis is never closed", QUOTE_REMEDY, opening.offset)
             raise self._unexpected(token)
         self._next += 1
         self._nesting -= 1
@@ -181,53 +182,53 @@ class _Parser:
     def _checked(self, height: int, token: Token) -> int:
         if height > MAXIMUM_HEIGHT:
             message = f"an expression of more than {MAXIMUM_HEIGHT} terms in a row or levels"
-            raise ExpressionMistake(message, SPLIT_REMEDY, token.offset)
+            raise ExpressionError(message, SPLIT_REMEDY, token.offset)
         return height
 
     def _span(self, start: Token) -> Span:
         last = self._tokens[self._next - 1]
         return self._node.place(start.offset, last.offset + len(last.text) - start.offset)
 
-    def _unexpected(self, token: Token) -> ExpressionMistake:
+    def _unexpected(self, token: Token) -> ExpressionError:
         previous = self._tokens[self._next - 1] if self._next else None
         offset, length = token.offset, max(1, len(token.text))
         if token.kind == "end":
-            return ExpressionMistake("the expression ends too early", QUOTE_REMEDY, max(0, offset - 1))
+            return ExpressionError("the expression ends too early", QUOTE_REMEDY, max(0, offset - 1))
         if token.text == ")":
             empty = previous is not None and previous.text == "("
             message = "there is nothing between these parentheses" if empty else "a `)` without `(`"
-            return ExpressionMistake(message, QUOTE_REMEDY, offset)
+            return ExpressionError(message, QUOTE_REMEDY, offset)
         if token.text == ",":
             return self._comma(token, previous)
         if token.text == "//":
-            return ExpressionMistake("`//` is no operator", "write `/`", offset, 2)
+            return ExpressionError("`//` is no operator", "write `/`", offset, 2)
         if token.kind in ("number", "name") or token.text == "(":
             message = f"an operator is missing before `{token.text}`"
-            return ExpressionMistake(message, "write `*` for a product", offset, length)
-        return ExpressionMistake(f"`{token.text}` is not expected here", "a number, name or `(` belongs here",
+            return ExpressionError(message, "write `*` for a product", offset, length)
+        return ExpressionError(f"`{token.text}` is not expected here", "a number, name or `(` belongs here",
                                  offset, length)  # fmt: skip
 
-    def _comma(self, token: Token, previous: Token | None) -> ExpressionMistake:
+    def _comma(self, token: Token, previous: Token | None) -> ExpressionError:
         following = self._tokens[self._next + 1]
         if previous is not None and previous.kind == "number" and following.kind == "number":
             shown = f"{previous.text},{following.text}"
             remedy = f"write `{previous.text}.{following.text}`"
-            return ExpressionMistake(f"`{shown}` has a decimal comma", remedy, previous.offset, len(shown))
-        return ExpressionMistake("a comma outside the arguments of a function", QUOTE_REMEDY, token.offset)
+            return ExpressionError(f"`{shown}` has a decimal comma", remedy, previous.offset, len(shown))
+        return ExpressionError("a comma outside the arguments of a function", QUOTE_REMEDY, token.offset)
 
 
-def _unknown_function(name: Token) -> ExpressionMistake:
+def _unknown_function(name: Token) -> ExpressionError:
     near = difflib.get_close_matches(name.text, FUNCTION_ARITY, 1)
     known = ", ".join(FUNCTION_ARITY)
     remedy = f"did you mean `{near[0]}`?" if near else f"the functions are {known}; write `*` for a product"
-    return ExpressionMistake(f"`{name.text}` is no function of the language", remedy, name.offset, len(name.text))
+    return ExpressionError(f"`{name.text}` is no function of the language", remedy, name.offset, len(name.text))
 
 
 def _number(token: Token) -> Fraction:
     mantissa, _, exponent = token.text.lower().partition("e")
     if len(mantissa) > MAXIMUM_DIGITS or len(exponent) > 5 or abs(int(exponent or 0)) > MAXIMUM_DECIMAL_EXPONENT:
         message = f"a number of more than {MAXIMUM_DIGITS} digits or beyond 1e{MAXIMUM_DECIMAL_EXPONENT}"
-        raise ExpressionMistake(message, "choose units in which the number is readable", token.offset, len(token.text))
+        raise ExpressionError(message, "choose units in which the number is readable", token.offset, len(token.text))
     return Fraction(token.text)
 
 
@@ -237,13 +238,13 @@ def _exponent(tree: Expression, token: Token) -> Fraction:
     except (ValueError, ZeroDivisionError):
         message = "the exponent is not a constant rational number"
         remedy = "write exponents as 2, -1, 1/2; other powers as exp(y*log(x))"
-        raise ExpressionMistake(message, remedy, token.offset, len(token.text)) from None
+        raise ExpressionError(message, remedy, token.offset, len(token.text)) from None
     except OverflowError:
         value = Fraction(MAXIMUM_POWER + 1)
     if abs(value.numerator) > MAXIMUM_POWER or value.denominator > MAXIMUM_ROOT:
         message = f"the exponent is too large: at most {MAXIMUM_POWER}, as a fraction with denominator at most "
         message += f"{MAXIMUM_ROOT}"
-        raise ExpressionMistake(message, "use a smaller exponent", token.offset, len(token.text))
+        raise ExpressionError(message, "use a smaller exponent", token.offset, len(token.text))
     return value
 
 

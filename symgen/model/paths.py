@@ -9,9 +9,10 @@ from symgen.model.expression import Expression, Number
 from symgen.model.model import Definition, Path
 from symgen.model.names import did_you_mean, name_mistake
 from symgen.model.reading import description_of, entries, member
-from symgen.model.scope import CONFIGURATION, Scope
+from symgen.model.scope import PATH_CONDITION, PATH_DEFINITION, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 
+DEFAULT_SAMPLES = 201
 MAXIMUM_SAMPLES = 100_000
 
 
@@ -31,14 +32,14 @@ def read_paths(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...]) ->
 def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...]) -> Path | None:
     name = key.value
     duration = constant(scope, member(node, "duration"), f"the duration of path `{name}`")
-    samples = whole_number(scope, member(node, "samples"), f"the number of samples of path `{name}`", 2, MAXIMUM_SAMPLES)
+    count = member(node, "samples")
+    samples = whole_number(scope, count, f"the number of samples of path `{name}`", 2, MAXIMUM_SAMPLES)
     if duration is not None and duration <= 0:
         scope.wrong(f"the duration of path `{name}` is not positive", "write a time in seconds", node.span)
     local = Scope({**scope.kinds, "t": "time"}, scope.spans, scope.rate_definitions, scope.used, scope.mistakes)
     definitions: list[Definition] = []
     for symbol, value in entries(member(node, "definitions")):
-        allowed = frozenset({"time", "parameter", "symbol"})
-        expression = local.expression(value, f"`{symbol.value}` of path `{name}`", allowed)
+        expression = local.expression(value, f"`{symbol.value}` of path `{name}`", PATH_DEFINITION)
         if local.declare(symbol, "symbol"):
             definitions.append(Definition(symbol.value, expression or Number(Fraction(1)), symbol.span))
     conditions: list[tuple[str, Expression]] = []
@@ -46,8 +47,8 @@ def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...
         mistake = name_mistake(condition, "condition")
         if mistake is not None:
             scope.mistakes.append(mistake)
-        allowed = CONFIGURATION | {"time", "symbol"}
-        expression = local.expression(value, f"the condition `{condition.value}` of path `{name}`", allowed)
+        label = f"the condition `{condition.value}` of path `{name}`"
+        expression = local.expression(value, label, PATH_CONDITION)
         if expression is not None:
             conditions.append((condition.value, expression))
     start: list[tuple[str, Fraction]] = []
@@ -59,7 +60,7 @@ def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...
         number = constant(scope, value, f"the start value of `{coordinate.value}`")
         if number is not None:
             start.append((coordinate.value, number))
-    if duration is None or samples is None:
+    if duration is None or (samples is None and count is not None):
         return None
-    description = description_of(node)
+    description, samples = description_of(node), samples or DEFAULT_SAMPLES
     return Path(name, description, duration, samples, tuple(definitions), tuple(conditions), tuple(start), key.span)

@@ -35,15 +35,15 @@ def _formula(scope: Scope, node: Node, coordinates: tuple[str, ...]) -> Publishe
         return _singular_set(local, node, equation, where, coordinates)
     if member(node, "equations") is not None:
         equations = _equations(local, member(node, "equations"), where)
-        corrected = _equations(local, member(node, "corrected"), where)
-        return PublishedEquations(equation, equations, corrected, tuple(symbols), node.span)
-    value = _matrix(local, member(node, "value"), where)
+        right_ones = _equations(local, member(node, "corrected"), where)
+        return PublishedEquations(equation, equations, right_ones, tuple(symbols), node.span)
+    matrix = _matrix(local, member(node, "value"), where)
     quantity = _quantity(local, member(node, "quantity"), where)
-    if value is None or quantity is None:
+    if matrix is None or quantity is None:
         return None
     corrected_value = _matrix(local, member(node, "corrected"), where)
     chosen = _independent(local, member(node, "independent"), where, coordinates)
-    return PublishedMatrix(equation, quantity, value, corrected_value, tuple(symbols), chosen, node.span)
+    return PublishedMatrix(equation, quantity, matrix, corrected_value, tuple(symbols), chosen, node.span)
 
 
 def _singular_set(

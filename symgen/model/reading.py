@@ -28,5 +28,5 @@ def text_of(node: Node | None) -> str | None:
 
 
 def description_of(node: Node | None) -> str:
-    """The text under `description`, or nothing."""
-    return text_of(member(node, "description")) or ""
+    """The text under `description` on one line, or nothing."""
+    return " ".join((text_of(member(node, "description")) or "").split())

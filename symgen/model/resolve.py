@@ -25,7 +25,7 @@ from symgen.model.paths import read_paths
 from symgen.model.published import read_published
 from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
 from symgen.model.reading import entries, items, member, text_of
-from symgen.model.scope import CONFIGURATION, STATE, Scope
+from symgen.model.scope import CONFIGURATION, STATE, Kind, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 
 ZERO = Number(Fraction(0))
@@ -87,22 +87,19 @@ def _model_name(scope: Scope, tree: MappingNode) -> str:
     return node.value
 
 
-def _energy(scope: Scope, tree: MappingNode, key: str, allowed: frozenset) -> Expression:
+def _energy(scope: Scope, tree: MappingNode, key: str, allowed: frozenset[Kind]) -> Expression:
     return scope.expression(tree.get(key), f"the {key.replace('_', ' ')}", allowed) or ZERO
 
 
 def _outputs(scope: Scope, node: Node | None, has_inputs: bool) -> tuple[str, ...]:
     requested = (node,) if isinstance(node, ScalarNode) else items(node)
-    known = ["all", *(quantity.name for quantity in QUANTITIES)]
+    known = {"all", *(quantity.name for quantity in QUANTITIES)}
     outputs: list[str] = []
     for item in requested:
         name = text_of(item)
         if name in POINT_QUANTITIES:
             scope.notices.append(Notice(f"`{name}` is not made: this model has no named points", item.span))
-        elif name is not None and name not in known:
-            remedy = did_you_mean(name, known, "`symgen explain` lists the quantities of a model")
-            scope.wrong(f"`{name}` is no quantity", remedy, item.span)
-        elif name is not None and name not in outputs:
+        elif name in known and name not in outputs:
             outputs.append(name)
     if "all" in outputs:
         return ("all",)

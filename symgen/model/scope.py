@@ -22,6 +22,8 @@ CONSTANT: frozenset[Kind] = frozenset()
 PARAMETERS: frozenset[Kind] = frozenset({"parameter"})
 CONFIGURATION: frozenset[Kind] = frozenset({"coordinate", "parameter", "definition"})
 STATE: frozenset[Kind] = CONFIGURATION | {"rate"}
+PATH_DEFINITION: frozenset[Kind] = frozenset({"time", "parameter", "symbol"})
+PATH_CONDITION: frozenset[Kind] = CONFIGURATION | {"time", "symbol"}
 MOTION: frozenset[Kind] = STATE | {"acceleration", "input", "multiplier", "symbol"}
 
 _REMEDIES: dict[Kind, str] = {
@@ -109,8 +111,6 @@ class Scope:
             self.wrong(f"{where} uses `{name}`, which is declared later", "declare it before its first use", span)
             return False
         if name in self.rate_definitions and "rate" not in allowed:
-            self.wrong(
-                f"`{name}` contains rates, which {where} must not contain", _REMEDIES["rate"], span
-            )
+            self.wrong(f"`{name}` contains rates, which {where} must not contain", _REMEDIES["rate"], span)
             return False
         return True

@@ -85,20 +85,21 @@ def read_tree(text: str) -> tuple[MappingNode | None, tuple[Mistake, ...]]:
     mistakes: list[Mistake] = []
     try:
         root = _build(text, yaml.parse(text, Loader=_EventLoader), mistakes)
-    except _Refused as refused:
+    except _RefusedError as refused:
         return None, (refused.mistake,)
     except yaml.YAMLError:
         return None, (_syntax_mistake(text),)
     if root is None:
-        return None, (Mistake("the file is empty", "write a model; a minimal one has `model`, `coordinates`, "
-                              "`kinetic_energy`"),)
+        return None, (
+            Mistake("the file is empty", "write a model; a minimal one has `model`, `coordinates`, `kinetic_energy`"),
+        )
     if not isinstance(root, MappingNode):
         message = "a model file is a mapping of names to values"
         return None, (Mistake(message, "start with `model: name_of_the_model`", root.span),)
     return root, tuple(mistakes)
 
 
-class _Refused(Exception):
+class _RefusedError(Exception):
     def __init__(self, message: str, remedy: str, span: Span) -> None:
         self.mistake = Mistake(message, remedy, span)
 
@@ -111,9 +112,9 @@ def _build(text: str, events: Iterator[yaml.Event], mistakes: list[Mistake]) -> 
         node: Node | None = None
         match event:
             case yaml.DocumentStartEvent() if root is not None:
-                raise _Refused("a second document begins here", "keep one model per file", _span(event))
+                raise _RefusedError("a second document begins here", "keep one model per file", _span(event))
             case yaml.AliasEvent():
-                raise _Refused(f"YAML aliases are not read: `*{event.anchor}`", PLAIN_REMEDY, _span(event))
+                raise _RefusedError(f"YAML aliases are not read: `*{event.anchor}`", PLAIN_REMEDY, _span(event))
             case yaml.ScalarEvent():
                 _refuse_decoration(event)
                 node = _scalar(text, event)
@@ -122,14 +123,14 @@ def _build(text: str, events: Iterator[yaml.Event], mistakes: list[Mistake]) -> 
                 mapping = isinstance(event, yaml.MappingStartEvent)
                 open_collections.append(_Open(mapping, bool(event.flow_style), _span(event), []))
                 if len(open_collections) > MAXIMUM_DEPTH:
-                    raise _Refused(f"nested deeper than {MAXIMUM_DEPTH} levels", "flatten the file", _span(event))
+                    raise _RefusedError(f"nested deeper than {MAXIMUM_DEPTH} levels", "flatten the file", _span(event))
             case yaml.MappingEndEvent() | yaml.SequenceEndEvent():
                 node = _close(open_collections.pop(), mistakes)
             case _:
                 continue
         nodes += 1
         if nodes > MAXIMUM_NODES:
-            raise _Refused(f"more than {MAXIMUM_NODES} values", "split the model", _span(event))
+            raise _RefusedError(f"more than {MAXIMUM_NODES} values", "split the model", _span(event))
         if node is not None and open_collections:
             _append(open_collections[-1], node)
         elif node is not None:
@@ -140,9 +141,11 @@ def _build(text: str, events: Iterator[yaml.Event], mistakes: list[Mistake]) -> 
 def _append(collection: _Open, node: Node) -> None:
     if collection.mapping and len(collection.items) % 2 == 0:
         if not isinstance(node, ScalarNode):
-            raise _Refused("a key that is a list or a mapping", "use a plain name as key, or quote the text", node.span)
+            raise _RefusedError(
+                "a key that is a list or a mapping", "use a plain name as key, or quote the text", node.span
+            )
         if node.value == "<<" and not node.quoted:
-            raise _Refused("YAML merge keys are not read", PLAIN_REMEDY, node.span)
+            raise _RefusedError("YAML merge keys are not read", PLAIN_REMEDY, node.span)
     collection.items.append(node)
 
 
@@ -162,23 +165,28 @@ def _close(collection: _Open, mistakes: list[Mistake]) -> Node:
     return MappingNode(tuple(entries), collection.span, collection.flow)
 
 
-def _refuse_decoration(event: yaml.NodeEvent) -> None:
+def _refuse_decoration(event: yaml.ScalarEvent | yaml.CollectionStartEvent) -> None:
     if event.anchor is not None:
-        raise _Refused(f"YAML anchors are not read: `&{event.anchor}`", PLAIN_REMEDY, _span(event))
+        raise _RefusedError(f"YAML anchors are not read: `&{event.anchor}`", PLAIN_REMEDY, _span(event))
     if event.tag is not None:
-        raise _Refused(f"YAML tags are not read: `{event.tag}`", "remove it; symgen knows what each value is",
-                       _span(event))
+        remedy = "remove it; symgen knows what each value is"
+        raise _RefusedError(f"YAML tags are not read: `{event.tag}`", remedy, _span(event))
 
 
 def _scalar(text: str, event: yaml.ScalarEvent) -> ScalarNode:
+    assert event.start_mark is not None
+    assert event.end_mark is not None
     raw = text[event.start_mark.index : event.end_mark.index]
     return ScalarNode(event.value, _span(event), raw, event.style is not None)
 
 
 def _span(event: yaml.Event) -> Span:
+    """The event's place, up to the end of its first line's part that matters: one character at least."""
     start, end = event.start_mark, event.end_mark
-    last = end.column if end.line == start.line else start.column + 1
-    return Span(start.line + 1, start.column + 1, max(last, start.column + 1) + 1 if last == start.column else last + 1)
+    assert start is not None
+    assert end is not None
+    first, last = start.column + 1, end.column + 1
+    return Span(start.line + 1, first, max(first + 1, last) if end.line == start.line else first + 1)
 
 
 def _raw_offset(raw: str, value: str, offset: int) -> int:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 import unicodedata
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias, cast
 
-TokenKind = Literal["number", "name", "operator", "end"]
+TokenKind: TypeAlias = Literal["number", "name", "operator", "end"]
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
@@ -41,7 +41,7 @@ class Token:
     offset: int
 
 
-class ExpressionMistake(Exception):
+class ExpressionError(Exception):
     """What is wrong with an expression, at which characters of its text, and what to do."""
 
     def __init__(self, message: str, remedy: str, offset: int, length: int = 1) -> None:
@@ -50,7 +50,7 @@ class ExpressionMistake(Exception):
 
 
 def tokenize(text: str) -> list[Token]:
-    """The tokens of `text`, closed by one of kind "end"; raises ExpressionMistake."""
+    """The tokens of `text`, closed by one of kind "end"; raises ExpressionError."""
     tokens: list[Token] = []
     position = 0
     while True:
@@ -60,35 +60,35 @@ def tokenize(text: str) -> list[Token]:
                 position += 1
             raise _foreign(text, position)
         kind = match.lastgroup
-        assert kind in ("number", "name", "operator", "end")
+        assert kind is not None
         offset = match.start(kind)
-        tokens.append(Token(kind, match.group(kind), offset))
+        tokens.append(Token(cast(TokenKind, kind), match.group(kind), offset))
         if kind == "end":
             return tokens
         position = match.end()
         if kind == "number" and text[position : position + 1].isidentifier():
             shown = match.group(kind)
-            raise ExpressionMistake(
+            raise ExpressionError(
                 f"an operator is missing after {shown}", f"write `{shown}*...`", offset, len(shown) + 1
             )
 
 
-def _foreign(text: str, position: int) -> ExpressionMistake:
+def _foreign(text: str, position: int) -> ExpressionError:
     character = text[position]
     if character in _LOOKALIKES:
         name = unicodedata.name(character).lower()
-        return ExpressionMistake(
+        return ExpressionError(
             f"the character {character!r} ({name}) is not read", f"write `{_LOOKALIKES[character]}`", position
         )
     if character in _OPERATORS_ELSEWHERE:
-        return ExpressionMistake(*_OPERATORS_ELSEWHERE[character], position)
+        return ExpressionError(*_OPERATORS_ELSEWHERE[character], position)
     if character.isascii():
-        return ExpressionMistake(
+        return ExpressionError(
             f"the character {character!r} is not part of the language", "use + - * / **, parentheses, names, numbers",
             position,
         )  # fmt: skip
     name = unicodedata.name(character, f"code {ord(character):#x}").lower()
-    return ExpressionMistake(
+    return ExpressionError(
         f"the character {character!r} ({name}) is not read", "spell names with the letters a-z, A-Z, digits and _",
         position,
     )  # fmt: skip

@@ -1,0 +1,194 @@
+"""The model file: which blocks there are, what each holds and what it is for."""
+
+from __future__ import annotations
+
+from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
+from symgen.model.shape import (
+    Either,
+    Field,
+    Formula,
+    JsonSchema,
+    Listing,
+    Record,
+    Table,
+    Text,
+    Variants,
+    Word,
+    json_schema_of,
+)
+
+_RANGE = Listing(Formula(), 2, 2)
+_UNIT = Field("unit", Text(), "SI unit such as m, kg*m**2, N*m, rad; a declaration, nothing is converted")
+_DESCRIPTION = Field("description", Text(), "what it is, in a few words; stands in headers and reports")
+_MATRIX = Listing(Either((Formula(), Listing(Formula(), 1))), 1)
+_NAMES = Listing(Word())
+_OUTPUT = Word(("all", *(quantity.name for quantity in QUANTITIES), *POINT_QUANTITIES))
+_EQUATION = Field("equation", Text(), 'its number where it was printed, such as "(44)"', required=True)
+_QUANTITY = Field("quantity", Word(), "name of a quantity, as in `outputs`", required=True)
+_INDEPENDENT = Field("independent", _NAMES, "the independent velocities the formula is for")
+_WHERE = Field("where", Table(Formula()), "symbols of this formula only")
+_BOTH_SIDES = Listing(
+    Record(
+        "an equation",
+        (
+            Field("left", Formula(), "left-hand side", required=True),
+            Field("right", Formula(), "right-hand side", required=True),
+        ),
+    ),
+    1,
+)
+
+_COORDINATE = Record(
+    "a coordinate", (_UNIT, _DESCRIPTION, Field("range", _RANGE, "[lower, upper], where states are sampled"))
+)
+_PARAMETER = Record(
+    "a parameter",
+    (
+        Field("value", Formula(), "default: a number or an expression of earlier parameters", required=True),
+        _UNIT,
+        _DESCRIPTION,
+        Field("range", _RANGE, "[lower, upper] of sensible values"),
+    ),
+)
+_INPUT = Record(
+    "an input",
+    (
+        _UNIT,
+        _DESCRIPTION,
+        Field("acts_on", Table(Formula(), 1), "coordinate: coefficient of the input in its equation", required=True),
+    ),
+    later=("joint", "point", "direction", "axes"),
+)
+_PUBLISHED = Variants(
+    (
+        (
+            "singular_set",
+            Record(
+                "a published singular set",
+                (
+                    _EQUATION,
+                    Field(
+                        "singular_set",
+                        Record(
+                            "`singular_set`",
+                            (
+                                _QUANTITY,
+                                _INDEPENDENT,
+                                Field(
+                                    "where_zero", Formula(), "expression that is zero on the printed set", required=True
+                                ),
+                                Field("corrected", Formula(), "expression that is zero on the right set"),
+                            ),
+                        ),
+                        "where a quantity does not exist, as printed",
+                        required=True,
+                    ),
+                ),
+            ),
+        ),
+        (
+            "equations",
+            Record(
+                "published equations",
+                (
+                    _EQUATION,
+                    Field("equations", _BOTH_SIDES, "as printed", required=True),
+                    Field("corrected", _BOTH_SIDES, "the right equations, where the print is wrong"),
+                    _WHERE,
+                ),
+            ),
+        ),
+        (
+            "value",
+            Record(
+                "a published formula",
+                (
+                    _EQUATION,
+                    _QUANTITY,
+                    Field("value", _MATRIX, "rows of entries as printed; a flat list is a column", required=True),
+                    Field("corrected", _MATRIX, "the right value, where the print is wrong"),
+                    _WHERE,
+                    _INDEPENDENT,
+                ),
+            ),
+        ),
+    )
+)
+_PATH = Record(
+    "a path",
+    (
+        _DESCRIPTION,
+        Field("duration", Formula(), "length in seconds; t runs from 0 to it", required=True),
+        Field("samples", Formula(), "number of points in charts and tests, 201 if absent"),
+        Field("definitions", Table(Formula()), "named expressions of t and parameters"),
+        Field("conditions", Table(Formula(), 1), "expressions of q, t, parameters, = 0", required=True),
+        Field("start", Table(Formula()), "where Newton's method begins at t = 0"),
+    ),
+)
+
+MODEL = Record(
+    "the model",
+    (
+        Field("model", Word(), "its name, a C identifier; becomes file name and function prefix", required=True),
+        Field("description", Text(), "what the system is, in a sentence"),
+        Field("source", Text(), "where it is taken from"),
+        Field(
+            "coordinates",
+            Table(_COORDINATE, 1, entries_may_be_empty=True),
+            "the generalized coordinates, in the order of q; the rate of x is x_dot",
+            required=True,
+        ),
+        Field("parameters", Table(Either((Formula(), _PARAMETER))), "run-time parameters of the kernels"),
+        Field("definitions", Table(Formula()), "named sub-expressions, in order of use"),
+        Field("kinetic_energy", Formula(), "T, quadratic in the rates", required=True),
+        Field("potential_energy", Formula(), "U of coordinates and parameters; absent: 0"),
+        Field(
+            "constraints",
+            Record(
+                "`constraints`",
+                (
+                    Field("geometric", Table(Formula()), "g(q) = 0, one row each"),
+                    Field("nonholonomic", Table(Formula()), "linear in the rates, = 0, one row each"),
+                ),
+            ),
+            "constraint rows by name",
+        ),
+        Field("inputs", Table(_INPUT), "control forces: the columns of the control matrix"),
+        Field("applied_forces", Table(Formula()), "coordinate: further generalized force of q, rates, parameters"),
+        Field(
+            "outputs",
+            Either((_OUTPUT, Listing(_OUTPUT))),
+            "quantities to generate, or all",
+        ),
+        Field("independent_velocities", _NAMES, "coordinates whose rates serve in F and the minimal form"),
+        Field("configuration", Table(Formula()), "a start for Newton's method: the assembly mode"),
+        Field("ranges", Table(_RANGE), "[lower, upper] of coordinates, rates, accelerations, parameters"),
+        Field(
+            "tolerances",
+            Record(
+                "`tolerances`",
+                (
+                    Field("constraint_rank", Formula(), "relative threshold of status 2"),
+                    Field("actuation_rank", Formula(), "relative threshold of status 3"),
+                ),
+            ),
+            "thresholds on denominators",
+        ),
+        Field("published", Listing(_PUBLISHED), "formulas as printed somewhere, to be decided for this model"),
+        Field("paths", Table(_PATH), "trajectories as functions of t, for charts and tests"),
+        Field("report", Word(("full", "short")), "length of the report"),
+    ),
+    later=(
+        "gravity", "frames", "bodies", "rotor_inertias", "points", "joints", "loops", "springs", "rolling", "friction",
+        "urdf", "allocation", "trig_range",
+    ),
+)  # fmt: skip
+
+
+def json_schema() -> JsonSchema:
+    """The JSON Schema of a model file, for editors."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "symgen model",
+        **json_schema_of(MODEL),
+    }
