@@ -51,6 +51,11 @@ class Exact:
         """The ring of all entries."""
         return self.mechanics.ring
 
+    @property
+    def full_actuation(self) -> bool:
+        """Whether the degree of actuation is the differential degree of freedom."""
+        return self.structure.degree_of_actuation == self.delta
+
     @cached_property
     def rows(self) -> Rows:
         """B with rows freed of denominators and common factors."""
@@ -165,6 +170,17 @@ class Exact:
         self._admit(sum(len(v) ** 2 for v in values), "the sum of squares of the actuation determinants")
         return square_sum(self.ring, values)
 
+    def control_pseudoinverse_work(self) -> int:
+        """Products of terms in the numerators of M~^+ (for full actuation)."""
+        if self.structure.degree_of_actuation < self.delta:
+            return self.projector_work() * self.model.m
+        return sum(
+            len(actuation.determinants[j]) * sum(len(e) for e in actuation.vectors[rest])
+            for actuation in self.actuations
+            for k in range(self.model.m)
+            for _, j, rest in left_inverse_terms(actuation, k)
+        )
+
     @cached_property
     def control_pseudoinverse(self) -> Matrix:
         """M~^+: by minors for full actuation, by a rank factorisation of N_B M otherwise."""
@@ -172,13 +188,7 @@ class Exact:
             return self._underactuated_pseudoinverse()
         scale = polynomial(self.ring, self.control_scale)
         rows = []
-        work = sum(
-            len(actuation.determinants[j]) * sum(len(e) for e in actuation.vectors[rest])
-            for actuation in self.actuations
-            for k in range(self.model.m)
-            for _, j, rest in left_inverse_terms(actuation, k)
-        )
-        self._admit(work, "the pseudoinverse of the projected control matrix")
+        self._admit(self.control_pseudoinverse_work(), "the pseudoinverse of the projected control matrix")
         for k in range(self.model.m):
             row = []
             for a in range(self.model.n):
@@ -249,16 +259,16 @@ class Exact:
         """tau = G qdd + C qd + Q - Q_a."""
         return load(self.model, self.mechanics)
 
+    def inverse_dynamics_work(self) -> int:
+        """Products of terms in the numerators of u."""
+        longest = max((len(tau.numerator) for (tau,) in self.load), default=0)
+        return self.control_pseudoinverse_work() * longest
+
     @cached_property
     def inverse_dynamics(self) -> Matrix:
         """u = M~^+ tau (27)."""
+        self._admit(self.inverse_dynamics_work() * 4, "u")
         left = self.control_pseudoinverse
-        work = sum(
-            len(entry.numerator) * len(tau.numerator)
-            for row in left
-            for entry, (tau,) in zip(row, self.load, strict=True)
-        )
-        self._admit(work * 4, "u")
         return multiply(self.ring, left, self.load)
 
     @cached_property

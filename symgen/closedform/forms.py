@@ -15,12 +15,22 @@ from symgen.closedform.quotient import Matrix
 from symgen.closedform.singular import SingularSet, derive_singular_sets
 from symgen.closedform.spelling import Speller
 from symgen.closedform.structure import Integrability, Structure, derive_integrability, derive_structure
-from symgen.closedform.structured import Structured, structured_control_pseudoinverse, structured_projector
+from symgen.closedform.structured import (
+    Structured,
+    structured_control_pseudoinverse,
+    structured_inverse_dynamics,
+    structured_projected_control,
+    structured_projector,
+    structured_pseudoinverse,
+)
 from symgen.model.expression import Expression
 from symgen.model.model import Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
 
 LONG_MATRIX = 60
 """A derived matrix whose numerators have more terms than this is printed in named minors when such a form exists."""
+
+SHORT_WORK = 2000
+"""Products of terms below which a matrix is built to see how long it is."""
 
 LONGEST_MATRIX = 600
 """A matrix with more terms than this is not printed."""
@@ -61,7 +71,7 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     points = generic_points(model, mechanics, 3)
     structure = derive_structure(model, mechanics, points)
     exact = Exact(model, mechanics, structure)
-    speller = Speller(exact.ring)
+    speller = Speller(exact.ring, dynamic_names(model))
     writer = _Writer(model, exact, speller, straight_line_operations or {})
     return ClosedForms(
         model=model.name,
@@ -72,6 +82,11 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
         symbol_table=writer.symbol_table(),
         exact=exact,
     )
+
+
+def dynamic_names(model: Model) -> tuple[str, ...]:
+    """Rates and accelerations, by which long sums are collected."""
+    return tuple(name for c in model.coordinates for name in (c.rate, c.acceleration))
 
 
 def published_expressions(model: Model) -> Iterable[Expression]:
@@ -117,12 +132,13 @@ class _Writer:
         if model.constraints:
             yield self._direct("constraint_jacobian", lambda: mechanics.jacobian)
             yield self._direct("constraint_jacobian_dot", lambda: mechanics.jacobian_dot)
-            yield self._direct("constraint_pseudoinverse", lambda: exact.pseudoinverse, "B^+ = B^T (B B^T)^{-1}")
+            yield self._pseudoinverse()
         yield self._direct(
             "nullspace_projector",
             lambda: exact.projector,
             "N_B = I - B^+ B",
             lambda: structured_projector(exact, self.speller, self.taken),
+            exact.projector_work,
         )
         yield self._direct(
             "nullspace_projector_dot", lambda: exact.projector_dot, "the derivative of N_B is -X - X^T, X = B^+ Bdot N_B"
@@ -130,16 +146,44 @@ class _Writer:
         if model.independent_velocities:
             yield self._direct("orthogonal_complement", self._complement)
         if model.inputs:
-            yield self._direct("control_matrix", lambda: mechanics.control)
-            yield self._direct("projected_control_matrix", lambda: exact.projected_control, "N_B M")
-            full = exact.structure.degree_of_actuation == exact.delta
-            yield self._direct(
-                "projected_control_pseudoinverse",
-                lambda: exact.control_pseudoinverse,
-                "(28)",
-                (lambda: structured_control_pseudoinverse(exact, self.speller, self.taken)) if full else None,
-            )
-            yield self._direct("inverse_dynamics", lambda: exact.inverse_dynamics, "the pseudoinverse of N_B M times tau")
+            yield from self._actuation_forms()
+
+    def _actuation_forms(self) -> Iterable[ClosedForm]:
+        """M, N_B M, its pseudoinverse and u."""
+        exact, speller, taken = self.exact, self.speller, self.taken
+        yield self._direct("control_matrix", lambda: exact.mechanics.control)
+        yield self._direct(
+            "projected_control_matrix",
+            lambda: exact.projected_control,
+            "N_B M",
+            lambda: structured_projected_control(exact, speller, taken),
+            exact.projector_work,
+        )
+        pseudoinverse = self._direct(
+            "projected_control_pseudoinverse",
+            lambda: exact.control_pseudoinverse,
+            "(28)",
+            (lambda: structured_control_pseudoinverse(exact, speller, taken)) if exact.full_actuation else None,
+            exact.control_pseudoinverse_work,
+        )
+        yield pseudoinverse
+        left = pseudoinverse.matrix
+        known = None if left is None else Structured(left, pseudoinverse.intermediates)
+        yield self._direct(
+            "inverse_dynamics",
+            lambda: exact.inverse_dynamics,
+            "the pseudoinverse of N_B M times tau",
+            None if known is None else lambda: structured_inverse_dynamics(exact, speller, known, taken),
+            exact.inverse_dynamics_work,
+        )
+
+    def _pseudoinverse(self) -> ClosedForm:
+        """B^+, or the entries of S = B B^T with the formula."""
+        quantity = "constraint_pseudoinverse"
+        form = self._direct(quantity, lambda: self.exact.pseudoinverse, "B^+ = B^T S^{-1} with S = B B^T")
+        if form.matrix is None and self.exact.structure.constraint_rank == self.model.r:
+            return ClosedForm(quantity, None, structured_pseudoinverse(self.exact, self.speller, self.taken), form.note)
+        return form
 
     def _complement(self) -> Matrix:
         matrix = self.exact.complement(self.model.independent_velocities)
@@ -153,31 +197,34 @@ class _Writer:
         build: Callable[[], Matrix],
         formula: str = "",
         structured: Callable[[], Structured] | None = None,
+        work: Callable[[], int] | None = None,
     ) -> ClosedForm:
         """The matrix written out when it is short, else in named minors, else only the formula with the reason."""
         try:
-            matrix = build()
-            terms = sum(len(e.numerator) + len(e.denominator) - 1 for row in matrix for e in row)
-            reason = self._too_long(quantity, terms, LONG_MATRIX if structured else LONGEST_MATRIX)
-        except TooLarge as large:
-            matrix, reason = (), f"not written out: {large}"
-        if not reason:
-            printed = ImmutableDenseMatrix([[self.speller.quotient(e) for e in row] for row in matrix])
-            return self._record(ClosedForm(quantity, printed, (), ""))
-        if structured is not None:
-            try:
+            reason = self._estimate(quantity, work)
+            if not reason:
+                matrix = build()
+                terms = sum(len(e.numerator) + len(e.denominator) - 1 for row in matrix for e in row)
+                if terms <= (LONG_MATRIX if structured else LONGEST_MATRIX):
+                    printed = ImmutableDenseMatrix([[self.speller.quotient(e) for e in row] for row in matrix])
+                    return self._record(ClosedForm(quantity, printed, (), ""))
+                reason = f"not written out: {terms} terms"
+            if structured is not None:
                 form = structured()
                 return self._record(ClosedForm(quantity, form.matrix, form.intermediates, reason))
-            except TooLarge as large:
-                reason = f"not written out: {large}"
+        except TooLarge as large:
+            reason = f"not written out: {large}"
         return ClosedForm(quantity, None, (), f"{reason}; {formula}" if formula else reason)
 
-    def _too_long(self, quantity: str, terms: int, limit: int) -> str:
-        operations = self.operations.get(quantity)
-        if terms > limit:
-            return f"not written out: {terms} terms"
-        if operations is not None and limit == LONG_MATRIX and terms > 10 * max(operations, 10):
-            return f"not written out: {terms} terms, more than ten times the {operations} operations of the kernel"
+    def _estimate(self, quantity: str, work: Callable[[], int] | None) -> str:
+        """Why a matrix is not even built, from the number of products of terms it needs; empty when it is."""
+        if work is None:
+            return ""
+        products, operations = work(), self.operations.get(quantity)
+        if operations is not None and products > 10 * max(operations, SHORT_WORK // 10):
+            return f"not written out: about {products} products of terms, above ten times the {operations} operations of the kernel"
+        if products > SHORT_WORK:
+            return f"not written out: about {products} products of terms"
         return ""
 
     def _record(self, form: ClosedForm) -> ClosedForm:

@@ -51,7 +51,7 @@ def derive_singular_sets(model: Model, exact: Exact, speller: Speller) -> tuple[
             complement = exact.complement(model.independent_velocities)
             if complement is not None:
                 bottom = common_denominator(exact.ring, [e for row in complement for e in row])
-                text = "the chosen velocities are not independent; no property of the mechanism"
+                text = "the chosen velocities become dependent (a property of the choice, not of the mechanism)"
                 found.append(
                     _common_zeros(exact, speller, "parameter", "orthogonal_complement", [bottom], exact.ring.one, text)
                 )

@@ -7,15 +7,15 @@ SymPy symbols carry the model's names and no assumptions.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 
 import sympy
-from sympy import QQ, Expr, Integer, Mul, Rational, Symbol, cos, sin, tan
+from sympy import QQ, Add, Expr, Integer, Mul, Rational, Symbol, cos, sin, tan
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.homogeneous import factorise
-from symgen.closedform.quotient import Quotient
+from symgen.closedform.quotient import Quotient, polynomial
 from symgen.closedform.ring import TrigRing
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 
@@ -42,10 +42,11 @@ def spell_expression(expression: Expression, values: Mapping[str, Expr] | None =
 
 
 class Speller:
-    """Prints elements of one ring."""
+    """Prints elements of one ring; `dynamic` names (rates, accelerations, ...) are what long sums are collected by."""
 
-    def __init__(self, ring: TrigRing) -> None:
+    def __init__(self, ring: TrigRing, dynamic: Collection[str] = ()) -> None:
         self.ring = ring
+        self.dynamic = frozenset(ring.position[name] for name in dynamic)
         self.symbols: list[Expr] = [Symbol(name) for name in ring.variables]
         self.angles: list[Expr] = []
         for atom in ring.basis.atoms:
@@ -53,7 +54,11 @@ class Speller:
             self.angles.append(angle)
             self.symbols += [sin(angle), cos(angle)]
         self.symbols += [spell_expression(atom.expression) for atom in ring.opaque]
-        self._known: dict[PolyElement, Expr] = {}
+        self._known: dict[PolyElement, tuple[Rational, Expr]] = {}
+
+    def polynomial(self, p: PolyElement) -> Expr:
+        """A ring element in normal form, factored."""
+        return self.quotient(polynomial(self.ring, p))
 
     def quotient(self, value: Quotient) -> Expr:
         """A fraction in lowest terms, both parts factored."""
@@ -63,22 +68,40 @@ class Speller:
         divisor, bottoms = factorise(self.ring, value.denominator)
         scale = _rational(constant.LC) / _rational(divisor.LC)
         powers: dict[int, int] = {}
-        expressions: list[Expr] = []
+        sums: list[tuple[PolyElement, int]] = []
         for factor, multiplicity in tops:
             position = self._generator(factor)
             if position is None:
-                expressions.append(self.shorter(factor) ** multiplicity)
+                sums.append((factor, multiplicity))
             else:
                 powers[position] = powers.get(position, 0) + multiplicity
+        expressions: list[Expr] = []
+        for factor, multiplicity in self._merge(sums):
+            part, expression = self.shorter(factor)
+            scale *= part**multiplicity
+            expressions.append(expression**multiplicity)
         for factor, multiplicity in bottoms:
             position = self._generator(factor)
             if position is None:
-                fourier, denominator = self.fourier(factor)
-                scale *= Integer(denominator) ** multiplicity
-                expressions.append(fourier ** (-multiplicity))
+                part, expression = self.fourier(factor)
+                scale /= part**multiplicity
+                expressions.append(expression ** (-multiplicity))
             else:
                 powers[position] = powers.get(position, 0) - multiplicity
         return scale * self._powers(powers, pair=True) * Mul(*expressions)
+
+    def _merge(self, factors: list[tuple[PolyElement, int]]) -> list[tuple[PolyElement, int]]:
+        """Multiply two factors that are shorter as one: (cos x - sin x) (cos x + sin x) is cos(2 x)."""
+        for i, (p, k) in enumerate(factors):
+            for j in range(i + 1, len(factors)):
+                q, m = factors[j]
+                if k != m or len(p) * len(q) > 36 or not set(self.ring.shape(p) + self.ring.shape(q)) <= self.ring.angle_positions:
+                    continue
+                product = self.ring.normal(p * q)
+                if _length(self.shorter(product)) < _length(self.shorter(p)) + _length(self.shorter(q)):
+                    rest = [f for index, f in enumerate(factors) if index not in (i, j)]
+                    return self._merge([(product, k), *rest])
+        return factors
 
     def _generator(self, factor: PolyElement) -> int | None:
         """The position of the generator that a factor is, None when it is a sum."""
@@ -107,44 +130,86 @@ class Speller:
             result *= self.symbols[position] ** exponent
         return result
 
-    def polynomial(self, p: PolyElement) -> Expr:
-        """The sum of monomials as it stands."""
+    def shorter(self, p: PolyElement) -> tuple[Rational, Expr]:
+        """(scale, sum) of a factor in the shortest of its forms: polynomial, Fourier sum, or collected by rates."""
+        if p not in self._known:
+            forms = [self._plain(p)]
+            normal = self.ring.normal(p)
+            if normal != p:
+                forms.append(self._plain(normal))
+            forms.append(self.fourier(p))
+            collected = self._collected(normal)
+            if collected is not None:
+                forms.append((Integer(1), collected))
+            self._known[p] = _upright(*min(forms, key=_length))
+        return self._known[p]
+
+    def _plain(self, p: PolyElement) -> tuple[Rational, Expr]:
+        """The sum of monomials as it stands, the rational content apart."""
+        content, primitive = p.primitive()
+        return _rational(content), self._sum(primitive)
+
+    def _sum(self, p: PolyElement) -> Expr:
         terms = []
         for monomial, coefficient in p.terms():
             product = self._powers({i: e for i, e in enumerate(monomial) if e}, pair=False)
             terms.append(_rational(coefficient) * product)
-        return sympy.Add(*terms)
+        return Add(*terms)
 
-    def shorter(self, p: PolyElement) -> Expr:
-        """A factor in the shortest of its forms: homogeneous or normal polynomial, or Fourier sum."""
-        if p not in self._known:
-            plain = [self.polynomial(p)]
-            normal = self.ring.normal(p)
-            if normal != p:
-                plain.append(self.polynomial(normal))
-            fourier, denominator = self.fourier(p)
-            self._known[p] = min([*plain, fourier / denominator], key=lambda e: int(e.count_ops()))
-        return self._known[p]
+    def _collected(self, p: PolyElement) -> Expr | None:
+        """The sum over the monomials in rates and accelerations, every coefficient factored."""
+        groups: dict[tuple[int, ...], PolyElement] = {}
+        for monomial, coefficient in p.items():
+            outer = tuple(e if i in self.dynamic else 0 for i, e in enumerate(monomial))
+            inner = tuple(0 if i in self.dynamic else e for i, e in enumerate(monomial))
+            groups.setdefault(outer, self.ring.polys.zero.copy())[inner] = coefficient
+        if len(groups) < 2:
+            return None
+        terms = []
+        for outer in sorted(groups, reverse=True):
+            terms.append(self._powers({i: e for i, e in enumerate(outer) if e}, False) * self.polynomial(groups[outer]))
+        return Add(*terms)
 
-    def fourier(self, p: PolyElement) -> tuple[Expr, int]:
-        """(sum, d) with p = sum / d: the sum of sines and cosines of angle combinations with integer coefficients."""
+    def fourier(self, p: PolyElement) -> tuple[Rational, Expr]:
+        """(scale, sum) with p = scale * sum: sines and cosines of angle combinations, integer coefficients without content."""
         series = fourier_series(self.ring, p)
-        common = 1
+        scale = QQ(0)
         for parts in series.values():
             for part in parts:
-                for coefficient in part.coeffs():
-                    common = sympy.ilcm(common, int(coefficient.denominator))
+                if part:
+                    scale = QQ.gcd(scale, part.content())
         terms = []
         for frequencies, (cosine, sine) in series.items():
             angle = sum((k * angle for k, angle in zip(frequencies, self.angles, strict=True)), Integer(0))
             for part, function in ((cosine, cos), (sine, sin)):
                 if part:
-                    terms.append(self._coefficient(part.mul_ground(QQ(int(common), 1))) * function(angle))
-        return sympy.Add(*terms), int(common)
+                    terms.append(self._coefficient(part.quo_ground(scale)) * function(angle))
+        return _rational(scale), Add(*terms)
 
     def _coefficient(self, p: PolyElement) -> Expr:
-        """A coefficient of a Fourier sum: a monomial, or a sum kept in one piece."""
-        return self.polynomial(p)
+        """A coefficient of a Fourier sum: its common monomial and rational content taken out, the rest in one piece."""
+        content, rest = p.primitive()
+        common = tuple(min(exponents) for exponents in zip(*rest, strict=True))
+        reduced = self.ring.polys.zero.copy()
+        for monomial, coefficient in rest.items():
+            reduced[tuple(e - c for e, c in zip(monomial, common, strict=True))] = coefficient
+        sign, expression = _upright(Integer(1), self._sum(reduced))
+        factor = _rational(content) * sign * self._powers({i: e for i, e in enumerate(common) if e}, pair=False)
+        return Mul(factor, expression)
+
+
+def _upright(scale: Rational, expression: Expr) -> tuple[Rational, Expr]:
+    """The sum with its sign turned so that most of its terms are positive."""
+    terms = Add.make_args(expression)
+    negative = sum(bool(term.could_extract_minus_sign()) for term in terms)
+    if 2 * negative > len(terms):
+        return -scale, Add(*(-term for term in terms))
+    return scale, expression
+
+
+def _length(form: tuple[Rational, Expr]) -> int:
+    scale, expression = form
+    return int(expression.count_ops()) + (abs(scale) != 1)
 
 
 def fourier_series(ring: TrigRing, p: PolyElement) -> dict[tuple[int, ...], tuple[PolyElement, PolyElement]]:

@@ -10,6 +10,7 @@ from sympy import Expr, ImmutableDenseMatrix, Integer, Symbol
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.exact import Exact
+from symgen.closedform.matrices import dot
 from symgen.closedform.minors import left_inverse_terms
 from symgen.closedform.quotient import polynomial
 from symgen.closedform.spelling import Speller
@@ -109,6 +110,38 @@ def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: froz
                     entries[k][a] += sign * deltas[j] * vectors[rest][a]
     entries = [[scale * e / total for e in row] for row in entries]
     return _finish(entries, naming, [(total, squares)])
+
+
+def structured_projected_control(exact: Exact, speller: Speller, taken: frozenset[str]) -> Structured:
+    """N_B M with N_B in named minors."""
+    projector = structured_projector(exact, speller, taken)
+    control = ImmutableDenseMatrix([[speller.quotient(e) for e in row] for row in exact.mechanics.control])
+    return Structured(projector.matrix * control, projector.intermediates)
+
+
+def structured_inverse_dynamics(exact: Exact, speller: Speller, left: Structured, taken: frozenset[str]) -> Structured:
+    """u = M~^+ tau with the load tau = G qdd + C qd + Q - Q_a as named intermediates."""
+    naming = Naming(speller, taken)
+    load = []
+    for i, (entry,) in enumerate(exact.load):
+        symbol = naming.symbol(f"tau_{i + 1}")
+        naming.meanings[symbol] = speller.quotient(entry)
+        load.append(symbol if entry else Integer(0))
+    matrix = left.matrix * ImmutableDenseMatrix(load)
+    used = {s for s in naming.meanings if s in load and matrix.has(s)}
+    named = tuple((symbol, meaning) for symbol, meaning in naming.meanings.items() if symbol in used)
+    return Structured(matrix, (*named, *left.intermediates))
+
+
+def structured_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[str]) -> tuple[tuple[Symbol, Expr], ...]:
+    """The entries of S = B B^T by name, for B^+ = B^T S^{-1}."""
+    jacobian = exact.mechanics.jacobian
+    naming = Naming(speller, taken)
+    return tuple(
+        (naming.symbol(f"S_{i + 1}_{j + 1}"), speller.quotient(dot(exact.ring, jacobian[i], jacobian[j])))
+        for i in range(len(jacobian))
+        for j in range(i, len(jacobian))
+    )
 
 
 def determinant_terms(exact: Exact, speller: Speller, taken: frozenset[str]) -> tuple[tuple[Symbol, Expr], ...]:
