@@ -15,11 +15,11 @@ from typing import Any, TypeAlias
 from flint import ctx
 
 from symgen.model.model import Model
-from symgen.verify.reference_linear import norm
+from symgen.verify.reference_linear import square
 from symgen.verify.reference_manifold import Ranks, generic_ranks
 from symgen.verify.reference_quantities import QUANTITIES, Evaluation, offered
 from symgen.verify.reference_system import System, literal_values
-from symgen.verify.reference_tape import ball
+from symgen.verify.reference_tape import ball, precision
 
 Exact: TypeAlias = int | float | Fraction | Any
 BITS = 256
@@ -57,6 +57,7 @@ class Reference:
                 f"{model.name}: no configuration that satisfies the geometric constraints was found"
             )
         self.ranks = known
+        self._literals: dict[int, list[Any]] = {}
 
     def quantities(self) -> tuple[str, ...]:
         """The names this model has (not those whose result would be empty)."""
@@ -64,23 +65,27 @@ class Reference:
 
     def literals(self) -> list[Any]:
         """The literals of the model at the working precision."""
-        return literal_values(self.system.literals)
+        if ctx.prec not in self._literals:
+            self._literals[ctx.prec] = literal_values(self.system.literals)
+        return self._literals[ctx.prec]
 
     def evaluate(self, state: State, quantities: Sequence[str]) -> dict[str, tuple[Any, ...]]:
         """Row-major entries of each quantity, as balls that hold at least 50 digits of the quantity's norm.
 
         Raises ReferenceValueError where a quantity does not exist (a rank drops).
         """
+        return {name: tuple(matrix.entries()) for name, matrix in self.precise(state, quantities).items()}
+
+    def precise(self, state: State, quantities: Sequence[str]) -> dict[str, Any]:
+        """Like `evaluate`, as matrices of balls (vectors are columns)."""
         bits = BITS
-        while True:
+        while bits <= MOST_BITS:
             matrices = self.matrices(state, quantities, bits)
-            if all(_accurate(matrix) for matrix in matrices.values()):
-                return {name: tuple(matrix.entries()) for name, matrix in matrices.items()}
+            with precision(bits):
+                if all(_accurate(matrix) for matrix in matrices.values()):
+                    return matrices
             bits *= 2
-            if bits > MOST_BITS:
-                raise ReferenceValueError(
-                    f"{self.model.name}: no 50 digits of {', '.join(quantities)} with {MOST_BITS} bits"
-                )
+        raise ReferenceValueError(f"{self.model.name}: {MOST_BITS} bits do not give {DIGITS} digits at this state")
 
     def matrices(
         self, state: State, quantities: Sequence[str], bits: int = BITS, literals: Sequence[Any] | None = None
@@ -89,24 +94,25 @@ class Reference:
 
         `literals` replace the values of the model's literals.
         """
-        previous = ctx.prec
-        ctx.prec = bits
         try:
-            evaluation = Evaluation(
-                self.system,
-                self.ranks,
-                *([ball(x) for x in part] for part in (state.q, state.qd, state.qdd, state.u, state.parameters)),
-                self.literals() if literals is None else literals,
-            )
-            return {name: QUANTITIES[name](evaluation) for name in quantities}
+            with precision(bits):
+                evaluation = Evaluation(
+                    self.system,
+                    self.ranks,
+                    q=[ball(x) for x in state.q],
+                    qd=[ball(x) for x in state.qd],
+                    qdd=[ball(x) for x in state.qdd],
+                    u=[ball(x) for x in state.u],
+                    parameters=[ball(x) for x in state.parameters],
+                    literals=self.literals() if literals is None else literals,
+                )
+                return {name: QUANTITIES[name](evaluation) for name in quantities}
         except ZeroDivisionError as fault:
             raise ReferenceValueError(f"{self.model.name}: a rank drops at this state") from fault
-        finally:
-            ctx.prec = previous
 
 
 def _accurate(matrix: Any) -> bool:
-    """Whether the radii leave 50 digits of the norm (or are that small absolutely, for results that vanish)."""
-    radius = max((float(entry.rad()) for entry in matrix.entries()), default=0.0)
-    size = norm(matrix)
-    return bool(radius <= 10.0**-DIGITS * max(size, 10.0**-DIGITS)) and size == size
+    """Whether the radii leave 50 digits of the norm, or 60 digits absolutely for a result that vanishes."""
+    size = square(matrix)
+    error = float(size.rad())
+    return error <= 10.0**-DIGITS * float(size) or float(size) + error <= 10.0 ** -(2 * DIGITS + 20)

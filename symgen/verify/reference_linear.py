@@ -1,13 +1,15 @@
 """Linear algebra at known rank, in ball arithmetic.
 
-No cutoff decides a rank here: ranks are given, every inverse is that of a regular Gram matrix, and the working precision
-(256 bits) pays for the squared condition number.  A ball that contains a singular matrix raises ZeroDivisionError.
+No cutoff decides a rank here: ranks are given, every inverse is that of a regular Gram matrix, and the working
+precision (256 bits) pays for the squared condition number.  A ball that contains a singular matrix raises
+ZeroDivisionError.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
+from math import sqrt
 from typing import Any
 
 from flint import arb, arb_mat
@@ -42,13 +44,17 @@ def columns_of(matrix: Any, indices: Sequence[int]) -> Any:
     return arb_mat(matrix.nrows(), len(indices), [row[j] for row in table for j in indices])
 
 
-def norm(matrix: Any) -> float:
-    """Frobenius norm of the midpoints, to a float's accuracy."""
+def square(matrix: Any) -> Any:
+    """Square of the Frobenius norm, as a ball."""
     if matrix.nrows() == 0 or matrix.ncols() == 0:
-        return 0.0
-    wide = matrix.transpose() if matrix.nrows() > matrix.ncols() else matrix
-    middle = wide.mid()
-    return float((middle * middle.transpose()).trace().mid().sqrt())
+        return arb(0)
+    other = matrix.transpose()
+    return (other * matrix if matrix.nrows() > matrix.ncols() else matrix * other).trace()
+
+
+def norm(matrix: Any) -> float:
+    """Frobenius norm, to a float's accuracy."""
+    return sqrt(max(0.0, float(square(matrix))))
 
 
 def determinant(matrix: Any) -> Any:

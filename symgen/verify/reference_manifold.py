@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flint import ctx
-
 from symgen.verify.reference_linear import (
     column,
     identity,
@@ -19,6 +17,7 @@ from symgen.verify.reference_linear import (
     solve,
 )
 from symgen.verify.reference_system import System, default_parameters, literal_values
+from symgen.verify.reference_tape import precision
 
 RANK_BITS = 256
 RANK_STARTS = 24
@@ -69,9 +68,7 @@ def generic_ranks(system: System) -> Ranks | None:
 
     Points are exact to about 170 bits, so that a rank shows as a gap of 40 binary orders at least.
     """
-    previous = ctx.prec
-    ctx.prec = RANK_BITS
-    try:
+    with precision(RANK_BITS):
         parameters = default_parameters(system.model)
         literals = literal_values(system.literals)
         generator = random.Random("ranks")
@@ -83,8 +80,6 @@ def generic_ranks(system: System) -> Ranks | None:
                 found.append(ranks)
             if len(found) == RANK_POINTS:
                 break
-    finally:
-        ctx.prec = previous
     if not found:
         return None
     constraints = max(ranks.constraints for ranks in found)

@@ -73,24 +73,19 @@ class Evaluation:
 
     def coriolis(self, velocity: Any) -> Any:
         """Christoffel C (3) along a velocity."""
-        n = self.system.n
-        if not self.system.has_coriolis:
-            return arb_mat(n, n)
-        total = arb_mat(n, n, (self.at.mass_gradient * velocity).entries())
-        turned = arb_mat(n, n, (self.at.mass_gradient_turned * velocity).entries())
-        return (total + turned - turned.transpose()) * arb(0.5)
+        return arb_mat(self.system.n, self.system.n, self.system.along("coriolis", self.at, velocity))
 
     def mass_dot(self, velocity: Any) -> Any:
         """d/dt G along a velocity."""
-        return arb_mat(self.system.n, self.system.n, (self.at.mass_gradient * velocity).entries())
+        return arb_mat(self.system.n, self.system.n, self.system.along("mass", self.at, velocity))
 
     def constraints_dot(self, velocity: Any) -> Any:
         """d/dt B along a velocity."""
-        return arb_mat(self.system.r, self.system.n, (self.at.constraint_gradient * velocity).entries())
+        return arb_mat(self.system.r, self.system.n, self.system.along("constraints", self.at, velocity))
 
     def control_dot(self, velocity: Any) -> Any:
         """d/dt M along a velocity."""
-        return arb_mat(self.system.n, self.system.m, (self.at.control_gradient * velocity).entries())
+        return arb_mat(self.system.n, self.system.m, self.system.along("control", self.at, velocity))
 
     def projector_dot(self, velocity: Any) -> Any:
         """d/dt N_B along a velocity (Remark 9): -X - X', X = B+ Bdot N."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeAlias
 
 from flint import arb, arb_mat
 
@@ -60,17 +60,14 @@ def parameters_from(model: Model, chosen: dict[str, Any]) -> list[Any]:
 
 @dataclass(frozen=True)
 class Configuration:
-    """Everything that depends on q and parameters alone; gradients are stacked with the last index fastest."""
+    """Everything that depends on q and parameters alone."""
 
     mass: Any  # n x n
-    mass_gradient: Any  # (n n) x n: row (i, j), column k holds dG_ij/dq_k
-    mass_gradient_turned: Any  # (n n) x n: row (i, j), column k holds dG_ik/dq_j
     constraints: Any  # r x n
-    constraint_gradient: Any  # (r n) x n
     residual: Any  # r_g x 1
     control: Any  # n x m
-    control_gradient: Any  # (n m) x n
     potential_gradient: Any  # n x 1
+    gradients: tuple[Any, ...]  # the entries of dG/dq, dB/dq, dM/dq that do not vanish identically
 
 
 class System:
@@ -93,28 +90,35 @@ class System:
             for c in model.coordinates
             for column in columns
         ]
-        mass = [self._rate_coefficient(energy, i, j, None) for i in range(n) for j in range(n)]
-        gradient = {
-            (i, j, k): self._rate_coefficient(energy, i, j, k) for i in range(n) for j in range(i, n) for k in range(n)
-        }
-        self._has_coriolis = any(register != self._tape.zero for register in gradient.values())
         zero = self._tape.zero
+        gradients: list[Register] = []
+        self._directional: dict[str, Replay] = {}
+        mass_gradient = {
+            (i, j, k): self._rate_coefficient(energy, i, j, k) for i in range(n) for j in range(n) for k in range(n)
+        }
+        positions = _collect(mass_gradient, gradients, zero)
+        directional = {"mass": _derivative(positions, n, n, n), "coriolis": _christoffel(positions, n)}
+        positions = _collect(
+            {(i, j, k): rows[i][1][j][k] for i in range(r) for j in range(n) for k in range(n)}, gradients, zero
+        )
+        directional["constraints"] = _derivative(positions, r, n, n)
+        positions = _collect(
+            {(i, j, k): control[i * m + j].get(((k,), ()), zero) for i in range(n) for j in range(m) for k in range(n)},
+            gradients,
+            zero,
+        )
+        directional["control"] = _derivative(positions, n, m, n)
+        self._directional = {name: _bilinear(terms, n) for name, terms in directional.items()}
         outputs = [
-            mass,
-            [gradient[min(i, j), max(i, j), k] for i in range(n) for j in range(n) for k in range(n)],
-            [gradient[min(i, k), max(i, k), j] for i in range(n) for j in range(n) for k in range(n)],
+            [self._rate_coefficient(energy, i, j, None) for i in range(n) for j in range(n)],
             [row[0][j] for row in rows for j in range(n)],
-            [row[1][j][k] for row in rows for j in range(n) for k in range(n)],
             [row[2] for row in rows[: self.r_geometric]],
             [entry.get(CONSTANT, zero) for entry in control],
-            [entry.get(((k,), ()), zero) for entry in control for k in range(n)],
             [potential.get(((k,), ()), zero) for k in range(n)],
         ]
-        stacked = (n * n, n)
-        residual = (self.r_geometric, 1)
-        self._shapes = ((n, n), stacked, stacked, (r, n), (r * n, n), residual, (n, m), (n * m, n), (n, 1))
-        self._configuration = replay_of(self._tape, [register for block in outputs for register in block])
-        self._geometry = replay_of(self._tape, [*outputs[5], *outputs[3][: self.r_geometric * n]])
+        self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1))
+        self._configuration = replay_of(self._tape, [*(x for block in outputs for x in block), *gradients])
+        self._geometry = replay_of(self._tape, [*outputs[2], *outputs[1][: self.r_geometric * n]])
         plain = self._translation(0, 0)
         self._energies = self._plain([plain.polynomial(model.kinetic_energy), plain.polynomial(model.potential_energy)])
         forces = {force.coordinate: force.expression for force in model.applied_forces}
@@ -133,7 +137,12 @@ class System:
             end = start + rows * columns
             matrices.append(arb_mat(rows, columns, values[start:end]))
             start = end
-        return Configuration(*matrices)
+        mass, constraints, residual, control, potential = matrices
+        return Configuration(mass, constraints, residual, control, potential, values[start:])
+
+    def along(self, what: str, at: Configuration, velocity: Any) -> tuple[Any, ...]:
+        """Row-major entries of d/dt of `mass`, `constraints` or `control` along a velocity, or of `coriolis` (3)."""
+        return self._directional[what].run([*velocity.entries(), *at.gradients])
 
     def geometry(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
         """g (r_g x 1) and dg/dq (r_g x n) at q."""
@@ -154,14 +163,9 @@ class System:
         return arb_mat(self.n, 1, self._applied.run([*q, *qd, *parameters, *literals]))
 
     @property
-    def has_applied_forces(self) -> bool:
-        """Whether the model declares applied forces."""
-        return self._applied is not None
-
-    @property
-    def has_coriolis(self) -> bool:
-        """Whether G depends on q, as far as the record of operations tells."""
-        return self._has_coriolis
+    def operations(self) -> int:
+        """Number of recorded operations, for estimates of cost."""
+        return len(self._tape.records)
 
     def _plain(self, polynomials: Sequence[Polynomial]) -> Replay:
         return replay_of(self._tape, [p.get(CONSTANT, self._tape.zero) for p in polynomials])
@@ -267,6 +271,57 @@ class _Translation:
         """pi of a parameter's default value, as 4 atan(1)."""
         tape = self.algebra.tape
         return tape.scaled(Fraction(4), tape.unary("atan", tape.one))
+
+
+Position: TypeAlias = tuple[int, int, int]
+Terms: TypeAlias = list[list[tuple[Fraction, int, int]]]
+
+
+def _collect(entries: dict[Position, Register], gradients: list[Register], zero: Register) -> dict[Position, int]:
+    """Append the entries that are not zero to `gradients`; where each of them went."""
+    positions: dict[Position, int] = {}
+    for place, register in entries.items():
+        if register != zero:
+            positions[place] = len(gradients)
+            gradients.append(register)
+    return positions
+
+
+def _derivative(positions: dict[Position, int], rows: int, columns: int, n: int) -> Terms:
+    """sum_k d_k X_ij v_k for every entry of a matrix: factor, position of the gradient, k."""
+    return [
+        [(Fraction(1), positions[i, j, k], k) for k in range(n) if (i, j, k) in positions]
+        for i in range(rows)
+        for j in range(columns)
+    ]
+
+
+def _christoffel(positions: dict[Position, int], n: int) -> Terms:
+    """C_ij = sum_k (d_k G_ij + d_j G_ik - d_i G_jk)/2 v_k."""
+    half = Fraction(1, 2)
+    return [
+        [
+            (factor, positions[place], k)
+            for k in range(n)
+            for factor, place in ((half, (i, j, k)), (half, (i, k, j)), (-half, (j, k, i)))
+            if place in positions
+        ]
+        for i in range(n)
+        for j in range(n)
+    ]
+
+
+def _bilinear(terms: Terms, n: int) -> Replay:
+    """The sums as a replay of the velocity (n numbers) and the gradients."""
+    tape = Tape()
+    outputs = []
+    for entry in terms:
+        total = tape.zero
+        for factor, gradient, k in entry:
+            product = tape.binary("mul", tape.input(n + gradient), tape.input(k))
+            total = tape.binary("add", total, tape.scaled(factor, product))
+        outputs.append(total)
+    return replay_of(tape, outputs)
 
 
 def _formulas(model: Model) -> Iterator[Expression]:

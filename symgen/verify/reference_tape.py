@@ -8,13 +8,14 @@ Taylor arithmetic itself) are folded: literals of the model stay inputs, so that
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from operator import itemgetter
 from typing import Any, TypeAlias
 
-from flint import arb, fmpq
+from flint import arb, ctx, fmpq
 
 Register: TypeAlias = int
 Key: TypeAlias = tuple[str, Any, Any]
@@ -52,6 +53,31 @@ def ball(value: Any) -> Any:
     if isinstance(value, Fraction):
         return arb(fmpq(value.numerator, value.denominator))
     return arb(value)
+
+
+@contextmanager
+def precision(bits: int) -> Iterator[None]:
+    """Set the working precision for a while."""
+    previous = ctx.prec
+    ctx.prec = bits
+    try:
+        yield
+    finally:
+        ctx.prec = previous
+
+
+class Constants:
+    """Exact numbers as balls, converted once for each working precision."""
+
+    def __init__(self, values: Iterable[Fraction]) -> None:
+        self._values = tuple(values)
+        self._balls: dict[int, list[Any]] = {}
+
+    def balls(self) -> list[Any]:
+        """The numbers at the working precision."""
+        if ctx.prec not in self._balls:
+            self._balls[ctx.prec] = [ball(value) for value in self._values]
+        return self._balls[ctx.prec]
 
 
 class Tape:
@@ -111,16 +137,19 @@ class Tape:
 
 @dataclass(frozen=True)
 class Replay:
-    """The part of a tape that some outputs need, its operations grouped by depth and kind so that a replay runs in `map`."""
+    """The part of a tape that some outputs need.
 
-    constants: tuple[Fraction, ...]
+    Operations are grouped by depth and kind, so that a replay runs inside `map`.
+    """
+
+    constants: Constants
     inputs: Callable[[Sequence[Any]], tuple[Any, ...]]
     groups: tuple[tuple[Callable[..., Any], Callable[[Sequence[Any]], Any], Callable[[Sequence[Any]], Any] | None], ...]
     outputs: Callable[[Sequence[Any]], tuple[Any, ...]]
 
     def run(self, inputs: Sequence[Any]) -> tuple[Any, ...]:
         """The outputs, in balls of the working precision; `inputs` are balls."""
-        registers = [ball(value) for value in self.constants]
+        registers = list(self.constants.balls())
         registers.extend(self.inputs(inputs))
         for function, left, right in self.groups:
             if right is None:
@@ -161,7 +190,7 @@ def replay_of(tape: Tape, outputs: Iterable[Register]) -> Replay:
         for register in members:
             place[register] = len(place)
     return Replay(
-        tuple(tape.records[r][1] for r in constants),
+        Constants(tape.records[r][1] for r in constants),
         picker([tape.records[r][1] for r in inputs]),
         tuple(groups),
         picker([place[r] for r in wanted]),

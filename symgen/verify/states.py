@@ -1,0 +1,177 @@
+"""Admissible states for verification: on the constraint manifold, away from singularities, seeded and deterministic."""
+
+from __future__ import annotations
+
+import random
+import struct
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import comb, isfinite
+from typing import Any
+
+from symgen.ir.kernel import Scalar
+from symgen.verify.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference_manifold import onto_manifold, starts
+from symgen.verify.reference_system import parameters_from
+from symgen.verify.reference_tape import precision
+
+FEWEST_STATES = 8
+USUAL_STATES = 64
+LONGEST_SECONDS = 20.0
+REGULAR = 1e-3
+SAMPLING_BITS = 128
+DRIFT = 1e-3
+
+
+class VerificationError(Exception):
+    """Verification could not be carried out at all; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A state with exact floats; `admissible` when rates and accelerations satisfy the constraints up to rounding."""
+
+    state: State
+    admissible: bool
+    measures: tuple[float, float]
+
+
+def affordable_states(reference: Reference, wanted: int = USUAL_STATES) -> int:
+    """How many of `wanted` states fit in 20 s, by a count of operations (never by a clock), but 8 at least."""
+    system, ranks = reference.system, reference.ranks
+    subsets = comb(system.r, ranks.constraints)
+    operations = system.operations + 40 * system.n**3 * subsets
+    seconds_per_state = 18 * 1.3e-7 * operations
+    return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
+
+
+def sample_states(reference: Reference, quantities: Sequence[str], count: int, seed: int = 0) -> tuple[Sample, ...]:
+    """`count` states (fewer when V is hard to find), rounded to float64.
+
+    Rates and accelerations are projected onto the constraints in the even ones and arbitrary in the others; every
+    fourth is moved off V by about 1e-3, as measured states are, unless the constraints depend on each other.
+    Raises VerificationError when fewer than 8 are found.
+    """
+    with precision(SAMPLING_BITS):
+        inside: list[Sample] = []
+        outside: list[Sample] = []
+        for sample, in_range in _candidates(reference, quantities, count, seed):
+            (inside if in_range else outside).append(sample)
+            if len(inside) == count:
+                break
+        found = (inside + outside)[:count]
+    if len(found) < FEWEST_STATES:
+        raise VerificationError(
+            f"{reference.model.name}: only {len(found)} regular configurations on the constraint manifold were found "
+            f"({FEWEST_STATES} are needed); give a start under `configuration` and the ranges of the coordinates"
+        )
+    return tuple(found)
+
+
+def rounded(sample: Sample, scalar: Scalar) -> Sample:
+    """The sample with every number rounded to the scalar type."""
+    if scalar == "float64":
+        return sample
+    state = sample.state
+    parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
+    return replace(sample, state=State(*(tuple(_single(x) for x in part) for part in parts)))
+
+
+def _single(value: Any) -> float:
+    return float(struct.unpack("f", struct.pack("f", value))[0])
+
+
+def _candidates(
+    reference: Reference, quantities: Sequence[str], count: int, seed: int
+) -> Iterator[tuple[Sample, bool]]:
+    """Regular states, and whether the coordinates lie in their ranges."""
+    generator = random.Random(f"states {seed}")
+    system = reference.system
+    points = starts(system, generator, 6 * count + 60)
+    literals = reference.literals()
+    last: list[Any] | None = None
+    kept = 0
+    for index, point in enumerate(points):
+        parameters = _parameters(reference, generator, vary=index > 0)
+        start = point
+        if last is not None and index % 2 and system.r_geometric:
+            start = _step(reference, last, generator)
+        q = onto_manifold(system, start, parameters, literals)
+        if q is None:
+            continue
+        sample = _sample(reference, quantities, [float(x) for x in q], parameters, kept, generator)
+        if sample is None:
+            continue
+        last = q
+        kept += 1
+        yield sample, _in_ranges(reference, sample.state.q)
+
+
+def _parameters(reference: Reference, generator: random.Random, vary: bool) -> list[float]:
+    """Parameter values: those with a range drawn from it."""
+    chosen = {
+        parameter.name: generator.uniform(float(parameter.range[0]), float(parameter.range[1]))
+        for parameter in reference.model.parameters
+        if parameter.range is not None
+    }
+    return [float(value) for value in parameters_from(reference.model, chosen if vary else {})]
+
+
+def _step(reference: Reference, q: Sequence[Any], generator: random.Random) -> list[float]:
+    """A start near q: a random step, a tenth of the ranges wide, that the projection brings back to V."""
+    return [
+        float(x) + generator.gauss(0, 0.1) * float(c.range[1] - c.range[0])
+        for x, c in zip(q, reference.model.coordinates, strict=True)
+    ]
+
+
+def _sample(
+    reference: Reference,
+    quantities: Sequence[str],
+    q: Sequence[float],
+    parameters: Sequence[float],
+    index: int,
+    generator: random.Random,
+) -> Sample | None:
+    """A state at q, or None near a singularity or outside the domain of a quantity."""
+    model = reference.model
+    rates = [generator.uniform(*map(float, c.rate_range)) for c in model.coordinates]
+    accelerations = [generator.uniform(*map(float, c.acceleration_range)) for c in model.coordinates]
+    shares = [generator.uniform(-1, 1) for _ in model.inputs]
+    shifts = [generator.uniform(-1, 1) for _ in model.coordinates]
+    admissible = index % 2 == 0
+    if index % 4 == 3 and reference.system.r_geometric and reference.ranks.constraints == model.r:
+        q = [x + DRIFT * s * max(abs(x), 0.1) for x, s in zip(q, shifts, strict=True)]
+    zero = (0.0,) * model.m
+    state = State(tuple(q), tuple(rates), tuple(accelerations), zero, tuple(parameters))
+    needed = ["singularity", "admissible_velocity", "admissible_acceleration", *(["inverse_dynamics"] * bool(model.m))]
+    try:
+        values = {name: _floats(matrix) for name, matrix in reference.matrices(state, needed, SAMPLING_BITS).items()}
+        if not all(map(isfinite, values["singularity"])) or min(values["singularity"]) < REGULAR:
+            return None
+        if admissible:
+            state = replace(state, qd=values["admissible_velocity"], qdd=values["admissible_acceleration"])
+        if model.m:
+            scale = 2 * max(1.0, *(abs(x) for x in values["inverse_dynamics"]))
+            state = replace(state, u=tuple(scale * share for share in shares))
+        everything = reference.matrices(state, quantities, SAMPLING_BITS)
+    except ReferenceValueError:
+        return None
+    if not all(isfinite(x) for matrix in everything.values() for x in _floats(matrix)):
+        return None
+    first, second = values["singularity"]
+    return Sample(state, admissible, (first, second))
+
+
+def _floats(matrix: Any) -> tuple[float, ...]:
+    return tuple(map(float, matrix.entries()))
+
+
+def _in_ranges(reference: Reference, q: Sequence[Any]) -> bool:
+    """Whether every coordinate lies in its range, but for a hundredth of its width."""
+    for x, coordinate in zip(q, reference.model.coordinates, strict=True):
+        low, high = map(float, coordinate.range)
+        slack = 0.01 * (high - low)
+        if not low - slack <= x <= high + slack:
+            return False
+    return True

@@ -1,0 +1,76 @@
+"""How far a correct kernel may be from the reference (theory.md section 6, item 9).
+
+|y - y*| <= 16 (d + eps |y*|), where d is the largest |y*(x + dx) - y*| over 8 random dx with |dx_i| = eps |x_i| in
+all inputs, run-time parameters and literals of the model.  So d holds the condition of the quantity at this state.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_mat
+
+from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
+from symgen.verify.reference import Reference, State
+from symgen.verify.reference_linear import norm
+from symgen.verify.reference_tape import ball, precision
+
+FACTOR = 16.0
+PERTURBATIONS = 8
+PERTURBED_BITS = 160
+DISTANCE_BITS = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """The reference value y* of a quantity at a state, |y*|, and the unit of error d + eps |y*| of a scalar type."""
+
+    value: Any
+    size: float
+    unit: float
+
+    def distance(self, entries: Sequence[float]) -> float:
+        """|y - y*|, exact to a float; NaN when an entry is not finite."""
+        with precision(DISTANCE_BITS):
+            return norm(arb_mat(self.value.nrows(), self.value.ncols(), list(entries)) - self.value)
+
+    def error(self, entries: Sequence[float]) -> float:
+        """|y - y*| in units of d + eps |y*|; 0 for an exact result, infinite where the unit is 0."""
+        distance = self.distance(entries)
+        if distance == 0:
+            return 0.0
+        return distance / self.unit if self.unit else float("inf")
+
+
+def expectations(
+    reference: Reference, state: State, quantities: Sequence[str], scalar: Scalar, seed: str
+) -> dict[str, Expectation]:
+    """Reference values and error units of the quantities at a state rounded to the scalar type."""
+    exact = reference.precise(state, quantities)
+    worst = dict.fromkeys(quantities, 0.0)
+    generator = random.Random(seed)
+    for _ in range(PERTURBATIONS):
+        with precision(PERTURBED_BITS):
+            moved, literals = perturbed(reference, state, scalar, generator)
+        results = reference.matrices(moved, quantities, PERTURBED_BITS, literals)
+        with precision(DISTANCE_BITS):
+            for name, matrix in results.items():
+                worst[name] = max(worst[name], norm(matrix - exact[name]))
+    eps = float(UNIT_ROUNDOFF[scalar])
+    sizes = {name: norm(exact[name]) for name in quantities}
+    return {name: Expectation(exact[name], sizes[name], worst[name] + eps * sizes[name]) for name in quantities}
+
+
+def perturbed(reference: Reference, state: State, scalar: Scalar, generator: random.Random) -> tuple[State, list[Any]]:
+    """The state and the literals with every number x moved by +-eps |x| (balls of the working precision)."""
+    eps = ball(UNIT_ROUNDOFF[scalar])
+    factors = (arb(1) - eps, arb(1) + eps)
+
+    def move(values: Sequence[Any]) -> tuple[Any, ...]:
+        return tuple(ball(x) * factors[generator.getrandbits(1)] for x in values)
+
+    parts = (move(part) for part in (state.q, state.qd, state.qdd, state.u, state.parameters))
+    return State(*parts), list(move(reference.literals()))
