@@ -1,0 +1,141 @@
+"""CasADi, SymPy and the kernels of the scalar graph derive the same quantities: they witness each other on random states."""
+
+from __future__ import annotations
+
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sympy import lambdify
+
+from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
+from symgen.derive.select import derive_quantities
+from symgen.ir.interpret import Interpreter
+from symgen.ir.kernel import Status
+from symgen.ir.schedule import schedule
+from symgen.model.load import load_model
+from symgen.model.model import Model
+from symgen.witness.casadi_derivation import witness_functions
+from symgen.witness.configurations import configurations
+from symgen.witness.lagrange import differentiate
+from symgen.witness.translate import default_parameters
+
+MODELS = sorted((Path(__file__).parents[2] / "models").glob("*.yaml"))
+ALL_THREE = {
+    "mass_matrix",
+    "coriolis_matrix",
+    "constraint_jacobian",
+    "nullspace_projector",
+    "nullspace_projector_dot",
+    "projected_control_pseudoinverse",
+    "inverse_dynamics",
+}
+STATES = 3
+TOLERANCE = 1e-9
+State = dict[str, NDArray[np.float64]]
+
+
+def states(model: Model) -> list[State]:
+    """Admissible configurations with arbitrary rates, at the default parameters and at others within their ranges."""
+    generator = np.random.default_rng(11)
+    lagrange, default = differentiate(model), default_parameters(model).full().ravel()
+    found: list[State] = []
+    for k in range(STATES):
+        p = default.copy()
+        for i, parameter in enumerate(model.parameters):
+            if k and parameter.range is not None:
+                low, high = (float(bound) for bound in parameter.range)
+                p[i] += 0.2 * generator.uniform(low - p[i], high - p[i])
+        q = next(islice(configurations(model, lagrange, p, seed=k, trials=40), 1))
+        rates = {name: generator.normal(size=model.n) for name in ("qd", "qdd")}
+        found.append({"q": q, **rates, "u": generator.normal(size=model.m), "p": p})
+    return found
+
+
+class SympyWitness:
+    """The printed closed forms, named intermediates included, evaluated at 50 digits."""
+
+    def __init__(self, model: Model, closed: ClosedForms) -> None:
+        self.forms: dict[str, ClosedForm] = {
+            name: form for name, form in closed.forms.items() if form.matrix is not None
+        }
+        coordinates = model.coordinates
+        self.names = {
+            "q": [c.name for c in coordinates],
+            "qd": [c.rate for c in coordinates],
+            "qdd": [c.acceleration for c in coordinates],
+            "p": [parameter.name for parameter in model.parameters],
+        }
+        self.known = {name for names in self.names.values() for name in names}
+
+    def has(self, quantity: str) -> bool:
+        return quantity in self.forms or (quantity == "nullspace_projector_dot" and "nullspace_projector" in self.forms)
+
+    def __call__(self, quantity: str, state: State) -> NDArray[np.float64]:
+        with mpmath.workdps(50):
+            values = {
+                name: mpmath.mpf(float(value))
+                for argument, names in self.names.items()
+                for name, value in zip(names, state[argument], strict=True)
+            }
+            if quantity in self.forms:
+                return self._numbers(self._evaluate(quantity, values))
+            return self._numbers(self._projector_rate(values))
+
+    def _evaluate(self, quantity: str, values: dict[str, Any]) -> Any:
+        form, values = self.forms[quantity], dict(values)
+        for symbol, meaning in form.intermediates:
+            values[symbol.name] = self._value(meaning, values)
+        assert form.matrix is not None
+        return mpmath.matrix(self._value(form.matrix, values))
+
+    def _value(self, expression: Any, values: dict[str, Any]) -> Any:
+        symbols = sorted(expression.free_symbols, key=lambda symbol: symbol.name)
+        return lambdify(symbols, expression, modules="mpmath")(*(values[symbol.name] for symbol in symbols))
+
+    def _projector_rate(self, values: dict[str, Any]) -> Any:
+        """Where Ṅ is too long to print: the closed form of N, differentiated along q̇ at 50 digits."""
+        step = mpmath.mpf(10) ** -15
+
+        def moved(sign: int) -> Any:
+            pairs = zip(self.names["q"], self.names["qd"], strict=True)
+            return self._evaluate(
+                "nullspace_projector", values | {q: values[q] + sign * step * values[v] for q, v in pairs}
+            )
+
+        return (moved(1) - moved(-1)) / (2 * step)
+
+    def _numbers(self, matrix: Any) -> NDArray[np.float64]:
+        return np.array([[float(entry) for entry in row] for row in matrix.tolist()])
+
+
+@pytest.mark.parametrize("path", MODELS, ids=[path.stem for path in MODELS])
+def test_three_derivations_agree(path: Path) -> None:
+    model = load_model(path)
+    witness = witness_functions(model)
+    sympy = SympyWitness(model, derive_closed_forms(model))
+    derivations = derive_quantities(model, model.outputs)
+    program = schedule(derivations.mechanics, derivations.quantities, "float64")
+    interpreter = Interpreter(program.sincos)
+    kernels = {kernel.name: kernel for kernel in program.kernels}
+
+    assert set(kernels) == set(witness)
+    assert {name for name in witness if name in ALL_THREE and not sympy.has(name)} == set()
+    for state in states(model):
+        scale = float(np.linalg.norm(witness["mass_matrix"](state["q"], state["p"]).full() @ state["qdd"]))
+        for name, function in witness.items():
+            arguments = [argument for argument in function.name_in() if argument != "p"]
+            expected = function(*(state[argument] for argument in [*arguments, "p"])).full()
+            status, entries = interpreter.run(kernels[name], {a: list(state[a]) for a in arguments}, list(state["p"]))
+            assert status is Status.OK, name
+            others = {"kernel": np.array(entries).reshape(expected.shape)}
+            if sympy.has(name):
+                others["SymPy"] = sympy(name, state).reshape(expected.shape)
+            size = float(np.linalg.norm(expected)) + (scale if name == "inverse_dynamics_residual" else 0.0)
+            for other, value in others.items():
+                error = float(np.linalg.norm(value - expected))
+                assert error <= TOLERANCE * size + 1e-12, f"{other} differs from CasADi in {name} by {error:.1e}"
