@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 from symgen.diagnostics import Mistake
@@ -13,7 +14,7 @@ from symgen.model.parser import parse_expression
 from symgen.model.reading import description_of, entries, member, text_of
 from symgen.model.scope import CONFIGURATION, PARAMETERS, STATE, Kind, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
-from symgen.model.walk import names_in
+from symgen.model.walk import evaluate, names_in
 
 DeclaredRanges = dict[str, Range]
 
@@ -58,14 +59,20 @@ def read_ranges(scope: Scope, tree: MappingNode) -> DeclaredRanges:
 def read_parameters(scope: Scope, tree: MappingNode, ranges: DeclaredRanges) -> tuple[Parameter, ...]:
     """The parameters, each a number or an expression of earlier ones."""
     parameters: list[Parameter] = []
+    values: dict[str, float] = {}
     block = entries(tree.get("parameters"))
     cycles = _cyclic(block)
     for key, node in block:
         value_node = node if isinstance(node, ScalarNode) else member(node, "value")
         known = [parameter.name for parameter in parameters]
         value = _ordered(scope, key, value_node, f"the value of `{key.value}`", PARAMETERS, known, cycles)
-        # A faulty value stands in as 1, so that what uses the parameter is still checked.
-        value = value or Number(Fraction(1))
+        if value is None:
+            # A faulty value stands in as 1, so that what uses the parameter is still checked.
+            value = Number(Fraction(1))
+        else:
+            _check_default(scope, key, value_node, value, values, ranges)
+        number = _number(value, values)
+        values[key.value] = 1.0 if math.isnan(number) else number
         unit = text_of(member(node, "unit"))
         parameters.append(Parameter(key.value, unit, description_of(node), value, ranges.get(key.value), key.span))
     return tuple(parameters)
@@ -84,6 +91,8 @@ def read_definitions(scope: Scope, tree: MappingNode) -> tuple[Definition, ...]:
             scope.kinds[name.name] == "rate" or name.name in scope.rate_definitions for name in names_in(value)
         ):
             scope.rate_definitions.add(key.value)
+        if value is None:
+            scope.faulty.add(key.value)
         definitions.append(Definition(key.value, value or Number(Fraction(1)), key.span))
     return tuple(definitions)
 
@@ -128,6 +137,33 @@ def read_applied_forces(scope: Scope, tree: MappingNode) -> tuple[AppliedForce, 
             if expression is not None:
                 forces.append(AppliedForce(key.value, expression, key.span))
     return tuple(forces)
+
+
+def _number(value: Expression, values: dict[str, float]) -> float:
+    try:
+        return evaluate(value, values)
+    except (ArithmeticError, ValueError):
+        return math.nan
+
+
+def _check_default(
+    scope: Scope,
+    key: ScalarNode,
+    node: Node | None,
+    value: Expression,
+    values: dict[str, float],
+    ranges: DeclaredRanges,
+) -> None:
+    span = node.span if node is not None else key.span
+    number = _number(value, values)
+    lower, upper = ranges.get(key.value, (None, None))
+    if math.isnan(number):
+        scope.wrong(f"the value of `{key.value}` is no finite number", "write a number in the range of doubles", span)
+    elif lower is not None and upper is not None and not float(lower) <= number <= float(upper):
+        message = (
+            f"the value of `{key.value}` is {number:.6g}, outside its range [{float(lower):.6g}, {float(upper):.6g}]"
+        )
+        scope.wrong(message, "widen the range, or correct the value", span)
 
 
 def _is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:

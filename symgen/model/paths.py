@@ -23,20 +23,20 @@ def read_paths(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...]) ->
         mistake = name_mistake(key, "path")
         if mistake is not None:
             scope.mistakes.append(mistake)
-        path = _path(scope, key, node, coordinates)
+        path = _path(scope, tree, key, node, coordinates)
         if path is not None:
             paths.append(path)
     return tuple(paths)
 
 
-def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...]) -> Path | None:
+def _path(scope: Scope, tree: MappingNode, key: ScalarNode, node: Node, coordinates: tuple[str, ...]) -> Path | None:
     name = key.value
     duration = constant(scope, member(node, "duration"), f"the duration of path `{name}`")
     count = member(node, "samples")
     samples = whole_number(scope, count, f"the number of samples of path `{name}`", 2, MAXIMUM_SAMPLES)
     if duration is not None and duration <= 0:
         scope.wrong(f"the duration of path `{name}` is not positive", "write a time in seconds", node.span)
-    local = Scope({**scope.kinds, "t": "time"}, scope.spans, scope.rate_definitions, scope.used, scope.mistakes)
+    local = scope.inner(t="time")
     definitions: list[Definition] = []
     for symbol, value in entries(member(node, "definitions")):
         expression = local.expression(value, f"`{symbol.value}` of path `{name}`", PATH_DEFINITION)
@@ -60,6 +60,12 @@ def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...
         number = constant(scope, value, f"the start value of `{coordinate.value}`")
         if number is not None:
             start.append((coordinate.value, number))
+    geometric = len(entries(member(tree.get("constraints"), "geometric")))
+    given = len(entries(member(node, "conditions")))
+    if 0 < given + geometric < len(coordinates):
+        message = f"path `{name}` has {given} conditions and {geometric} geometric constraints for "
+        message += f"{len(coordinates)} coordinates"
+        scope.wrong(message, "add conditions until they fix every coordinate", key.span)
     if duration is None or (samples is None and count is not None):
         return None
     description, samples = description_of(node), samples or DEFAULT_SAMPLES

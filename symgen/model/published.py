@@ -25,7 +25,7 @@ def read_published(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...]
 def _formula(scope: Scope, node: Node, coordinates: tuple[str, ...]) -> Published | None:
     equation = text_of(member(node, "equation")) or ""
     where = f"the published formula {equation}".rstrip()
-    local = Scope(dict(scope.kinds), scope.spans, scope.rate_definitions, scope.used, scope.mistakes)
+    local = scope.inner()
     symbols: list[tuple[str, Expression]] = []
     for key, value in entries(member(node, "where")):
         expression = local.expression(value, f"`{key.value}` of {where}", MOTION)

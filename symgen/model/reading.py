@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symgen.diagnostics import Span
 from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
 
 
@@ -18,6 +19,11 @@ def items(node: Node | None) -> tuple[Node, ...]:
 def member(node: Node | None, key: str) -> Node | None:
     """The value under `key` of a mapping."""
     return node.get(key) if isinstance(node, MappingNode) else None
+
+
+def key_span(node: MappingNode, key: str) -> Span | None:
+    """The place of a key."""
+    return next((name.span for name, _ in node.entries if name.value == key), None)
 
 
 def text_of(node: Node | None) -> str | None:

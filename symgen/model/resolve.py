@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Literal
 
 from symgen.diagnostics import Notice
+from symgen.model.checks import check_mechanics, notice_empty_outputs
 from symgen.model.constants import constant
 from symgen.model.coordinates import read_coordinates
 from symgen.model.declarations import (
@@ -18,14 +19,14 @@ from symgen.model.declarations import (
     read_parameters,
     read_ranges,
 )
-from symgen.model.expression import Expression, Number
+from symgen.model.expression import Number
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean, name_mistake
 from symgen.model.paths import read_paths
 from symgen.model.published import read_published
 from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
 from symgen.model.reading import entries, items, member, text_of
-from symgen.model.scope import CONFIGURATION, STATE, Kind, Scope
+from symgen.model.scope import CONFIGURATION, STATE, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 
 ZERO = Number(Fraction(0))
@@ -37,8 +38,9 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     ranges = read_ranges(scope, tree)
     parameters = read_parameters(scope, tree, ranges)
     definitions = read_definitions(scope, tree)
-    kinetic = _energy(scope, tree, "kinetic_energy", STATE)
-    potential = _energy(scope, tree, "potential_energy", CONFIGURATION)
+    kinetic_read = scope.expression(tree.get("kinetic_energy"), "the kinetic energy", STATE)
+    kinetic = kinetic_read or ZERO
+    potential = scope.expression(tree.get("potential_energy"), "the potential energy", CONFIGURATION) or ZERO
     constraints = read_constraints(scope, tree)
     inputs = read_inputs(scope, tree)
     forces = read_applied_forces(scope, tree)
@@ -48,11 +50,11 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     ]  # fmt: skip
     coordinates = read_coordinates(tree, ranges, definitions, used)
     names = tuple(coordinate.name for coordinate in coordinates)
+    whole = not scope.mistakes
     tolerances = tree.get("tolerances")
     published = read_published(scope, tree, names)
     paths = read_paths(scope, tree, names)
-    _notice_unused(scope, tree)
-    return Model(
+    model = Model(
         name=_model_name(scope, tree),
         description=text_of(tree.get("description")) or "",
         source=text_of(tree.get("source")) or "",
@@ -75,6 +77,10 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         notices=(),
         text_hash=hashlib.sha256(text.encode()).hexdigest(),
     )
+    check_mechanics(scope, tree, model, kinetic_read, whole)
+    notice_empty_outputs(scope, tree, model)
+    _notice_unused(scope, tree)
+    return model
 
 
 def _model_name(scope: Scope, tree: MappingNode) -> str:
@@ -85,10 +91,6 @@ def _model_name(scope: Scope, tree: MappingNode) -> str:
     if mistake is not None:
         scope.mistakes.append(mistake)
     return node.value
-
-
-def _energy(scope: Scope, tree: MappingNode, key: str, allowed: frozenset[Kind]) -> Expression:
-    return scope.expression(tree.get(key), f"the {key.replace('_', ' ')}", allowed) or ZERO
 
 
 def _outputs(scope: Scope, node: Node | None, has_inputs: bool) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Mistake, Notice, Span
@@ -48,12 +48,17 @@ class Scope:
     spans: dict[str, Span] = field(default_factory=dict)
     rate_definitions: set[str] = field(default_factory=set)
     used: set[str] = field(default_factory=set)
+    faulty: set[str] = field(default_factory=set)
     mistakes: list[Mistake] = field(default_factory=list)
     notices: list[Notice] = field(default_factory=list)
 
     def wrong(self, message: str, remedy: str, span: Span | None) -> None:
         """Records a mistake."""
         self.mistakes.append(Mistake(message, remedy, span))
+
+    def inner(self, **kinds: Kind) -> Scope:
+        """A scope for further names that shares everything else with this one."""
+        return replace(self, kinds={**self.kinds, **kinds}, spans=dict(self.spans))
 
     def declare(self, node: ScalarNode, kind: Kind) -> bool:
         """Adds a name, with its rate and acceleration; False (and a mistake) where it is no name or is taken."""
@@ -90,7 +95,8 @@ class Scope:
         earlier = None if known is None else set(known)
         for name in names_in(parsed):
             good &= self._name(name.name, name.span, where, allowed, earlier)
-        return parsed if good else None
+        # What uses a faulty definition cannot be judged; the mistake in the definition is enough.
+        return parsed if good and not any(name.name in self.faulty for name in names_in(parsed)) else None
 
     def _name(
         self, name: str, span: Span | None, where: str, allowed: frozenset[Kind], earlier: set[str] | None

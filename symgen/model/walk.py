@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 
-_FUNCTIONS: dict[str, Callable[..., float]] = {
+FUNCTIONS: dict[str, Callable[..., float]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "asin": math.asin, "acos": math.acos, "atan": math.atan,
     "atan2": math.atan2, "sqrt": math.sqrt, "exp": math.exp, "log": math.log, "sinh": math.sinh, "cosh": math.cosh,
     "tanh": math.tanh,
@@ -47,7 +47,7 @@ def evaluate(expression: Expression, values: Mapping[str, float]) -> float:
         case Power(base=base, exponent=exponent):
             result = power(evaluate(base, values), exponent)
         case Call(function=function, arguments=arguments):
-            result = _FUNCTIONS[function](*(evaluate(argument, values) for argument in arguments))
+            result = FUNCTIONS[function](*(evaluate(argument, values) for argument in arguments))
     if not math.isfinite(result):
         raise OverflowError
     return result

@@ -1,0 +1,103 @@
+"""What a model must be beyond well-formed names: the checks of structure and of the mechanism, all run together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.expression import Expression
+from symgen.model.feasibility import check_motion
+from symgen.model.mechanics import Mechanics
+from symgen.model.model import Model
+from symgen.model.reading import key_span, member
+from symgen.model.scope import Scope
+from symgen.model.source import MappingNode
+from symgen.model.structure import check_domain, check_geometric, check_kinetic_energy, check_nonholonomic
+
+NEEDS_CONSTRAINTS = frozenset(
+    {
+        "constraint_jacobian",
+        "constraint_jacobian_dot",
+        "constraint_pseudoinverse",
+        "weighted_pseudoinverse",
+        "multipliers",
+    }
+)
+NEEDS_INPUTS = frozenset(
+    {
+        "control_matrix",
+        "projected_control_matrix",
+        "projected_control_pseudoinverse",
+        "minimal_control_matrix",
+        "inverse_dynamics",
+        "actuator_velocity",
+        "actuator_mass_matrix",
+        "actuator_bias",
+    }
+)
+
+
+def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expression | None, whole: bool) -> None:
+    """Adds to `scope` what is wrong with the model's mechanics.
+
+    `kinetic` is None where the kinetic energy could not be read.  `whole` says that the mechanical part of the file is
+    free of mistakes, so that the mechanism as a whole can be judged too.
+    """
+    if not model.coordinates:
+        return
+    mechanics = Mechanics(
+        model.coordinates, model.parameters, model.definitions, model.constraints, model.kinetic_energy
+    )
+    before = len(scope.mistakes)
+    if kinetic is not None:
+        _add(scope, check_domain(mechanics, kinetic, "the kinetic energy"))
+    _add(scope, check_domain(mechanics, model.potential_energy, "the potential energy"))
+    for row in model.constraints:
+        _add(scope, check_domain(mechanics, row.expression, f"the constraint `{row.name}`"))
+    for column in model.inputs:
+        for coordinate, coefficient in column.acts_on:
+            _add(scope, check_domain(mechanics, coefficient, f"the coefficient of `{column.name}` on `{coordinate}`"))
+    if len(scope.mistakes) > before:
+        return
+    if kinetic is not None:
+        _add(scope, check_kinetic_energy(mechanics, kinetic))
+    for row in model.constraints:
+        check = check_geometric if row.kind == "geometric" else check_nonholonomic
+        _add(scope, check(mechanics, row))
+    if whole and kinetic is not None and len(scope.mistakes) == before:
+        start = {name: float(value) for name, value in model.configuration}
+        _add(scope, check_motion(mechanics, start, model.independent_velocities, _block_spans(tree)))
+
+
+def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:
+    """Requested quantities that this model does not have."""
+    span = key_span(tree, "outputs")
+    geometric = any(row.kind == "geometric" for row in model.constraints)
+    for name in model.outputs:
+        reason = None
+        if name in NEEDS_CONSTRAINTS and not model.r:
+            reason = "the model has no constraints"
+        elif name == "constraint_residual" and not geometric:
+            reason = "the model has no geometric constraints"
+        elif name in NEEDS_INPUTS and not model.m:
+            reason = "the model has no inputs"
+        elif (name == "orthogonal_complement" or name.startswith("minimal_")) and not model.independent_velocities:
+            reason = "the model names no `independent_velocities`"
+        if reason is not None:
+            scope.notices.append(Notice(f"`{name}` is not made: {reason}", span))
+
+
+def _add(scope: Scope, found: Iterable[Mistake | Notice]) -> None:
+    for one in found:
+        if isinstance(one, Mistake):
+            scope.mistakes.append(one)
+        else:
+            scope.notices.append(one)
+
+
+def _block_spans(tree: MappingNode) -> dict[str, Span | None]:
+    keys = ("constraints", "kinetic_energy", "independent_velocities", "coordinates")
+    spans = {key: key_span(tree, key) for key in keys}
+    constraints = member(tree, "constraints")
+    geometric = key_span(constraints, "geometric") if isinstance(constraints, MappingNode) else None
+    return {**spans, "geometric": geometric or spans["constraints"]}

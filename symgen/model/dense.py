@@ -1,0 +1,109 @@
+"""Small dense linear algebra in floats, for checks that must not import a numerical library."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+Rows: TypeAlias = list[list[float]]
+
+
+def rank(rows: Rows, relative: float = 1e-9) -> int:
+    """The rank by elimination with complete pivoting, of the rows scaled to norm one."""
+    work = _unit_rows(rows)
+    found = 0
+    columns = list(range(len(work[0]))) if work else []
+    while work and columns:
+        size, pivot_row, pivot_column = max((abs(row[c]), i, c) for i, row in enumerate(work) for c in columns)
+        if size <= relative:
+            break
+        pivot = work.pop(pivot_row)
+        columns.remove(pivot_column)
+        for row in work:
+            factor = row[pivot_column] / pivot[pivot_column]
+            for column in columns:
+                row[column] -= factor * pivot[column]
+        found += 1
+    return found
+
+
+def null_space(rows: Rows, n: int, relative: float = 1e-9) -> Rows:
+    """An orthonormal basis of the vectors x with rows x = 0, by Gram-Schmidt, each twice."""
+    basis: Rows = []
+    for row in _unit_rows(rows):
+        _extend(basis, row, relative)
+    constrained = len(basis)
+    for index in range(n):
+        unit = [0.0] * n
+        unit[index] = 1.0
+        # A unit vector may lie close to the span of the others; all n of them together span the rest.
+        if len(basis) < n:
+            _extend(basis, unit, 0.5 / math.sqrt(n))
+    return basis[constrained:]
+
+
+def solve_definite(matrix: Rows, right: list[float]) -> list[float] | None:
+    """The solution for a positive definite matrix by Cholesky's method; None where it is not definite."""
+    n = len(right)
+    lower: Rows = [[0.0] * n for _ in range(n)]
+    for i in range(n):
+        for j in range(i + 1):
+            value = matrix[i][j] - sum(lower[i][k] * lower[j][k] for k in range(j))
+            if i == j:
+                if not value > 0:
+                    return None
+                lower[i][i] = math.sqrt(value)
+            else:
+                lower[i][j] = value / lower[j][j]
+    forward: list[float] = []
+    for i in range(n):
+        forward.append((right[i] - sum(lower[i][k] * forward[k] for k in range(i))) / lower[i][i])
+    solution = [0.0] * n
+    for i in reversed(range(n)):
+        solution[i] = (forward[i] - sum(lower[k][i] * solution[k] for k in range(i + 1, n))) / lower[i][i]
+    return solution
+
+
+def is_positive(matrix: Rows, relative: float = 1e-9) -> tuple[bool, bool]:
+    """Whether a symmetric matrix is positive semidefinite, and whether it is positive definite.
+
+    By pivots on the diagonal, of the matrix scaled to ones there, so that units do not matter.
+    """
+    n = len(matrix)
+    scale = [math.sqrt(matrix[i][i]) if matrix[i][i] > 0 else 0.0 for i in range(n)]
+    largest = max((abs(value) for row in matrix for value in row), default=0.0)
+    for i in range(n):
+        if scale[i] == 0 and any(abs(value) > relative * largest for value in matrix[i]):
+            return False, False
+    left = [i for i in range(n) if scale[i] > 0]
+    definite = len(left) == n
+    work = [
+        [matrix[i][j] / (scale[i] * scale[j]) if scale[i] and scale[j] else 0.0 for j in range(n)] for i in range(n)
+    ]
+    while left:
+        pivot = max(left, key=lambda i: work[i][i])
+        if any(work[i][i] < -relative for i in left):
+            return False, False
+        if work[pivot][pivot] <= relative:
+            return all(abs(work[i][j]) <= math.sqrt(relative) for i in left for j in left), False
+        left.remove(pivot)
+        for i in left:
+            factor = work[i][pivot] / work[pivot][pivot]
+            for j in left:
+                work[i][j] -= factor * work[pivot][j]
+    return True, definite
+
+
+def _unit_rows(rows: Rows) -> Rows:
+    """The rows scaled to norm one."""
+    return [[value / norm for value in row] for row in rows if (norm := math.sqrt(sum(v * v for v in row))) > 0]
+
+
+def _extend(basis: Rows, vector: list[float], relative: float) -> None:
+    for _ in range(2):
+        for unit in basis:
+            along = sum(a * b for a, b in zip(unit, vector, strict=True))
+            vector = [a - along * b for a, b in zip(vector, unit, strict=True)]
+    norm = math.sqrt(sum(a * a for a in vector))
+    if norm > relative:
+        basis.append([a / norm for a in vector])

@@ -1,0 +1,105 @@
+"""Whether the mechanism exists and moves: constraints consistent, δ > 0, masses where motion is possible."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.dense import Rows, is_positive, null_space, rank
+from symgen.model.mechanics import Mechanics
+
+SAMPLES = 4
+
+
+def check_motion(
+    mechanics: Mechanics,
+    start: dict[str, float],
+    independent: tuple[str, ...],
+    spans: dict[str, Span | None],
+) -> Iterator[Mistake | Notice]:
+    """What is wrong with the mechanism as a whole; `spans` has the places of the blocks to point at."""
+    points: list[list[float]] = []
+    jacobians: list[Rows] = []
+    for q in mechanics.admissible(start, SAMPLES):
+        try:
+            jacobians.append(mechanics.jacobian(q))
+        except (ArithmeticError, ValueError):
+            continue
+        points.append(q)
+    if not points:
+        yield Mistake(
+            "no configuration was found that satisfies all geometric constraints",
+            "check signs and lengths, or give a start near the assembled mechanism under `configuration`",
+            spans["geometric"],
+        )
+        return
+    n = len(mechanics.coordinates)
+    ranks = [rank(jacobian) for jacobian in jacobians]
+    generic = max(ranks)
+    if generic == n:
+        yield Mistake(
+            f"the mechanism cannot move: {n} coordinates under {generic} independent constraints (δ = 0)",
+            "remove a constraint, or add the coordinate that is still free",
+            spans["constraints"],
+        )
+        return
+    regular = [(q, b) for q, b, its in zip(points, jacobians, ranks, strict=True) if its == generic]
+    yield from _check_masses(mechanics, regular, spans["kinetic_energy"])
+    if independent:
+        yield from _check_independent(mechanics, regular, independent, n - generic, spans["independent_velocities"])
+
+
+def _check_masses(
+    mechanics: Mechanics, regular: list[tuple[list[float], Rows]], span: Span | None
+) -> Iterator[Mistake]:
+    definite_somewhere = False
+    for q, jacobian in regular:
+        try:
+            mass = mechanics.mass_matrix(q)
+        except (ArithmeticError, ValueError):
+            continue
+        if not is_positive(mass)[0]:
+            where = ", ".join(f"{c.name} = {value:.4g}" for c, value in zip(mechanics.coordinates, q, strict=True))
+            yield Mistake(
+                f"the kinetic energy is negative for some velocities at {where}",
+                "check the signs of its terms, and masses and inertias with their default values",
+                span,
+            )
+            return
+        basis = null_space(jacobian, len(q))
+        reduced = [[_form(mass, a, b) for b in basis] for a in basis]
+        definite_somewhere |= is_positive(reduced)[1]
+    if not definite_somewhere:
+        yield Mistake(
+            "the accelerations are undetermined: some motion that the constraints allow moves no mass",
+            "give every coordinate that can move a mass or inertia in `kinetic_energy`",
+            span,
+        )
+
+
+def _check_independent(
+    mechanics: Mechanics,
+    regular: list[tuple[list[float], Rows]],
+    chosen: tuple[str, ...],
+    delta: int,
+    span: Span | None,
+) -> Iterator[Mistake]:
+    if len(chosen) != delta:
+        yield Mistake(
+            f"`independent_velocities` has {len(chosen)} names, the system has δ = {delta}",
+            f"name {delta} coordinates whose rates determine all others",
+            span,
+        )
+        return
+    n = len(mechanics.coordinates)
+    dependent = [index for index, c in enumerate(mechanics.coordinates) if c.name not in chosen]
+    if not any(rank([[row[i] for i in dependent] for row in b]) == n - delta for _, b in regular):
+        yield Mistake(
+            f"the rates of {', '.join(chosen)} do not determine the others anywhere",
+            "choose other `independent_velocities`",
+            span,
+        )
+
+
+def _form(matrix: Rows, left: list[float], right: list[float]) -> float:
+    return sum(a * value * b for a, row in zip(left, matrix, strict=True) for value, b in zip(row, right, strict=True))

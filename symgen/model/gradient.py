@@ -1,0 +1,98 @@
+"""Values with their gradients in the coordinates, in floats: forward differentiation, sparse."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
+
+from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.walk import FUNCTIONS, power
+
+Dual: TypeAlias = tuple[float, dict[int, float]]
+
+_DERIVATIVES: dict[str, Callable[[float], float]] = {
+    "sin": math.cos,
+    "cos": lambda x: -math.sin(x),
+    "tan": lambda x: 1 + math.tan(x) ** 2,
+    "asin": lambda x: 1 / math.sqrt(1 - x * x),
+    "acos": lambda x: -1 / math.sqrt(1 - x * x),
+    "atan": lambda x: 1 / (1 + x * x),
+    "sqrt": lambda x: 0.5 / math.sqrt(x),
+    "exp": math.exp,
+    "log": lambda x: 1 / x,
+    "sinh": math.cosh,
+    "cosh": math.sinh,
+    "tanh": lambda x: 1 - math.tanh(x) ** 2,
+}
+
+
+class Gradients:
+    """Evaluates expressions and their gradients at one configuration; definitions are evaluated once."""
+
+    def __init__(self, values: Mapping[str, float], index: Mapping[str, int], definitions: Mapping[str, Expression]):
+        self._values, self._index, self._definitions = values, index, definitions
+        self._known: dict[str, Dual] = {}
+
+    def of(self, expression: Expression) -> Dual:
+        """Value and gradient; ArithmeticError or ValueError outside the domain."""
+        match expression:
+            case Number(value=literal):
+                return float(literal), {}
+            case Pi():
+                return math.pi, {}
+            case Name(name=name):
+                return self._name(name)
+            case Negation(operand=operand):
+                value, gradient = self.of(operand)
+                return -value, _scaled(gradient, -1.0)
+            case Binary(operator=operator, left=left, right=right):
+                return _binary(operator, self.of(left), self.of(right))
+            case Power(base=base, exponent=exponent):
+                value, gradient = self.of(base)
+                if not gradient:
+                    return power(value, exponent), {}
+                return power(value, exponent), _scaled(gradient, float(exponent) * power(value, exponent - 1))
+            case Call(function="atan2", arguments=(first, second)):
+                (y, dy), (x, dx) = self.of(first), self.of(second)
+                square = x * x + y * y
+                return math.atan2(y, x), _combined(dy, x / square, dx, -y / square)
+            case Call(function=function, arguments=arguments):
+                value, gradient = self.of(arguments[0])
+                return FUNCTIONS[function](value), _scaled(gradient, _DERIVATIVES[function](value)) if gradient else {}
+
+    def _name(self, name: str) -> Dual:
+        if name not in self._known:
+            if name in self._definitions:
+                self._known[name] = self.of(self._definitions[name])
+            elif name in self._index:
+                self._known[name] = (self._values[name], {self._index[name]: 1.0})
+            else:
+                self._known[name] = (self._values[name], {})
+        return self._known[name]
+
+
+def _binary(operator: str, left: Dual, right: Dual) -> Dual:
+    (a, da), (b, db) = left, right
+    match operator:
+        case "+":
+            return a + b, _combined(da, 1.0, db, 1.0)
+        case "-":
+            return a - b, _combined(da, 1.0, db, -1.0)
+        case "*":
+            return a * b, _combined(da, b, db, a)
+        case _:
+            return a / b, _combined(da, 1 / b, db, -a / (b * b))
+
+
+def _scaled(gradient: dict[int, float], factor: float) -> dict[int, float]:
+    return {index: factor * value for index, value in gradient.items()}
+
+
+def _combined(a: dict[int, float], alpha: float, b: dict[int, float], beta: float) -> dict[int, float]:
+    if not b:
+        return a if alpha == 1.0 else _scaled(a, alpha)
+    result = _scaled(a, alpha)
+    for index, value in b.items():
+        result[index] = result.get(index, 0.0) + beta * value
+    return result

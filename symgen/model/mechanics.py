@@ -1,0 +1,169 @@
+"""A model seen numerically at one configuration: g, B, G in floats, for the checks made while loading."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+from symgen.model.algebra import Expansion
+from symgen.model.dense import Rows, solve_definite
+from symgen.model.expression import Expression
+from symgen.model.gradient import Gradients
+from symgen.model.model import ConstraintRow, Coordinate, Definition, Parameter
+from symgen.model.walk import evaluate
+
+SEED = 20140211
+STARTS = 40
+STEPS = 80
+RESIDUAL = 1e-11
+
+
+class Mechanics:
+    """The parts of a model that say how it moves, evaluated in floats."""
+
+    def __init__(
+        self,
+        coordinates: tuple[Coordinate, ...],
+        parameters: tuple[Parameter, ...],
+        definitions: tuple[Definition, ...],
+        constraints: tuple[ConstraintRow, ...],
+        kinetic_energy: Expression,
+    ) -> None:
+        self.coordinates, self.constraints = coordinates, constraints
+        self._kinetic = kinetic_energy
+        self._definitions = {definition.name: definition.value for definition in definitions}
+        self._index = {coordinate.name: index for index, coordinate in enumerate(coordinates)}
+        self._rates = frozenset(coordinate.rate for coordinate in coordinates)
+        self._parameters = parameters
+        self.defaults = default_values(parameters)
+
+    def expansion(self, q: list[float], parameters: dict[str, float]) -> Expansion:
+        """Polynomials in the rates at a configuration."""
+        return Expansion({**parameters, **self._named(q)}, self._rates, self._definitions)
+
+    def mass_matrix(self, q: list[float]) -> Rows:
+        """G, n x n."""
+        n = len(self.coordinates)
+        matrix = [[0.0] * n for _ in range(n)]
+        order = {coordinate.rate: index for index, coordinate in enumerate(self.coordinates)}
+        for monomial, (value, _) in self.expansion(q, self.defaults).of(self._kinetic).items():
+            if len(monomial) == 2:
+                i, j = order[monomial[0]], order[monomial[1]]
+                matrix[i][j] += value
+                matrix[j][i] += value
+        return matrix
+
+    def geometric(self, q: list[float]) -> tuple[list[float], Rows]:
+        """g and its Jacobian, r_g and r_g x n."""
+        gradients = Gradients({**self.defaults, **self._named(q)}, self._index, self._definitions)
+        residual: list[float] = []
+        jacobian: Rows = []
+        for row in self.constraints:
+            if row.kind == "geometric":
+                value, gradient = gradients.of(row.expression)
+                residual.append(value)
+                jacobian.append([gradient.get(index, 0.0) for index in range(len(self.coordinates))])
+        return residual, jacobian
+
+    def jacobian(self, q: list[float]) -> Rows:
+        """B, r x n."""
+        rows = self.geometric(q)[1]
+        expansion = self.expansion(q, self.defaults)
+        for row in self.constraints:
+            if row.kind == "nonholonomic":
+                polynomial = expansion.of(row.expression)
+                rows.append([polynomial.get((c.rate,), (0.0, 0.0))[0] for c in self.coordinates])
+        return rows
+
+    def admissible(self, start: dict[str, float], count: int) -> Iterator[list[float]]:
+        """Up to `count` configurations on the geometric constraints: from `start`, then around it or at random."""
+        generator = random.Random(SEED)
+        middle = [float(sum(c.range)) / 2 for c in self.coordinates]
+        guess = [start.get(c.name, m) for c, m in zip(self.coordinates, middle, strict=True)]
+        anchor: list[float] | None = None
+        for attempt in range(STARTS):
+            found = self._project(guess)
+            if found is not None:
+                anchor = anchor or found
+                yield found
+                count -= 1
+                if count == 0:
+                    return
+            # Near a known point Newton is quick; without one, or now and then, the whole range is tried.
+            if anchor is not None and attempt % 4 != 3:
+                guess = [
+                    a + generator.uniform(-0.15, 0.15) * float(c.range[1] - c.range[0])
+                    for a, c in zip(anchor, self.coordinates, strict=True)
+                ]
+            else:
+                guess = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
+
+    def anywhere(self, count: int) -> Iterator[tuple[list[float], dict[str, float]]]:
+        """Random configurations with random parameters, for what must hold whatever their values."""
+        generator = random.Random(SEED + 1)
+        for _ in range(count):
+            q = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
+            yield q, {p.name: _drawn(p, self.defaults[p.name], generator) for p in self._parameters}
+
+    def _named(self, q: list[float]) -> dict[str, float]:
+        return {coordinate.name: value for coordinate, value in zip(self.coordinates, q, strict=True)}
+
+    def _project(self, q: list[float]) -> list[float] | None:
+        """The configuration with g = 0 that Levenberg and Marquardt's method reaches from q."""
+        n = len(q)
+        damping = 1e-3
+        try:
+            residual, jacobian = self.geometric(q)
+        except (ArithmeticError, ValueError):
+            return None
+        for _ in range(STEPS):
+            if _vanishes(residual, jacobian, q):
+                return q
+            normal = [[sum(row[i] * row[j] for row in jacobian) for j in range(n)] for i in range(n)]
+            slope = [-sum(row[i] * g for row, g in zip(jacobian, residual, strict=True)) for i in range(n)]
+            scale = max((normal[i][i] for i in range(n)), default=0.0) or 1.0
+            for i in range(n):
+                normal[i][i] += damping * scale
+            step = solve_definite(normal, slope)
+            if step is None:
+                return None
+            trial = [a + b for a, b in zip(q, step, strict=True)]
+            try:
+                trial_residual, trial_jacobian = self.geometric(trial)
+            except (ArithmeticError, ValueError):
+                damping *= 10
+                continue
+            if sum(g * g for g in trial_residual) < sum(g * g for g in residual):
+                q, residual, jacobian = trial, trial_residual, trial_jacobian
+                damping = max(damping / 30, 1e-14)
+            else:
+                damping *= 10
+                if damping > 1e12:
+                    return None
+        return None
+
+
+def default_values(parameters: tuple[Parameter, ...]) -> dict[str, float]:
+    """The parameters' defaults in floats; one that cannot be evaluated (a mistake reported elsewhere) counts as 1."""
+    values: dict[str, float] = {}
+    for parameter in parameters:
+        try:
+            values[parameter.name] = evaluate(parameter.value, values)
+        except (ArithmeticError, ValueError):
+            values[parameter.name] = 1.0
+    return values
+
+
+def _drawn(parameter: Parameter, default: float, generator: random.Random) -> float:
+    if parameter.range is not None:
+        return generator.uniform(float(parameter.range[0]), float(parameter.range[1]))
+    return default * generator.uniform(0.7, 1.3) if default else generator.uniform(-0.1, 0.1)
+
+
+def _vanishes(residual: list[float], jacobian: Rows, q: list[float]) -> bool:
+    """Whether each g is zero relative to what its terms can be expected to be."""
+    for value, row in zip(residual, jacobian, strict=True):
+        size = sum(abs(a) * max(1.0, abs(b)) for a, b in zip(row, q, strict=True))
+        if abs(value) > RESIDUAL * size:
+            return False
+    return True

@@ -1,0 +1,132 @@
+"""Whether energies and constraints have the form the theory needs: T quadratic, constraints linear in the rates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from symgen.diagnostics import Mistake, Notice
+from symgen.model.algebra import BEYOND, Monomial, NotPolynomialError, Polynomial, is_zero
+from symgen.model.expression import Binary, Expression, Negation
+from symgen.model.mechanics import Mechanics
+from symgen.model.model import ConstraintRow
+
+POINTS = 3
+ATTEMPTS = 30
+
+
+def check_kinetic_energy(mechanics: Mechanics, kinetic: Expression) -> Iterator[Mistake]:
+    """T must be a quadratic form in the rates."""
+    remedy = "write T as a sum of products of two rates with coefficients of coordinates and parameters"
+    mistakes = list(_check_degree(mechanics, kinetic, 2, "the kinetic energy is not quadratic in the rates", remedy))
+    yield from mistakes
+    if not mistakes and _is_zero(_polynomials(mechanics, kinetic)):
+        yield Mistake("the kinetic energy is zero", "write the kinetic energy of the masses", kinetic.span)
+
+
+def check_nonholonomic(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mistake | Notice]:
+    """A row must be linear and homogeneous in the rates; one that is zero says nothing."""
+    message = f"the constraint `{row.name}` is not linear in the rates"
+    remedy = (
+        "write a sum of rates with coefficients of coordinates and parameters, = 0; g(q) = 0 belongs to `geometric`"
+    )
+    mistakes = list(_check_degree(mechanics, row.expression, 1, message, remedy))
+    yield from mistakes
+    if not mistakes and _is_zero(_polynomials(mechanics, row.expression)):
+        yield Notice(f"the constraint `{row.name}` is zero for all motions and says nothing", row.span)
+
+
+def check_geometric(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mistake | Notice]:
+    """A row without coordinates is either nothing or a contradiction."""
+    values: list[tuple[float, float]] = []
+    for q, parameters in mechanics.anywhere(ATTEMPTS):
+        try:
+            values.append(mechanics.expansion(q, parameters).of(row.expression).get((), (0.0, 0.0)))
+        except NotPolynomialError:
+            return
+        except (ArithmeticError, ValueError):
+            continue
+        if len(values) == POINTS:
+            break
+    first = values[0] if values else (0.0, 0.0)
+    moves = any(abs(value - first[0]) > 1e-9 * (size + first[1]) for value, size in values)
+    if values and all(is_zero(value) for value in values):
+        yield Notice(f"the constraint `{row.name}` is zero for all configurations and says nothing", row.span)
+    elif values and not moves:
+        message = f"the constraint `{row.name}` demands {first[0]:.6g} = 0"
+        yield Mistake(message, "a geometric constraint is an expression of coordinates that can become zero", row.span)
+
+
+def check_domain(mechanics: Mechanics, expression: Expression, what: str) -> Iterator[Mistake]:
+    """The expression must have a value somewhere in the ranges of coordinates and parameters."""
+    try:
+        exists = next(_polynomials(mechanics, expression), None) is not None
+    except NotPolynomialError:
+        return
+    if not exists:
+        yield Mistake(
+            f"{what} has no finite value at any sampled configuration",
+            "check divisions, roots and logarithms, and give `range`s in which it exists",
+            expression.span,
+        )
+
+
+def _check_degree(
+    mechanics: Mechanics, expression: Expression, degree: int, message: str, remedy: str
+) -> Iterator[Mistake]:
+    try:
+        for polynomial in _polynomials(mechanics, expression):
+            wrong = _wrong_monomial(polynomial, degree)
+            if wrong is not None:
+                culprit = _summand(mechanics, expression, degree)
+                yield Mistake(f"{message}: it has {_shown(wrong)}", remedy, culprit.span)
+                return
+    except NotPolynomialError as error:
+        yield Mistake(f"{message}: it {error.what}", remedy, error.span)
+
+
+def _wrong_monomial(polynomial: Polynomial, degree: int) -> Monomial | None:
+    wrong = (m for m, coefficient in polynomial.items() if len(m) != degree and not is_zero(coefficient))
+    return min(wrong, key=lambda m: (len(m), m), default=None)
+
+
+def _shown(monomial: Monomial) -> str:
+    if monomial == BEYOND:
+        return "a term of fourth or higher degree in the rates"
+    return f"a term with {'*'.join(monomial)}" if monomial else "a term without rates"
+
+
+def _summand(mechanics: Mechanics, expression: Expression, degree: int) -> Expression:
+    """The first summand of the expression that has a term of another degree, to point at."""
+    for summand in _summands(expression):
+        for polynomial in _polynomials(mechanics, summand):
+            if _wrong_monomial(polynomial, degree) is not None:
+                return summand
+    return expression
+
+
+def _summands(expression: Expression) -> Iterable[Expression]:
+    match expression:
+        case Binary(operator="+" | "-", left=left, right=right):
+            yield from _summands(left)
+            yield from _summands(right)
+        case Negation(operand=operand):
+            yield from _summands(operand)
+        case _:
+            yield expression
+
+
+def _polynomials(mechanics: Mechanics, expression: Expression) -> Iterator[Polynomial]:
+    """The expansion at a few random points of its domain."""
+    found = 0
+    for q, parameters in mechanics.anywhere(ATTEMPTS):
+        try:
+            yield mechanics.expansion(q, parameters).of(expression)
+        except (ArithmeticError, ValueError):
+            continue
+        found += 1
+        if found == POINTS:
+            return
+
+
+def _is_zero(polynomials: Iterable[Polynomial]) -> bool:
+    return all(is_zero(coefficient) for polynomial in polynomials for coefficient in polynomial.values())
