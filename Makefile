@@ -1,0 +1,36 @@
+# make run: set up and generate the paper's models; make test: everything that CI checks.
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+VENV := .venv
+BIN := $(VENV)/bin
+PAPER := skate front_car front_car_wheelset rear_car rapkm_2rrr_rr rapkm_two_drives
+
+.PHONY: run test generated lock
+
+run: $(VENV)/installed
+	$(BIN)/symgen $(PAPER:%=models/%.yaml)
+
+test: $(VENV)/installed
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest -n 2
+
+generated: $(VENV)/installed
+	$(BIN)/symgen models/*.yaml
+
+# One lock for every platform and Python from 3.11 on; editables is what the build backend needs for `pip install -e`.
+lock: $(VENV)/installed
+	$(BIN)/pip install --quiet uv
+	printf 'editables\nhatchling\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+	    --no-header --no-annotate --no-emit-index-url --no-emit-find-links --extra test \
+	    --output-file requirements.lock pyproject.toml -
+
+$(VENV)/locked: requirements.lock
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements.lock
+	touch $@
+
+$(VENV)/installed: $(VENV)/locked pyproject.toml
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	$(BIN)/python -m compileall -q symgen
+	touch $@
