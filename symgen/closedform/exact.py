@@ -112,8 +112,6 @@ class Exact:
     @cached_property
     def projector_dot(self) -> Matrix:
         """The time derivative of N_B along q-dot."""
-        terms = sum(len(e.numerator) for row in self.projector for e in row)
-        self._admit(terms * len(self.phi_squares) * 50, "the time derivative of N_B")
         translator = self.mechanics.translator
         rows: list[tuple[Quotient, ...]] = []
         for i, row in enumerate(self.projector):

@@ -23,13 +23,14 @@ from symgen.closedform.structured import (
     structured_projector,
     structured_pseudoinverse,
 )
+from symgen.closedform.substitution import substitute
 from symgen.model.expression import Expression
 from symgen.model.model import Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
 
 LONG_MATRIX = 60
 """A derived matrix whose numerators have more terms than this is printed in named minors when such a form exists."""
 
-SHORT_WORK = 2000
+SHORT_WORK = 500
 """Products of terms below which a matrix is built to see how long it is."""
 
 LONGEST_MATRIX = 600
@@ -96,12 +97,10 @@ def published_expressions(model: Model) -> Iterable[Expression]:
             case PublishedMatrix():
                 for matrix in (item.value, item.corrected or ()):
                     for row in matrix:
-                        yield from row
-                yield from (value for _, value in item.where)
+                        yield from (substitute(entry, dict(item.where)) for entry in row)
             case PublishedEquations():
-                for left, right in (*item.equations, *item.corrected):
-                    yield from (left, right)
-                yield from (value for _, value in item.where)
+                for sides in (*item.equations, *item.corrected):
+                    yield from (substitute(side, dict(item.where)) for side in sides)
             case PublishedSingularSet():
                 yield item.where_zero
                 if item.corrected is not None:
@@ -133,16 +132,19 @@ class _Writer:
             yield self._direct("constraint_jacobian", lambda: mechanics.jacobian)
             yield self._direct("constraint_jacobian_dot", lambda: mechanics.jacobian_dot)
             yield self._pseudoinverse()
-        yield self._direct(
+        projector = self._direct(
             "nullspace_projector",
             lambda: exact.projector,
             "N_B = I - B^+ B",
             lambda: structured_projector(exact, self.speller, self.taken),
             exact.projector_work,
         )
-        yield self._direct(
-            "nullspace_projector_dot", lambda: exact.projector_dot, "the derivative of N_B is -X - X^T, X = B^+ Bdot N_B"
-        )
+        yield projector
+        if projector.note:
+            text = "not written out, as N_B is not; the derivative of N_B is -X - X^T, X = B^+ Bdot N_B"
+            yield ClosedForm("nullspace_projector_dot", None, (), text)
+        else:
+            yield self._direct("nullspace_projector_dot", lambda: exact.projector_dot)
         if model.independent_velocities:
             yield self._direct("orthogonal_complement", self._complement)
         if model.inputs:
@@ -221,7 +223,7 @@ class _Writer:
         if work is None:
             return ""
         products, operations = work(), self.operations.get(quantity)
-        if operations is not None and products > 10 * max(operations, SHORT_WORK // 10):
+        if operations is not None and products > max(10 * operations, SHORT_WORK):
             return f"not written out: about {products} products of terms, above ten times the {operations} operations of the kernel"
         if products > SHORT_WORK:
             return f"not written out: about {products} products of terms"

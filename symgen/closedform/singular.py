@@ -11,7 +11,6 @@ from sympy.polys.rings import PolyElement
 from symgen.closedform.exact import Exact, TooLarge
 from symgen.closedform.homogeneous import common_factor, factorise, homogeneous, never_zero, parity_classes
 from symgen.closedform.minors import common_denominator
-from symgen.closedform.quotient import polynomial
 from symgen.closedform.ring import TrigRing
 from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
@@ -97,7 +96,7 @@ def _common_zeros(
     if not never and sum(len(v) ** 2 for v in own) <= 4000:
         total = ring.normal(sum((v * v for v in own), ring.zero))
         never = not essential_factors(ring, total)
-    spelled = tuple(speller.quotient(polynomial(ring, ring.normal(f))) for f in factors)
+    spelled = tuple(_unsigned(speller.polynomial(ring.normal(f))) for f in factors)
     if never:
         if not spelled:
             return SingularSet(kind, quantity, (), True, f"{text} nowhere")
@@ -105,8 +104,12 @@ def _common_zeros(
         for factor in spelled:
             product *= factor
         return SingularSet(kind, quantity, (product,), True, f"{text} where this product vanishes")
-    printed = tuple(speller.quotient(polynomial(ring, v)) for v in own)
+    printed = tuple(_unsigned(speller.polynomial(v)) for v in own)
     return SingularSet(kind, quantity, printed, False, f"{text} where all of these vanish at once")
+
+
+def _unsigned(expression: Expr) -> Expr:
+    return -expression if expression.could_extract_minus_sign() else expression
 
 
 def _can_vanish(ring: TrigRing, p: PolyElement) -> bool:

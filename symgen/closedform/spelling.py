@@ -55,10 +55,13 @@ class Speller:
             self.symbols += [sin(angle), cos(angle)]
         self.symbols += [spell_expression(atom.expression) for atom in ring.opaque]
         self._known: dict[PolyElement, tuple[Rational, Expr]] = {}
+        self._factored: dict[PolyElement, Expr] = {}
 
     def polynomial(self, p: PolyElement) -> Expr:
         """A ring element in normal form, factored."""
-        return self.quotient(polynomial(self.ring, p))
+        if p not in self._factored:
+            self._factored[p] = self.quotient(polynomial(self.ring, p))
+        return self._factored[p]
 
     def quotient(self, value: Quotient) -> Expr:
         """A fraction in lowest terms, both parts factored."""

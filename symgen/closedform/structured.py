@@ -12,7 +12,6 @@ from sympy.polys.rings import PolyElement
 from symgen.closedform.exact import Exact
 from symgen.closedform.matrices import dot
 from symgen.closedform.minors import left_inverse_terms
-from symgen.closedform.quotient import polynomial
 from symgen.closedform.spelling import Speller
 
 
@@ -34,10 +33,10 @@ class Naming:
     def name(self, value: PolyElement, name: str) -> Expr:
         """The symbol for a ring element with a sign, the element itself when it is a monomial; new names are recorded."""
         if len(value) <= 1:
-            return self.speller.quotient(polynomial(self.speller.ring, value))
+            return self.speller.polynomial(value)
         if value not in self.known:
             symbol = self.symbol(name)
-            self.meanings[symbol] = self.speller.quotient(polynomial(self.speller.ring, value))
+            self.meanings[symbol] = self.speller.polynomial(value)
             self.known[value] = symbol
             self.known[-value] = -symbol
         return self.known[value]
@@ -92,7 +91,7 @@ def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: froz
     """M~^+ = sum_J Delta_J v_L / Sigma_Delta, L = J without the input of the row; Delta_J as products of their factors."""
     naming = Naming(speller, taken)
     name_minors(exact, naming)
-    scale = speller.quotient(polynomial(exact.ring, exact.control_scale))
+    scale = speller.polynomial(exact.control_scale)
     total = naming.symbol("Sigma_Delta")
     squares: Expr = Integer(0)
     entries = [[Integer(0) for _ in range(exact.model.n)] for _ in range(exact.model.m)]
@@ -149,7 +148,7 @@ def determinant_terms(exact: Exact, speller: Speller, taken: frozenset[str]) -> 
     naming = Naming(speller, taken)
     choices = len(exact.actuations)
     return tuple(
-        (naming.symbol(label("Delta", j, i, choices)), speller.quotient(polynomial(exact.ring, value)))
+        (naming.symbol(label("Delta", j, i, choices)), speller.polynomial(value))
         for i, actuation in enumerate(exact.actuations)
         for j, value in actuation.determinants.items()
     )
