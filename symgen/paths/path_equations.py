@@ -8,16 +8,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symgen.diagnostics import Mistake
 from symgen.model.model import Model, Path
 
 Array = NDArray[np.float64]
 
 
 class PathError(Exception):
-    """A path of the model file that cannot be followed; the message names it and says what to change."""
+    """A path of the model file that cannot be followed, with the mistake to show in the file."""
 
-    def __init__(self, path: Path, message: str) -> None:
-        super().__init__(f"path {path.name}: {message}")
+    def __init__(self, path: Path, problem: str, remedy: str) -> None:
+        self.mistake = Mistake(f"path `{path.name}`: {problem}", remedy, path.span)
+        super().__init__(f"{self.mistake.message}; {remedy}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,7 +41,7 @@ class PathSolver:
         guess = np.array([known.get(coordinate.name, 0.0) for coordinate in self.model.coordinates])
         solution = self._newton(guess, 0.0)
         if solution is None:
-            raise PathError(self.path, "no solution at t = 0 near `start`; check the conditions, or start nearer")
+            raise PathError(self.path, "no solution at t = 0 near `start`", "check the conditions, or start nearer")
         self._check_count(solution)
         return solution
 
@@ -77,6 +77,12 @@ class PathSolver:
         self._check_regular(jacobian, t)
         qd = -_least_squares(jacobian, self.equations.rate(q, t))
         qdd = -_least_squares(jacobian, self.equations.acceleration(q, qd, t))
+        if not np.all(np.isfinite(qd) & np.isfinite(qdd)):
+            raise PathError(
+                self.path,
+                f"rates or accelerations are not finite at t = {t:.6g}",
+                "write conditions that can be differentiated twice",
+            )
         return qd, qdd
 
     def _newton(self, q: Array, t: float) -> Array | None:
@@ -105,17 +111,23 @@ class PathSolver:
         count = len(self.path.conditions)
         if count != freedom:
             raise PathError(
-                self.path, f"{count} conditions for {freedom} degrees of freedom; give exactly {freedom} conditions"
+                self.path,
+                f"the number of conditions is {count}, the local degree of freedom is {freedom}",
+                "give as many conditions as the configuration has degrees of freedom",
             )
 
     def _check_regular(self, jacobian: Array, t: float) -> None:
         if _rank(jacobian) < self.model.n:
             raise PathError(
-                self.path, f"constraints and conditions do not determine the motion at t = {t:.6g}; avoid this pose"
+                self.path,
+                f"constraints and conditions do not determine the motion at t = {t:.6g}",
+                "avoid this configuration",
             )
 
     def _lost(self, t: float) -> PathError:
-        return PathError(self.path, f"no solution beyond t = {t:.6g}; the conditions leave what can be reached")
+        return PathError(
+            self.path, f"no solution beyond t = {t:.6g}", "keep the conditions within what the mechanism can reach"
+        )
 
 
 def solve_path(model: Model, path: Path) -> Trajectory:
@@ -144,7 +156,8 @@ def _check_nonholonomic(solver: PathSolver, times: Array, positions: list[Array]
             raise PathError(
                 solver.path,
                 f"the prescribed motion violates the non-holonomic constraint {worst} at t = {t:.6g} "
-                f"(residual {np.max(np.abs(residual)):.3g}); choose conditions that satisfy it",
+                f"(residual {np.max(np.abs(residual)):.3g})",
+                "choose conditions that satisfy it: it cannot be solved for positions",
             )
 
 

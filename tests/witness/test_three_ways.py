@@ -1,4 +1,4 @@
-"""CasADi, SymPy and the kernels of the scalar graph derive the same quantities: they witness each other on random states."""
+"""CasADi, SymPy and the kernels of the scalar graph derive the same quantities: they witness each other."""
 
 from __future__ import annotations
 
