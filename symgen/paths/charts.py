@@ -96,9 +96,10 @@ def _determinants(model: Model, data: FigureData) -> str:
         if len(data.curves) > 1:
             panel.axhline(data.threshold, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
             _note(panel, "dashed: threshold\nof switching (28)")
-        panel.set_ylim(bottom=0)
+        panel.set_ylim(0, 1.06 * max(float(curve.values.max()) for curve in data.curves) or 1.0)
         panel.set_xlabel("time in s")
-        panel.set_ylabel(r"$\det\,\tilde{M}_1^{\mathrm{T}} \tilde{M}_1$")
+        matrix = r"\tilde{M}_1" if len(data.curves) > 1 else r"\tilde{M}"
+        panel.set_ylabel(rf"$\det\,{matrix}^{{\mathrm{{T}}}} {matrix}$")
         panel.legend(
             title="inputs", loc="upper left", bbox_to_anchor=(LEGEND_X, 1.0), borderaxespad=0, alignment="left"
         )
