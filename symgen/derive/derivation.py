@@ -6,17 +6,18 @@ by quantity name; `select` compares the derivations along different null spaces 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import combinations
 
 from symgen.derive.exterior import ActuationForms, RowForms, unit, wedge_all
 from symgen.derive.exterior import square as multivector_square
 from symgen.derive.genericity import Genericity
-from symgen.derive.guards import Guard
+from symgen.derive.guards import Guard, magnitude
 from symgen.derive.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia, ShiftedInertia
 from symgen.derive.mechanics import Mechanics
 from symgen.derive.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
+from symgen.graph.calculus import derivative_along
 from symgen.graph.matrix import (
     Matrix,
     Vector,
@@ -46,7 +47,7 @@ class Derivation:
         self.graph = mechanics.graph
         self.n, self.r, self.m = mechanics.n, mechanics.r, mechanics.m
 
-    # shared parts -------------------------------------------------------------------------------------------------
+    # shared parts ----------------------------------------------------------------------------------------------------
 
     @cached_property
     def admissible(self) -> Vector:
@@ -74,9 +75,19 @@ class Derivation:
     def actuation_guards(self) -> tuple[Guard, ...]:
         """The denominator of the input equations; a drop of rank B is named first."""
         forms, _ = self._actuation
+        return self._solvable(forms, self.mechanics.inputs, Status.ACTUATION_RANK)
+
+    def _solvable(self, forms: ActuationForms, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
         if forms.denominator().constant is not None:
             return ()
-        return (Guard(Status.ACTUATION_RANK, forms.denominator(), 1 if forms.single else 2, self.space.guards),)
+        scale = None
+        if isinstance(self.space, HouseholderSpace):
+            # reflections keep lengths: the determinants are at most the products of the columns' lengths
+            squares = magnitude(self.graph, [dot(self.graph, column, column) for column in columns])
+            scale = self.graph.sum(self.graph.product(squares[k] for k in subset) for subset in forms.subsets)
+            if forms.single:
+                scale = self.graph.function("sqrt", (scale,))
+        return (Guard(status, forms.denominator(), 1 if forms.single else 2, self.space.guards, scale),)
 
     def _solve_inputs(self, force: Vector) -> Vector:
         forms, restriction = self._actuation
@@ -111,7 +122,8 @@ class Derivation:
         projected = self.space.project(self.mechanics.qdd)
         if self.r == 0:
             return projected
-        return subtract_vectors(projected, self.space.lift(self.mechanics.constraint_acceleration_bias(self.admissible)))
+        bias = self.mechanics.constraint_acceleration_bias(self.admissible)
+        return subtract_vectors(projected, self.space.lift(bias))
 
     def projected_configuration(self) -> Vector:
         """Two Newton steps q <- q - B_g^+ g with the geometric rows."""
@@ -142,10 +154,14 @@ class Derivation:
         q = self.mechanics.q
         moved = {a: a - b for a, b in zip(q, self._newton_step, strict=True)}
         guards = self._newton_space.guards
-        again = substitute(self.graph, [guard.denominator for guard in guards], moved)
-        return (*guards, *(Guard(g.status, d, g.degree) for g, d in zip(guards, again, strict=True)))
+        return (*guards, *(self._moved(guard, moved) for guard in guards))
 
-    # projected equations (30) ------------------------------------------------------------------------------------------
+    def _moved(self, guard: Guard, replacements: Mapping[Scalar, Scalar]) -> Guard:
+        scale = magnitude(self.graph, [guard.denominator])[0] if guard.scale is None else guard.scale
+        denominator, scale = substitute(self.graph, [guard.denominator, scale], replacements)
+        return Guard(guard.status, denominator, guard.degree, scale=scale)
+
+    # projected equations (30) ----------------------------------------------------------------------------------------
 
     def projected_mass_matrix(self) -> Matrix:
         """G~ = N G N."""
@@ -158,7 +174,7 @@ class Derivation:
         inertial = matmul(graph, self.mechanics.mass_matrix, self.projector_dot(self.admissible), n)
         return matmul(graph, space.projector, add(coriolis, inertial), n)
 
-    # weighted projection (17), (19) --------------------------------------------------------------------------------------
+    # weighted projection (17), (19) ----------------------------------------------------------------------------------
 
     @cached_property
     def weighted_projector(self) -> Matrix:
@@ -172,7 +188,7 @@ class Derivation:
         complement = subtract(identity(self.graph, self.n), self.weighted_projector)
         return matmul(self.graph, complement, self.space.pseudoinverse, self.r)
 
-    # minimal coordinates (8), (9) -----------------------------------------------------------------------------------------
+    # minimal coordinates (8), (9) ------------------------------------------------------------------------------------
 
     @cached_property
     def _independent(self) -> tuple[int, ...]:
@@ -186,7 +202,7 @@ class Derivation:
 
     @cached_property
     def complement(self) -> Matrix:
-        """F (8), n x delta: B F = 0, the identity in the independent rows; the same map as (M~^+)^T with M selecting."""
+        """F (8), n x delta: B F = 0, the identity in the independent rows; (M~^+)^T for an M that selects those."""
         forms, restriction = self._partition
         rows = tuple(forms.solve(restriction(axis)) for axis in identity(self.graph, self.n))
         chosen = {i: k for k, i in enumerate(self._independent)}
@@ -197,10 +213,8 @@ class Derivation:
     def partition_guards(self) -> tuple[Guard, ...]:
         """The parametrisation singularity of the chosen independent velocities; reported as a drop of rank."""
         forms, _ = self._partition
-        if forms.denominator().constant is not None:
-            return ()
-        degree = 1 if forms.single else 2
-        return (Guard(Status.CONSTRAINT_RANK, forms.denominator(), degree, self.space.guards),)
+        axes = identity(self.graph, self.n)
+        return self._solvable(forms, [axes[i] for i in self._independent], Status.CONSTRAINT_RANK)
 
     def complement_dot(self, velocity: Vector) -> Matrix:
         """F_dot = -(I - F E) B^+ B_dot F, with E selecting the independent rows."""
@@ -232,7 +246,7 @@ class Derivation:
         inertial = matmul(graph, self.mechanics.mass_matrix, self.complement_dot(qd), delta)
         return matmul(graph, transpose(self.complement, delta), add(coriolis, inertial), delta)
 
-    # inverse dynamics (27) and Remark 10 -------------------------------------------------------------------------------------
+    # inverse dynamics (27) and Remark 10 -----------------------------------------------------------------------------
 
     @cached_property
     def inverse_dynamics(self) -> Vector:
@@ -262,23 +276,17 @@ class Derivation:
         return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(m)) for i in range(m))
 
     def actuator_bias(self) -> Vector:
-        """W^T (G W_dot nu + C v + Q - Q_a) at v = W nu.
-
-        Differentiating B W = 0 and M^T W = I gives W_dot nu = -(I - W M^T) B^+ B_dot v - W M_dot^T v.
-        """
+        """W^T (G W_dot nu + C v + Q - Q_a) at v = W nu, with W differentiated along v."""
         graph, mechanics, w = self.graph, self.mechanics, self.actuator_basis
-        v = matvec(graph, w, self.actuator_velocity())
-        turned = matvec(graph, w, matvec(graph, transpose(mechanics.control_matrix_dot(v), self.m), v))
-        rate = tuple(-x for x in turned)
-        if self.r:
-            lifted = self.space.lift(mechanics.constraint_acceleration_bias(v))
-            seen = matvec(graph, w, tuple(dot(graph, column, lifted) for column in mechanics.inputs))
-            rate = tuple(a - (b - c) for a, b, c in zip(rate, lifted, seen, strict=True))
+        nu = self.actuator_velocity()
+        v = matvec(graph, w, nu)
+        turning = derivative_along(graph, flatten(w), dict(zip(mechanics.q, v, strict=True)))
+        rate = tuple(dot(graph, turning[i * self.m : (i + 1) * self.m], nu) for i in range(self.n))
         here = dict(zip((*mechanics.qd, *mechanics.qdd), (*v, *rate), strict=True))
         force = substitute(graph, mechanics.balance, here)
         return matvec(graph, self.control_pseudoinverse, tuple(force))
 
-    # forward dynamics (15) -------------------------------------------------------------------------------------------------
+    # forward dynamics (15) -------------------------------------------------------------------------------------------
 
     @cached_property
     def forward_dynamics(self) -> Vector:
@@ -298,7 +306,7 @@ class Derivation:
         inertial = matvec(self.graph, mechanics.mass_matrix, self.forward_dynamics)
         return self.space.lift_transposed(subtract_vectors(mechanics.applied_balance, inertial))
 
-    # diagnostics ------------------------------------------------------------------------------------------------------------
+    # diagnostics -----------------------------------------------------------------------------------------------------
 
     def energy(self) -> Vector:
         """[T, U]."""
@@ -316,19 +324,14 @@ class Derivation:
         forms = RowForms(graph, unit_rows, self.n, self.generic.rank)
         present = [graph.function("ratio_or_zero", (length, length)) for length in lengths]
         possible = graph.sum(
-            self._product([present[k] for k in subset]) for subset in combinations(range(self.r), self.generic.rank)
+            graph.product(present[k] for k in subset) for subset in combinations(range(self.r), self.generic.rank)
         )
         constraint = graph.one
         if self.r:
-            constraint = graph.function("ratio_or_zero", (forms.square, possible)) if self.generic.rank < self.r else forms.square
+            dependent = self.generic.rank < self.r
+            constraint = graph.function("ratio_or_zero", (forms.square, possible)) if dependent else forms.square
         actuation = self._actuation_measure(forms)
         return constraint, actuation
-
-    def _product(self, factors: Sequence[Scalar]) -> Scalar:
-        product = self.graph.one
-        for factor in factors:
-            product = product * factor
-        return product
 
     def _actuation_measure(self, forms: RowForms) -> Scalar:
         """e(M~)/e(M): |M_J ^ omega|^2 / |omega|^2 sums the determinants of the projected columns."""
@@ -339,13 +342,9 @@ class Derivation:
         projected = ActuationForms(forms, inputs, alpha).square()
         columns = combinations(range(self.m), alpha)
         whole = graph.sum(
-            multivector_square(graph, wedge_all(graph, unit(graph), [inputs[k] for k in subset])) for subset in columns
+            multivector_square(graph, wedge_all(unit(graph), [inputs[k] for k in subset])) for subset in columns
         )
         if self.r == 0:
             return graph.function("ratio_or_zero", (projected, whole))
         seen = graph.function("ratio_or_zero", (projected, forms.square))
         return graph.function("ratio_or_zero", (seen, whole))
-
-    def flat(self, a: Matrix) -> Vector:
-        """Row-major entries."""
-        return flatten(a)

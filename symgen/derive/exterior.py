@@ -24,7 +24,7 @@ def unit(graph: Graph) -> Multivector:
     return {0: graph.one}
 
 
-def wedge(graph: Graph, a: Multivector, x: Sequence[Scalar]) -> Multivector:
+def wedge(a: Multivector, x: Sequence[Scalar]) -> Multivector:
     """a ^ x for a vector x."""
     result: Multivector = {}
     for mask, value in a.items():
@@ -40,10 +40,10 @@ def wedge(graph: Graph, a: Multivector, x: Sequence[Scalar]) -> Multivector:
     return {mask: result[mask] for mask in sorted(result) if not result[mask].is_zero}
 
 
-def wedge_all(graph: Graph, start: Multivector, vectors: Sequence[Sequence[Scalar]]) -> Multivector:
+def wedge_all(start: Multivector, vectors: Sequence[Sequence[Scalar]]) -> Multivector:
     """start ^ x_1 ^ x_2 ^ ..."""
     for vector in vectors:
-        start = wedge(graph, start, vector)
+        start = wedge(start, vector)
     return start
 
 
@@ -60,7 +60,7 @@ def square(graph: Graph, a: Multivector) -> Scalar:
 def basis_wedges(graph: Graph, a: Multivector, n: int) -> list[Multivector]:
     """a ^ e_i for every axis i."""
     axes = [tuple(graph.one if i == j else graph.zero for j in range(n)) for i in range(n)]
-    return [wedge(graph, a, axis) for axis in axes]
+    return [wedge(a, axis) for axis in axes]
 
 
 class RowForms:
@@ -72,7 +72,7 @@ class RowForms:
         self.n = n
         self.rank = rank
         self.subsets = list(combinations(range(len(rows)), rank))
-        self.forms = [wedge_all(graph, unit(graph), [rows[k] for k in subset]) for subset in self.subsets]
+        self.forms = [wedge_all(unit(graph), [rows[k] for k in subset]) for subset in self.subsets]
         self.square = graph.sum(square(graph, form) for form in self.forms)
 
     def projector(self) -> Matrix:
@@ -96,7 +96,7 @@ class RowForms:
         for subset, form in zip(self.subsets, self.forms, strict=True):
             for place, k in enumerate(subset):
                 others = [self.rows[other] for other in subset if other != k]
-                rest = wedge_all(graph, unit(graph), others)
+                rest = wedge_all(unit(graph), others)
                 # b_k stands at `place`; e_i joins at the end and has to move back over the rows behind it
                 sign = -1 if (len(subset) - 1 - place) & 1 else 1
                 for i, replaced in enumerate(basis_wedges(graph, rest, n)):
@@ -118,7 +118,7 @@ class ActuationForms:
         self.products = [[self._product(form, subset) for subset in self.subsets] for form in rows.forms]
 
     def _product(self, form: Multivector, subset: tuple[int, ...]) -> Multivector:
-        return wedge_all(self.graph, form, [self.inputs[k] for k in subset])
+        return wedge_all(form, [self.inputs[k] for k in subset])
 
     @property
     def single(self) -> bool:
@@ -162,7 +162,7 @@ class ActuationForms:
 
     def _replaced(self, form: Multivector, force: Vector) -> dict[tuple[int, ...], Multivector]:
         subsets = sorted({subset[:i] + subset[i + 1 :] for subset in self.subsets for i in range(len(subset))})
-        return {subset: wedge(self.graph, self._product(form, subset), force) for subset in subsets}
+        return {subset: wedge(self._product(form, subset), force) for subset in subsets}
 
     def _pair(self, product: Multivector, replaced: Multivector) -> Scalar:
         if self.single:

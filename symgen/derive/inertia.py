@@ -25,11 +25,19 @@ class ConstrainedInertia(Protocol):
         """K f."""
 
 
-class Cholesky:
-    """L D L^T without pivoting: safe for a symmetric positive definite matrix (Golub and Van Loan, 4.1)."""
+def _diagonal(a: Matrix) -> list[Scalar]:
+    return [row[i] for i, row in enumerate(a)]
 
-    def __init__(self, graph: Graph, a: Matrix) -> None:
+
+class Cholesky:
+    """L D L^T without pivoting: safe for a symmetric positive definite matrix (Golub and Van Loan, 4.1).
+
+    `scales` are the sizes of what the diagonal entries are summed from, the measure for negligible pivots.
+    """
+
+    def __init__(self, graph: Graph, a: Matrix, scales: Sequence[Scalar]) -> None:
         self.graph = graph
+        self._scales = scales
         self.size = len(a)
         self.lower: list[list[Scalar]] = []
         self.pivots: list[Scalar] = []
@@ -44,7 +52,8 @@ class Cholesky:
     @property
     def guards(self) -> tuple[Guard, ...]:
         """The pivots, positive where the matrix is positive definite."""
-        return tuple(Guard(Status.MASS_RANK, pivot, 1) for pivot in self.pivots)
+        pairs = zip(self.pivots, self._scales, strict=True)
+        return tuple(Guard(Status.MASS_RANK, pivot, 1, scale=scale) for pivot, scale in pairs)
 
     def solve(self, b: Sequence[Scalar]) -> Vector:
         """The solution of L D L^T x = b."""
@@ -58,11 +67,16 @@ class Cholesky:
         return tuple(x)
 
 
+def diagonal_sizes(graph: Graph, mass_matrix: Matrix) -> list[Scalar]:
+    """Bounds g_i of the diagonal entries G_ii; |G_ij|^2 <= g_i g_j because G is positive semidefinite."""
+    return magnitude(graph, _diagonal(mass_matrix))
+
+
 class FreeInertia:
     """No constraints: K = G^-1."""
 
     def __init__(self, graph: Graph, mass_matrix: Matrix) -> None:
-        self._factor = Cholesky(graph, mass_matrix)
+        self._factor = Cholesky(graph, mass_matrix, diagonal_sizes(graph, mass_matrix))
         self.guards = self._factor.guards
 
     def solve(self, force: Vector) -> Vector:
@@ -83,11 +97,11 @@ class MinorInertia:
         entries = [[graph.zero] * n for _ in range(n)]
         for form in space.forms.forms:
             if space.delta == 1:
-                w = [wedge(graph, form, axis).get(full, graph.zero) for axis in axes]
+                w = [wedge(form, axis).get(full, graph.zero) for axis in axes]
                 contribution = [[a * b for b in w] for a in w]
             else:
-                once = [wedge(graph, form, axis) for axis in axes]
-                phi = tuple(tuple(wedge(graph, mv, axis).get(full, graph.zero) for axis in axes) for mv in once)
+                once = [wedge(form, axis) for axis in axes]
+                phi = tuple(tuple(wedge(mv, axis).get(full, graph.zero) for axis in axes) for mv in once)
                 half = matmul(graph, phi, mass_matrix, n)
                 contribution = [[dot(graph, half[i], phi[j]) for j in range(n)] for i in range(n)]
             for i in range(n):
@@ -98,9 +112,13 @@ class MinorInertia:
         self._graph = graph
         self._entries: Matrix = tuple(map(tuple, entries))
         self._denominator = weight if space.delta == 1 else weight / 2
-        # the minors' own size is judged by the space's guard; here only G on the null space is
-        size = graph.sum(magnitude(graph, [mass_matrix[i][i] for i in range(n)]))
-        scale = space.forms.square * (size if space.delta == 1 else size * size)
+        # the minors' own size is judged by the space's guard; here only G on the null space is, in units that cancel
+        g = diagonal_sizes(graph, mass_matrix)
+        scale = graph.sum(
+            value * value * graph.product(g[i] for i in range(n) if not mask >> i & 1)
+            for form in space.forms.forms
+            for mask, value in form.items()
+        )
         self.guards = (*space.guards, Guard(Status.MASS_RANK, self._denominator, 1, scale=scale))
 
     def solve(self, force: Vector) -> Vector:
@@ -117,7 +135,9 @@ class BasisInertia:
         weighted = matmul(graph, mass_matrix, basis, delta)
         self._transposed = transpose(basis, delta)
         projected = matmul(graph, self._transposed, weighted, delta)
-        self._factor = Cholesky(graph, projected)
+        g = diagonal_sizes(graph, mass_matrix)
+        scales = [graph.sum(f * f * size for f, size in zip(column, g, strict=True)) for column in self._transposed]
+        self._factor = Cholesky(graph, projected, scales)
         self.guards = (*space.guards, *self._factor.guards)
 
     def solve(self, force: Vector) -> Vector:
@@ -131,12 +151,17 @@ class ShiftedInertia:
         graph, n, projector = space.graph, space.n, space.projector
         self._space = space
         inner = matmul(graph, matmul(graph, projector, mass_matrix, n), projector, n)
-        mu = graph.sum(mass_matrix[i][i] for i in range(n)) / n
+        mu = graph.sum(_diagonal(mass_matrix)) / n
         eye = identity(graph, n)
         shifted = tuple(
             tuple(inner[i][j] + mu * (eye[i][j] - projector[i][j]) for j in range(n)) for i in range(n)
         )
-        self._factor = Cholesky(graph, shifted)
+        g = diagonal_sizes(graph, mass_matrix)
+        scales = [
+            graph.sum(x * x * size for x, size in zip(row, g, strict=True)) + mu * (1 - row[k])
+            for k, row in enumerate(projector)
+        ]
+        self._factor = Cholesky(graph, shifted, scales)
         self.guards = (*space.guards, *self._factor.guards)
 
     def solve(self, force: Vector) -> Vector:

@@ -48,7 +48,7 @@ class Mechanics:
         """Number of inputs."""
         return len(self.u)
 
-    # energies ---------------------------------------------------------------------------------------------------
+    # energies --------------------------------------------------------------------------------------------------------
 
     @cached_property
     def kinetic_energy(self) -> Scalar:
@@ -87,7 +87,7 @@ class Mechanics:
         return tuple(gradients)
 
     def coriolis_matrix(self, velocity: Vector) -> Matrix:
-        """C (3) from Christoffel symbols: 1/2 sum_k (d_k G_ij + d_j G_ik - d_i G_jk) v_k, so that G_dot - 2 C is skew."""
+        """C (3) from Christoffel symbols, 1/2 sum_k (d_k G_ij + d_j G_ik - d_i G_jk) v_k: G_dot - 2 C is skew."""
         graph, n, d = self.graph, self.n, self.mass_matrix_gradient
         symmetric = [[dot(graph, [d[k][i][j] for k in range(n)], velocity) for j in range(n)] for i in range(n)]
         gyroscopic = [[dot(graph, [d[j][i][k] for k in range(n)], velocity) for j in range(n)] for i in range(n)]
@@ -145,7 +145,7 @@ class Mechanics:
         collected = [a + b for a, b in zip(linear, squared, strict=True)]
         return tuple(min((direct, collected), key=lambda force: cost(force).weight))
 
-    # constraints and inputs ---------------------------------------------------------------------------------------
+    # constraints and inputs ------------------------------------------------------------------------------------------
 
     @cached_property
     def constraint_residual(self) -> Vector:

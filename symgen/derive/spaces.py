@@ -11,10 +11,13 @@ from functools import cached_property
 from typing import Protocol
 
 from symgen.derive.exterior import ActuationForms, RowForms
-from symgen.derive.guards import Guard
+from symgen.derive.guards import Guard, magnitude
 from symgen.graph.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
+
+# Up to this many squared pivots are multiplied as they are.
+LONGEST_PRODUCT = 6
 
 
 class NullSpace(Protocol):
@@ -153,7 +156,14 @@ class HouseholderSpace:
 
     @cached_property
     def guards(self) -> tuple[Guard, ...]:
-        return tuple(Guard(Status.CONSTRAINT_RANK, pivot, 2) for pivot in self.reflections.pivots)
+        # reflections keep lengths: the product of the pivots is det(B B^T) <= the product of the rows' squared lengths
+        graph, pivots = self.graph, self.reflections.pivots
+        lengths = magnitude(graph, [dot(graph, row, row) for row in self.rows])
+        if self.rank > LONGEST_PRODUCT:
+            # quotients stay in the range of a float32 however many rows there are
+            quotients = [pivot / length for pivot, length in zip(pivots, lengths, strict=True)]
+            return (Guard(Status.CONSTRAINT_RANK, graph.product(quotients), 2, scale=graph.one),)
+        return (Guard(Status.CONSTRAINT_RANK, graph.product(pivots), 2, scale=graph.product(lengths)),)
 
     @cached_property
     def basis(self) -> Matrix:

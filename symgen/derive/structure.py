@@ -110,7 +110,8 @@ def _constraint_decisions(
         decisions.append(Decision(f"constraint terms of {', '.join(free)}", "no constraint touches these coordinates"))
     if len(blocks) > 1:
         sizes = "; ".join(f"{', '.join(rows)} on {', '.join(columns)}" for rows, columns in blocks)
-        decisions.append(Decision("coupling between constraint blocks", f"the rows fall into {len(blocks)} blocks: {sizes}"))
+        why = f"the rows fall into {len(blocks)} blocks: {sizes}"
+        decisions.append(Decision("coupling between constraint blocks", why))
     if generic.r and not mechanics.constraint_residual:
         decisions.append(Decision("projection of configurations", "there are no geometric constraints"))
     if generic.r and all(entry.constant is not None for row in mechanics.constraint_jacobian for entry in row):
@@ -148,8 +149,8 @@ def _input_decisions(mechanics: Mechanics, generic: Genericity) -> list[Decision
     decisions = []
     if not mechanics.m:
         return [Decision("inverse dynamics", "the model declares no inputs")]
-    columns = mechanics.inputs
-    if all(sum(not x.is_zero for x in column) == 1 and all(x.is_zero or x.is_one for x in column) for column in columns):
+    entries = [[x for x in column if not x.is_zero] for column in mechanics.inputs]
+    if all(len(column) == 1 and column[0].is_one for column in entries):
         decisions.append(Decision("products with M", "every input drives one coordinate, M selects rows"))
     if generic.full_actuation:
         decisions.append(Decision("inverse dynamics residual", "the inputs span every admissible direction"))

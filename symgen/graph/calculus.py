@@ -30,6 +30,11 @@ def partials(graph: Graph, node: Scalar) -> tuple[Scalar, ...]:
             return (1 / args[1], -(node / args[1]))
         case "sqrt":
             return (Fraction(1, 2) / node,)
+        case "abs":
+            return (graph.function("copysign", (graph.one, args[0])),)
+        case "copysign":
+            # of a magnitude that is not negative
+            return (graph.function("copysign", (graph.one, args[1])), graph.zero)
         case "pow":
             exponent = node.payload
             assert isinstance(exponent, Fraction)
@@ -76,8 +81,8 @@ def derivative_along(graph: Graph, outputs: Sequence[Scalar], direction: Mapping
             numerator, denominator = node.args
             rate[node] = (rate[numerator] - node * rate[denominator]) / denominator
         else:
-            terms = zip(partials(graph, node), node.args, strict=True)
-            rate[node] = graph.sum(partial * rate[argument] for partial, argument in terms if not rate[argument].is_zero)
+            terms = zip(partials(graph, node), (rate[argument] for argument in node.args), strict=True)
+            rate[node] = graph.sum(partial * term for partial, term in terms if not term.is_zero)
     return [rate[output] for output in outputs]
 
 

@@ -15,6 +15,11 @@ from typing import TypeAlias
 
 Number: TypeAlias = "Scalar | int | Fraction"
 
+Monomial: TypeAlias = "tuple[Fraction, dict[Scalar, int]]"
+
+# Products of more factors than this are not taken apart.
+MOST_FACTORS = 12
+
 # pi to 70 digits: literals are rounded once, from this value, to the scalar type of a program.
 PI = Fraction(31415926535897932384626433832795028841971693993751058209749445923078164, 10**70)
 
@@ -73,6 +78,7 @@ class Graph:
 
     def __init__(self) -> None:
         self._nodes: dict[tuple[object, ...], Scalar] = {}
+        self._monomials: dict[Scalar, Monomial] = {}
         self.zero = self.const(0)
         self.one = self.const(1)
 
@@ -109,6 +115,13 @@ class Graph:
             total = self.add(total, term)
         return total
 
+    def product(self, factors: Iterable[Scalar]) -> Scalar:
+        """Left-to-right product; 1 for no factors."""
+        total = self.one
+        for factor in factors:
+            total = self.mul(total, factor)
+        return total
+
     def neg(self, a: Scalar) -> Scalar:
         """-a."""
         if a.op == "neg":
@@ -136,10 +149,8 @@ class Graph:
         for x, y in ((a, b), (b, a)):
             if x.op == "sub" and x.args[1] is y:
                 return x.args[0]
-        if (combined := self._addition_theorem(a, b, 1)) is not None:
+        if (combined := self._combine(a, b, 1)) is not None:
             return combined
-        if (collected := self._collect(a, b, 1)) is not None:
-            return collected
         if a.serial > b.serial:
             a, b = b, a
         return self._node("add", (a, b))
@@ -166,10 +177,8 @@ class Graph:
             return self.neg(b.args[1] if b.args[0] is a else b.args[0])
         if b.op == "sub" and b.args[0] is a:
             return b.args[1]
-        if (combined := self._addition_theorem(a, b, -1)) is not None:
+        if (combined := self._combine(a, b, -1)) is not None:
             return combined
-        if (collected := self._collect(a, b, -1)) is not None:
-            return collected
         return self._node("sub", (a, b))
 
     def mul(self, a: Scalar, b: Scalar) -> Scalar:
@@ -265,7 +274,7 @@ class Graph:
         return self._node(name, args)
 
     def trig(self, name: str, argument: Scalar) -> Scalar:
-        """Sine or cosine, keyed by the integer combination of leaves its argument is; the leading sign is pulled out."""
+        """Sine or cosine, keyed by the integer combination of leaves in its argument; the leading sign is pulled out."""
         form = self.angle_form(argument)
         if not form:
             return self.zero if name == "sin" else self.one
@@ -300,78 +309,77 @@ class Graph:
                 form[node] = form.get(node, 0) + count
         return {leaf: count for leaf, count in form.items() if count}
 
-    def _addition_theorem(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
-        """f t1 t2 + sign * f t3 t4 with t sines and cosines of the same two angles, as f times one sine or cosine."""
-        left, right = _trig_product(a), _trig_product(b)
-        if left is None or right is None:
+    def monomial(self, a: Scalar) -> Monomial:
+        """`a` as coefficient times powers of factors, whatever the order in which they were multiplied."""
+        known = self._monomials.get(a)
+        if known is not None:
+            return known
+        if (value := a.constant) is not None:
+            result: Monomial = (value, {})
+        elif a.op == "neg":
+            coefficient, powers = self.monomial(a.args[0])
+            result = (-coefficient, powers)
+        elif a.op in ("mul", "div"):
+            sign = 1 if a.op == "mul" else -1
+            (k1, left), (k2, right) = self.monomial(a.args[0]), self.monomial(a.args[1])
+            if len(left) + len(right) > MOST_FACTORS:
+                result = (Fraction(1), {a: 1})
+            else:
+                powers = dict(left)
+                for factor, count in right.items():
+                    powers[factor] = powers.get(factor, 0) + sign * count
+                result = (k1 * k2 if sign > 0 else k1 / k2, {f: c for f, c in powers.items() if c})
+        else:
+            result = (Fraction(1), {a: 1})
+        self._monomials[a] = result
+        return result
+
+    def _combine(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
+        """a + sign * b where the two are products that differ in constants or in a pair of sines and cosines only."""
+        (k1, left), (k2, right) = self.monomial(a), self.monomial(b)
+        if left == right:
+            return self.mul(self.const((k1 + sign * k2) / k1), a)
+        if abs(k1) != abs(k2):
             return None
-        (factor, p, q), (other, v, w) = left, right
-        if factor is not other:
+        lost = [f for f, c in left.items() for _ in range(c - right.get(f, 0))]
+        gained = [f for f, c in right.items() for _ in range(c - left.get(f, 0))]
+        if len(lost) != 2 or len(gained) != 2 or not all(f.op in ("sin", "cos") for f in (*lost, *gained)):
             return None
-        common = self.one if factor is None else factor
-        if p.args[0] is q.args[0]:
-            # c c + s s = 1, c c - s s = cos 2a; the products of one angle alone
-            if v.args[0] is not p.args[0] or w.args[0] is not p.args[0] or p.op != q.op or v.op != w.op or p.op == v.op:
-                return None
-            if sign > 0:
-                return common
+        angle = self._addition_theorem(lost, gained, sign if k1 == k2 else -sign)
+        if angle is None:
             return None
-        if {id(p.args[0]), id(q.args[0])} != {id(v.args[0]), id(w.args[0])}:
-            return None
-        if v.args[0] is not p.args[0]:
-            v, w = w, v
+        rest = {f: c - lost.count(f) for f, c in left.items() if c != lost.count(f)}
+        return self.mul(self.const(k1), self.mul(self._product(rest), angle))
+
+    def _product(self, powers: dict[Scalar, int]) -> Scalar:
+        factors = sorted(powers.items(), key=lambda entry: entry[0].serial)
+        above = [factor for factor, count in factors for _ in range(count)]
+        below = [factor for factor, count in factors for _ in range(-count)]
+        product = self.one
+        for factor in above:
+            product = self.mul(product, factor)
+        for factor in below:
+            product = self.div(product, factor)
+        return product
+
+    def _addition_theorem(self, lost: list[Scalar], gained: list[Scalar], sign: int) -> Scalar | None:
+        """t1 t2 + sign * t3 t4 with t sines and cosines of the same two angles, as one sine or cosine."""
+        p, q = sorted(lost, key=lambda f: f.args[0].serial)
+        v, w = sorted(gained, key=lambda f: f.args[0].serial)
         x, y = p.args[0], q.args[0]
-        kinds = (p.op, q.op, v.op, w.op)
-        if kinds == ("cos", "cos", "sin", "sin"):
-            angle = self.sub(x, y) if sign > 0 else self.add(x, y)
-            return self.mul(common, self.trig("cos", angle))
-        if kinds == ("sin", "sin", "cos", "cos"):
-            angle = self.sub(x, y) if sign > 0 else self.add(x, y)
-            value = self.mul(common, self.trig("cos", angle))
-            return value if sign > 0 else self.neg(value)
-        if kinds == ("sin", "cos", "cos", "sin"):
-            angle = self.add(x, y) if sign > 0 else self.sub(x, y)
-            return self.mul(common, self.trig("sin", angle))
-        if kinds == ("cos", "sin", "sin", "cos"):
-            angle = self.add(x, y) if sign > 0 else self.sub(y, x)
-            return self.mul(common, self.trig("sin", angle))
-        return None
-
-    def _collect(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
-        """k1 x + sign * k2 x with constants k: one product."""
-        k1, x = _constant_factor(a)
-        k2, y = _constant_factor(b)
-        if x is y and (k1 != 1 or k2 != 1):
-            return self.mul(self.const(k1 + sign * k2), x)
-        return None
-
-
-def _constant_factor(a: Scalar) -> tuple[Fraction, Scalar]:
-    if a.op == "mul" and (k := a.args[0].constant) is not None:
-        return k, a.args[1]
-    return Fraction(1), a
-
-
-def _trig_product(a: Scalar) -> tuple[Scalar | None, Scalar, Scalar] | None:
-    """(factor, t1, t2) when `a` is t1*t2 or factor*(t1*t2) or t1*(factor*t2), with t sines or cosines."""
-    if a.op != "mul":
-        return None
-    x, y = a.args
-    if _is_trig(x) and _is_trig(y):
-        return None, x, y
-    for outer, inner in ((x, y), (y, x)):
-        if inner.op != "mul":
-            continue
-        v, w = inner.args
-        if _is_trig(v) and _is_trig(w):
-            return outer, v, w
-        if _is_trig(outer):
-            if _is_trig(v):
-                return w, outer, v
-            if _is_trig(w):
-                return v, outer, w
-    return None
-
-
-def _is_trig(a: Scalar) -> bool:
-    return a.op in ("sin", "cos")
+        if (v.args[0], w.args[0]) != (x, y):
+            return None
+        if x is y:
+            # c c + s s; differences are cosines of 2x, an angle of their own
+            return self.one if sign > 0 and p.op == q.op and v.op == w.op else None
+        match (p.op, q.op, v.op, w.op):
+            case ("cos", "cos", "sin", "sin"):
+                return self.trig("cos", self.sub(x, y) if sign > 0 else self.add(x, y))
+            case ("sin", "sin", "cos", "cos"):
+                return self.trig("cos", self.sub(x, y)) if sign > 0 else self.neg(self.trig("cos", self.add(x, y)))
+            case ("sin", "cos", "cos", "sin"):
+                return self.trig("sin", self.add(x, y) if sign > 0 else self.sub(x, y))
+            case ("cos", "sin", "sin", "cos"):
+                return self.trig("sin", self.add(x, y) if sign > 0 else self.sub(y, x))
+            case _:
+                return None
