@@ -86,7 +86,10 @@ def read_argument(expression: Expression, value_of: Callable[[str], Expression |
 
 
 def _collect(
-    expression: Expression, factor: Fraction, value_of: Callable[[str], Expression | None], terms: dict[Expression, Fraction]
+    expression: Expression,
+    factor: Fraction,
+    value_of: Callable[[str], Expression | None],
+    terms: dict[Expression, Fraction],
 ) -> Fraction:
     """Add `factor` times the expression to `terms`; returns the quarter turns found."""
     match expression:
@@ -155,7 +158,7 @@ def choose_basis(preferred: Iterable[Argument], others: Iterable[Argument]) -> A
         pending = sorted({a.combination: None for a in group if a.combination}, key=len)
         progress = True
         while progress:
-            progress = any([accept(combination) for combination in pending])
+            progress = any(accept(combination) for combination in pending)
     for base in bases:
         if base not in in_atoms:
             accept(((base, units[base]),))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-GREEK = frozenset(
+_NAMES = (
     "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi omega "
-    "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
+    "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
 )
+GREEK = frozenset(_NAMES.split(" "))
 
 
 def latex_name(name: str) -> str:
@@ -27,7 +28,7 @@ def _letter(text: str) -> str:
         return text
     stem = text.rstrip("0123456789")
     if stem != text and (len(stem) == 1 or stem in GREEK):
-        return f"{_letter(stem)}_{{{text[len(stem):]}}}"
+        return f"{_letter(stem)}_{{{text[len(stem) :]}}}"
     return f"\\mathrm{{{text}}}"
 
 
@@ -37,5 +38,7 @@ def _with_indices(letter: str, indices: list[str]) -> str:
         return letter
     text = ",".join(part if len(part) == 1 or part.isdigit() else _letter(part) for part in shown)
     if "_{" in letter:
-        return f"{{{letter}}}_{{{text}}}" if letter.endswith("}") and letter.startswith("{") else f"{letter[:-1]},{text}}}"
+        return (
+            f"{{{letter}}}_{{{text}}}" if letter.endswith("}") and letter.startswith("{") else f"{letter[:-1]},{text}}}"
+        )
     return f"{letter}_{{{text}}}"

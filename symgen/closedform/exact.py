@@ -33,7 +33,7 @@ WORK_LIMIT = 300_000
 """Products of terms, about two seconds of work; what needs more is not attempted."""
 
 
-class TooLarge(Exception):
+class TooLargeError(Exception):
     """An estimate made before building says that a closed form is not worth it; the text is the reason."""
 
 
@@ -67,7 +67,7 @@ class Exact:
         subsets = list(combinations(range(self.model.r), self.structure.constraint_rank))
         work = sum(estimated_work(tuple(self.rows[i] for i in subset)) for subset in subsets)
         if work > WORK_LIMIT:
-            raise TooLarge(f"the minors of B need about {work} products of terms, more than {WORK_LIMIT}")
+            raise TooLargeError(f"the minors of B need about {work} products of terms, more than {WORK_LIMIT}")
         found = [kernel_minors(self.ring, tuple(self.rows[i] for i in subset), self.model.n) for subset in subsets]
         return tuple(minors for minors in found if any(minors.values.values()))
 
@@ -80,14 +80,17 @@ class Exact:
 
     def _admit(self, work: int, what: str) -> None:
         if work > WORK_LIMIT:
-            raise TooLarge(f"{what} needs about {work} products of terms, more than {WORK_LIMIT}")
+            raise TooLargeError(f"{what} needs about {work} products of terms, more than {WORK_LIMIT}")
 
     def projector_work(self) -> int:
         """Products of terms in the numerators of N_B."""
         work = 0
         for minors in self.minor_sets:
             lines = [
-                [len(minors.signed((i, *rest), self.ring)) for rest in combinations(range(self.model.n), self.delta - 1)]
+                [
+                    len(minors.signed((i, *rest), self.ring))
+                    for rest in combinations(range(self.model.n), self.delta - 1)
+                ]
                 for i in range(self.model.n)
             ]
             work += sum(a * b for u, v in combinations(lines, 2) for a, b in zip(u, v, strict=True))
@@ -124,7 +127,7 @@ class Exact:
     def pseudoinverse(self) -> Matrix:
         """B^+ = B^T (B B^T)^{-1} by Cramer's rule, for independent rows."""
         if self.structure.constraint_rank < self.model.r:
-            raise TooLarge("the constraints depend on each other: B^+ is not B^T (B B^T)^{-1}")
+            raise TooLargeError("the constraints depend on each other: B^+ is not B^T (B B^T)^{-1}")
         jacobian = self.mechanics.jacobian
         terms = max(sum(len(e.numerator) for e in row) for row in jacobian)
         self._admit(terms ** (2 * self.model.r), "B^+")
@@ -132,9 +135,7 @@ class Exact:
         gram = multiply(self.ring, jacobian, right)
         bottom = determinant(self.ring, gram)
         r = self.model.r
-        adjugate = tuple(
-            tuple(self._cofactor(gram, j, i) / bottom for j in range(r)) for i in range(r)
-        )
+        adjugate = tuple(tuple(self._cofactor(gram, j, i) / bottom for j in range(r)) for i in range(r))
         return multiply(self.ring, right, adjugate)
 
     def _cofactor(self, matrix: Matrix, i: int, j: int) -> Quotient:

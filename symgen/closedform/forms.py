@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sympy import Expr, ImmutableDenseMatrix, Symbol
 
 from symgen.closedform.display import latex_name
-from symgen.closedform.exact import Exact, TooLarge
+from symgen.closedform.exact import Exact, TooLargeError
 from symgen.closedform.mechanics import derive_mechanics, make_translator
 from symgen.closedform.points import generic_points
 from symgen.closedform.quotient import Matrix
@@ -63,9 +63,9 @@ class ClosedForms:
 def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int] | None = None) -> ClosedForms:
     """Derive every closed form of a model that is worth printing.
 
-    `straight_line_operations` are the operation counts of the generated kernels: a closed form that is estimated at more
-    than ten times that is given in named intermediates or not at all.  Raises ArithmeticError for a model that divides by
-    something identically zero.
+    `straight_line_operations` are the operation counts of the generated kernels: a closed form that is estimated at
+    more than ten times that is given in named intermediates or not at all.  Raises ArithmeticError for a model that
+    divides by something identically zero.
     """
     translator = make_translator(model, published_expressions(model))
     mechanics = derive_mechanics(model, translator)
@@ -190,7 +190,7 @@ class _Writer:
     def _complement(self) -> Matrix:
         matrix = self.exact.complement(self.model.independent_velocities)
         if matrix is None:
-            raise TooLarge("the chosen velocities are never independent")
+            raise TooLargeError("the chosen velocities are never independent")
         return matrix
 
     def _direct(
@@ -214,7 +214,7 @@ class _Writer:
             if structured is not None:
                 form = structured()
                 return self._record(ClosedForm(quantity, form.matrix, form.intermediates, reason))
-        except TooLarge as large:
+        except TooLargeError as large:
             reason = f"not written out: {large}"
         return ClosedForm(quantity, None, (), f"{reason}; {formula}" if formula else reason)
 
@@ -224,7 +224,8 @@ class _Writer:
             return ""
         products, operations = work(), self.operations.get(quantity)
         if operations is not None and products > max(10 * operations, SHORT_WORK):
-            return f"not written out: about {products} products of terms, above ten times the {operations} operations of the kernel"
+            kernel = f"above ten times the {operations} operations of the kernel"
+            return f"not written out: about {products} products of terms, {kernel}"
         if products > SHORT_WORK:
             return f"not written out: about {products} products of terms"
         return ""

@@ -1,8 +1,8 @@
 """Common factors and factorisation of ring elements, by way of homogeneous polynomials.
 
 A polynomial whose monomials all have the same degree parity in (s_i, c_i) becomes homogeneous in each pair after
-multiplication with powers of s_i^2 + c_i^2 = 1.  There the ordinary polynomial ring is a unique factorisation domain, so
-ordinary gcd and factorisation recognise sin(a - b) and the like (theory.md, section 5).
+multiplication with powers of s_i^2 + c_i^2 = 1.  There the ordinary polynomial ring is a unique factorisation domain,
+so ordinary gcd and factorisation recognise sin(a - b) and the like (theory.md, section 5).
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def homogeneous(ring: TrigRing, p: PolyElement) -> PolyElement:
 
 
 def common_factor(ring: TrigRing, polynomials: Iterable[PolyElement]) -> PolyElement:
-    """The greatest common factor of normal forms, homogeneous, with integer content and positive leading coefficient."""
+    """The greatest common factor of normal forms: homogeneous, primitive, leading coefficient positive."""
     result: flint.fmpq_mpoly | None = None
     for p in sorted((p for p in polynomials if p), key=len):
         for part in parity_classes(ring, p):
@@ -103,10 +103,10 @@ def cancel_plain(ring: TrigRing, numerator: PolyElement, denominator: PolyElemen
 
 
 def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[PolyElement, int], ...]]:
-    """(rational constant, irreducible factors with multiplicities) of a normal form; factors are homogeneous where p is.
+    """(rational constant, irreducible factors with multiplicities) of a normal form.
 
-    Factors have coprime integer coefficients and a positive leading coefficient.  A part of mixed parity is factored as an
-    ordinary polynomial.
+    Factors are homogeneous, with coprime integer coefficients and a positive leading coefficient.  A part of mixed
+    parity is factored as an ordinary polynomial.
     """
     if not p or p.is_ground:
         return p, ()
@@ -158,4 +158,4 @@ def never_zero(ring: TrigRing, factor: PolyElement) -> bool:
             corner.append(s > 0)
         else:
             corners.add(tuple(corner))
-    return len(corners) == 2 ** len(angles)
+    return bool(len(corners) == 2 ** len(angles))

@@ -37,7 +37,9 @@ class Manifold:
         result = {}
         for c, row in zip(self.model.coordinates, self.exact.kernel, strict=True):
             slopes = [self._replace(time_derivative(translator, entry, self.model), self._rates) for entry in row]
-            result[self.ring.position[c.acceleration]] = dot(self.ring, row, changes) + dot(self.ring, slopes, velocities)
+            result[self.ring.position[c.acceleration]] = dot(self.ring, row, changes) + dot(
+                self.ring, slopes, velocities
+            )
         return result
 
     def restrict(self, value: Quotient) -> Quotient:

@@ -59,7 +59,7 @@ def column(vector: Sequence[Quotient]) -> Matrix:
     return tuple((entry,) for entry in vector)
 
 
-def reduce_rows(ring: TrigRing, matrix: Matrix) -> tuple[list[list[Quotient]], list[int]]:
+def reduce_rows(matrix: Matrix) -> tuple[list[list[Quotient]], list[int]]:
     """The reduced row echelon form (without zero rows) and its pivot columns; the shortest entry is the pivot."""
     rows = [list(row) for row in matrix]
     pivots: list[int] = []
@@ -88,7 +88,7 @@ def null_space(ring: TrigRing, matrix: Matrix, width: int) -> Matrix:
     """A basis of the kernel, one vector per row of the result; `width` is the number of columns."""
     if not matrix:
         return identity(ring, width)
-    rows, pivots = reduce_rows(ring, matrix)
+    rows, pivots = reduce_rows(matrix)
     basis = []
     for free in (j for j in range(width) if j not in pivots):
         vector = [zero(ring)] * width
@@ -99,11 +99,11 @@ def null_space(ring: TrigRing, matrix: Matrix, width: int) -> Matrix:
     return tuple(basis)
 
 
-def solve(ring: TrigRing, matrix: Matrix, right: Matrix) -> Matrix | None:
+def solve(matrix: Matrix, right: Matrix) -> Matrix | None:
     """The solution X of matrix X = right, None when there is no unique one."""
     size = len(matrix[0])
     joined = tuple((*a, *b) for a, b in zip(matrix, right, strict=True))
-    rows, pivots = reduce_rows(ring, joined)
+    rows, pivots = reduce_rows(joined)
     if pivots != list(range(size)):
         return None
     return tuple(tuple(row[size:]) for row in rows)

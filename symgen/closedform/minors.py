@@ -116,7 +116,7 @@ def square_sum(ring: TrigRing, values: Sequence[PolyElement]) -> PolyElement:
 
 def projector_numerator(ring: TrigRing, minors: Minors, n: int, delta: int) -> Rows:
     """N_B times the sum of squares of the minors: sum over (delta-1)-subsets K of Phi_iK Phi_jK."""
-    rows = []
+    rows: list[tuple[PolyElement, ...]] = []
     lines = [[minors.signed((i, *rest), ring) for rest in combinations(range(n), delta - 1)] for i in range(n)]
     for i in range(n):
         row = []
@@ -143,19 +143,21 @@ def actuation_minors(ring: TrigRing, minors: Minors, control: Rows, delta: int) 
     n, m = len(control), len(control[0])
     vectors = {}
     for chosen in combinations(range(m), delta - 1):
-        vector = []
+        found = []
         for a in range(n):
             total = ring.zero
             for rest in combinations(range(n), delta - 1):
                 phi = minors.signed((a, *rest), ring)
                 if phi:
                     total = total + ring.product(small_determinant(ring, control, rest, chosen), phi)
-            vector.append(total)
-        vectors[chosen] = tuple(vector)
+            found.append(total)
+        vectors[chosen] = tuple(found)
     determinants = {}
     for subset in combinations(range(m), delta):
         vector = vectors[subset[1:]]
-        terms = (ring.product(control[a][subset[0]], vector[a]) for a in range(n) if control[a][subset[0]] and vector[a])
+        terms = (
+            ring.product(control[a][subset[0]], vector[a]) for a in range(n) if control[a][subset[0]] and vector[a]
+        )
         determinants[subset] = sum(terms, ring.zero)
     return Actuation(determinants, vectors)
 
@@ -168,7 +170,9 @@ def small_determinant(ring: TrigRing, matrix: Rows, rows: Subset, columns: Subse
     for place, j in enumerate(columns):
         entry = matrix[rows[0]][j]
         if entry:
-            term = ring.product(entry, small_determinant(ring, matrix, rows[1:], columns[:place] + columns[place + 1 :]))
+            term = ring.product(
+                entry, small_determinant(ring, matrix, rows[1:], columns[:place] + columns[place + 1 :])
+            )
             total = total + term if place % 2 == 0 else total - term
     return total
 

@@ -24,7 +24,9 @@ def number(value: Fraction) -> mpf:
     return mpf(value.numerator) / mpf(value.denominator)
 
 
-def evaluate_expression(expression: Expression, values: Mapping[str, mpf], definitions: Mapping[str, Expression]) -> mpf:
+def evaluate_expression(
+    expression: Expression, values: Mapping[str, mpf], definitions: Mapping[str, Expression]
+) -> mpf:
     """The value of a model expression; raises ValueError where it is not a real number."""
     match expression:
         case Number(value):
@@ -140,9 +142,7 @@ def _onto_constraints(model: Model, mechanics: Mechanics, values: dict[str, mpf]
         if max(abs(x) for x in residual) < mpf(10) ** -DIGITS:
             return point
         jacobian = point.matrix(mechanics.jacobian[: len(residual)])
-        gram = mpmath.matrix(
-            [[mpmath.fdot(a, b) for b in jacobian] for a in jacobian]
-        )
+        gram = mpmath.matrix([[mpmath.fdot(a, b) for b in jacobian] for a in jacobian])
         scale = max(gram[i, i] for i in range(len(residual)))
         for i in range(len(residual)):
             gram[i, i] += scale * mpf(10) ** -30  # dependent constraints: any solution of the consistent system does

@@ -1,8 +1,8 @@
 """Published formulas, decided by computation: identical, equal on the constraint manifold only, or misprinted.
 
 Matrices are compared by normal form in the ring.  The constraint manifold is reached by substituting qd = W nu and
-qdd = W nu-dot + W-dot nu with a null-space basis W of B; where geometric constraints matter, points of V at 40 digits decide
-and the verdict says so.
+qdd = W nu-dot + W-dot nu with a null-space basis W of B; where geometric constraints matter, points of V at 40 digits
+decide and the verdict says so.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from mpmath import mpf, nstr
 from sympy import ImmutableDenseMatrix
 
-from symgen.closedform.exact import Exact, TooLarge
+from symgen.closedform.exact import Exact, TooLargeError
 from symgen.closedform.forms import ClosedForms, dynamic_names
 from symgen.closedform.manifold import Manifold
 from symgen.closedform.matrices import dot, multiply, solve, transpose
@@ -24,6 +24,7 @@ from symgen.closedform.singular import essential_factors
 from symgen.closedform.spelling import Speller
 from symgen.closedform.substitution import substitute
 from symgen.model.expression import Expression
+from symgen.model.model import Matrix as ExpressionMatrix
 from symgen.model.model import (
     Model,
     Published,
@@ -31,7 +32,6 @@ from symgen.model.model import (
     PublishedMatrix,
     PublishedSingularSet,
 )
-from symgen.model.model import Matrix as ExpressionMatrix
 
 IDENTICAL = "identical"
 ON_MANIFOLD = "equal on the constraint manifold only"
@@ -104,7 +104,7 @@ class _Judge:
                 right = decide(True)
                 proven = right.verdict in (IDENTICAL, CHECKED, ON_MANIFOLD)
                 text += f"; corrected form: {right.verdict}, {right.text}"
-        except TooLarge as large:
+        except TooLargeError as large:
             return Verdict(position, item.equation, quantity, UNDECIDED, None, str(large))
         return Verdict(position, item.equation, quantity, finding.verdict, proven, text, finding.difference)
 
@@ -145,7 +145,9 @@ class _Judge:
         values = tuple(tuple(self._value(entry, where) for entry in row) for row in printed)
         if len(values) != len(derived) or any(len(a) != len(b) for a, b in zip(values, derived, strict=True)):
             return _Finding(MISPRINTED, "the shape is another one")
-        difference = tuple(tuple(a - b for a, b in zip(u, v, strict=True)) for u, v in zip(derived, values, strict=True))
+        difference = tuple(
+            tuple(a - b for a, b in zip(u, v, strict=True)) for u, v in zip(derived, values, strict=True)
+        )
         flat = [entry for row in difference for entry in row]
         finding = self._zero(flat)
         if finding.verdict == IDENTICAL:
@@ -216,7 +218,9 @@ class _Judge:
 
     # equations
 
-    def _equations(self, equations: Sequence[tuple[Expression, Expression]], where: Mapping[str, Expression]) -> _Finding:
+    def _equations(
+        self, equations: Sequence[tuple[Expression, Expression]], where: Mapping[str, Expression]
+    ) -> _Finding:
         findings = [self._equation(self._value(a, where) - self._value(b, where)) for a, b in equations]
         worst = max(findings, key=lambda f: _ORDER.index(f.verdict))
         if worst.verdict == IDENTICAL:
@@ -235,7 +239,7 @@ class _Judge:
         return self._kinematic(residual)
 
     def _dynamic(self, residual: Quotient) -> _Finding:
-        """Find c with residual = c^T E, E = tau + B^T lambda - M u; its remainder is zero always, on the manifold, or never.
+        """Find c with residual = c^T E, E = tau + B^T lambda - M u; the remainder decides.
 
         c is unique: B c is the coefficient of lambda, W^T G c that of the accelerations along W.
         """
@@ -248,7 +252,7 @@ class _Judge:
             (translator.derivative(residual, f"multiplier_{row.name}"),) for row in self.model.constraints
         )
         right = (*reactions, *multiply(ring, kernel, slopes))
-        weights = solve(ring, left, right)
+        weights = solve(left, right)
         if weights is None:
             return _Finding(UNDECIDED, "the combination of motion equations is not unique")
         combination = dot(ring, [w for (w,) in weights], [e for (e,) in exact.reaction_load])
@@ -309,5 +313,3 @@ def _single(value: Quotient, monomial: tuple[int, ...]) -> object:
     term = value.ring.polys.zero.copy()
     term[monomial] = value.numerator[monomial]
     return term
-
-

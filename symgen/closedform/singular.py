@@ -8,7 +8,7 @@ from typing import Literal
 from sympy import Expr, Integer
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.exact import Exact, TooLarge
+from symgen.closedform.exact import Exact, TooLargeError
 from symgen.closedform.homogeneous import common_factor, factorise, homogeneous, never_zero, parity_classes
 from symgen.closedform.minors import common_denominator
 from symgen.closedform.ring import TrigRing
@@ -39,7 +39,9 @@ def derive_singular_sets(model: Model, exact: Exact, speller: Speller) -> tuple[
             contents = [one.content for one in exact.minor_sets]
             content = contents[0] if len(contents) == 1 else exact.ring.one
             found.append(
-                _common_zeros(exact, speller, "constraint", "constraint_jacobian", minors, content, "the rank of B drops")
+                _common_zeros(
+                    exact, speller, "constraint", "constraint_jacobian", minors, content, "the rank of B drops"
+                )
             )
         if model.inputs and exact.structure.degree_of_actuation == exact.delta:
             deltas = [v for one in exact.actuations for v in one.determinants.values()]
@@ -54,7 +56,7 @@ def derive_singular_sets(model: Model, exact: Exact, speller: Speller) -> tuple[
                 found.append(
                     _common_zeros(exact, speller, "parameter", "orthogonal_complement", [bottom], exact.ring.one, text)
                 )
-    except TooLarge as large:
+    except TooLargeError as large:
         found.append(SingularSet("constraint", "constraint_jacobian", (), False, f"not worked out: {large}"))
     return tuple(found)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from fractions import Fraction
+from typing import Any
 
 import sympy
 from sympy import QQ, Add, Expr, Integer, Mul, Rational, Symbol, cos, sin, tan
@@ -98,7 +99,11 @@ class Speller:
         for i, (p, k) in enumerate(factors):
             for j in range(i + 1, len(factors)):
                 q, m = factors[j]
-                if k != m or len(p) * len(q) > 36 or not set(self.ring.shape(p) + self.ring.shape(q)) <= self.ring.angle_positions:
+                if (
+                    k != m
+                    or len(p) * len(q) > 36
+                    or not set(self.ring.shape(p) + self.ring.shape(q)) <= self.ring.angle_positions
+                ):
                     continue
                 product = self.ring.normal(p * q)
                 if _length(self.shorter(product)) < _length(self.shorter(p)) + _length(self.shorter(q)):
@@ -174,7 +179,7 @@ class Speller:
         return Add(*terms)
 
     def fourier(self, p: PolyElement) -> tuple[Rational, Expr]:
-        """(scale, sum) with p = scale * sum: sines and cosines of angle combinations, integer coefficients without content."""
+        """(scale, sum) with p = scale * sum: sines and cosines of angle combinations, coprime integer coefficients."""
         series = fourier_series(self.ring, p)
         scale = QQ(0)
         for parts in series.values():
@@ -212,7 +217,7 @@ def _upright(scale: Rational, expression: Expr) -> tuple[Rational, Expr]:
 
 def _length(form: tuple[Rational, Expr]) -> int:
     scale, expression = form
-    return int(expression.count_ops()) + (abs(scale) != 1)
+    return int(expression.count_ops()) + int(abs(scale) != 1)
 
 
 def fourier_series(ring: TrigRing, p: PolyElement) -> dict[tuple[int, ...], tuple[PolyElement, PolyElement]]:
@@ -264,5 +269,5 @@ def _wave_product(ring: TrigRing, monomial: tuple[int, ...]) -> dict[tuple[int, 
     return waves
 
 
-def _rational(value: object) -> Rational:
-    return Rational(int(value.numerator), int(value.denominator))  # type: ignore[attr-defined]
+def _rational(value: Any) -> Rational:
+    return Rational(int(value.numerator), int(value.denominator))

@@ -71,8 +71,8 @@ def describe_actuation(inputs: int, degree: int, freedom: int) -> str:
 def derive_integrability(model: Model, mechanics: Mechanics) -> tuple[Integrability, ...]:
     """The largest integrable part of the constraints by derived systems; one verdict for every non-holonomic row.
 
-    A row w of the current system I stays when dw vanishes on all pairs of admissible directions, which is what the object
-    of non-holonomy (12) measures; I shrinks to the combinations that stay until nothing changes (Frobenius).
+    A row w of the current system I stays when dw vanishes on all pairs of admissible directions, which is what the
+    object of non-holonomy (12) measures; I shrinks to the combinations that stay until nothing changes (Frobenius).
     """
     rows = [(i, row.name) for i, row in enumerate(model.constraints) if row.kind == "nonholonomic"]
     if not rows:

@@ -1,4 +1,4 @@
-"""Structured closed forms: N_B and the pseudoinverse of N_B M in terms of named minors, when written out they are long."""
+"""Structured closed forms: N_B, the pseudoinverse of N_B M and u in terms of named minors, where they are long."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Naming:
         return Symbol(name)
 
     def name(self, value: PolyElement, name: str) -> Expr:
-        """The symbol for a ring element with a sign, the element itself when it is a monomial; new names are recorded."""
+        """The symbol for a ring element with a sign, or the element itself when it is a monomial."""
         if len(value) <= 1:
             return self.speller.polynomial(value)
         if value not in self.known:
@@ -81,14 +81,17 @@ def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) 
         return phi[tuple(sorted(indices))] * (-1) ** inversions
 
     entries = [
-        [sum((signed(phi, (i, *k)) * signed(phi, (j, *k)) for phi in phis for k in rest), Integer(0)) / total for j in size]
+        [
+            sum((signed(phi, (i, *k)) * signed(phi, (j, *k)) for phi in phis for k in rest), Integer(0)) / total
+            for j in size
+        ]
         for i in size
     ]
     return _finish(entries, naming, [(total, meaning)])
 
 
 def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[str]) -> Structured:
-    """M~^+ = sum_J Delta_J v_L / Sigma_Delta, L = J without the input of the row; Delta_J as products of their factors."""
+    """M~^+ = sum_J Delta_J v_L / Sigma_Delta, L = J without the input of the row; Delta_J as products of factors."""
     naming = Naming(speller, taken)
     name_minors(exact, naming)
     scale = speller.polynomial(exact.control_scale)
@@ -154,9 +157,7 @@ def determinant_terms(exact: Exact, speller: Speller, taken: frozenset[str]) -> 
     )
 
 
-def _finish(
-    entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]
-) -> Structured:
+def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]) -> Structured:
     """Keep the intermediates that the matrix and the sums use."""
     matrix = ImmutableDenseMatrix(entries)
     last = tuple(sums)

@@ -224,5 +224,3 @@ def opaque_atom(expression: Expression) -> Opaque | None:
 def _root(base: Expression, degree: int) -> Opaque:
     root = Power(base, Fraction(1, degree))
     return Opaque(root, ((base, Binary("/", root, Binary("*", Number(Fraction(degree)), base))),))
-
-
