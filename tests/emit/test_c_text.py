@@ -6,6 +6,7 @@ import re
 
 import handmade
 import pytest
+
 from symgen.emit.c import emit_c
 from symgen.emit.python import emit_python
 

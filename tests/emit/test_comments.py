@@ -7,9 +7,21 @@ import ast
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from symgen.emit.comments import c_comment, c_comment_lines, docstring_lines, one_line
 
-NASTY = ["*/ int x; /*", "/*/", "**//**", "??/", "???/", "ends in \\", 'quotes """ and \\', "{{ x }}", "a\n\rb\0", "\u202egnp"]
+NASTY = [
+    "*/ int x; /*",
+    "/*/",
+    "**//**",
+    "??/",
+    "???/",
+    "ends in \\",
+    'quotes """ and \\',
+    "{{ x }}",
+    "a\n\rb\0",
+    "\u202egnp",
+]
 
 
 @pytest.mark.parametrize("text", NASTY)

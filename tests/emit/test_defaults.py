@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import handmade
 import pytest
+
 from symgen.diagnostics import SymgenBug
 from symgen.emit.defaults import default_values
 from symgen.model.expression import Binary, Call, Name, Negation, Power

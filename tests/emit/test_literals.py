@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from symgen.diagnostics import SymgenBug
 from symgen.emit.literals import c_literal, decimal_text, numpy_literal, round_to_float32
 

@@ -7,9 +7,10 @@ import keyword
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from symgen.naming import PYTHON_KEYWORDS, RESERVED, c_identifiers, file_stem
 
-TRICKY = st.sampled_from(["I", "I_", "I__", "F", "y1", "y1_", "double", "L", "B1", "PI", "template", "lambda", "x", "p"])
+TRICKY = st.sampled_from(["I", "I_", "I__", "F", "y1", "y1_", "double", "L", "B1", "PI", "template", "x", "p"])
 
 
 @given(st.lists(TRICKY), st.frozensets(TRICKY))
@@ -24,7 +25,9 @@ def test_a_free_name_stays_and_a_clash_moves_around_it() -> None:
     assert c_identifiers(["I", "I_", "L"]) == {"I": "I__", "I_": "I_", "L": "L"}
 
 
-@pytest.mark.parametrize("name", ["I", "F", "B1", "PI", "y0", "jn", "min", "errno", "NULL", "EOF", "abs", "round", "and"])
+@pytest.mark.parametrize(
+    "name", ["I", "F", "B1", "PI", "y0", "jn", "min", "errno", "NULL", "EOF", "abs", "round", "and"]
+)
 def test_known_clashes(name: str) -> None:
     assert c_identifiers([name])[name] == f"{name}_"
 

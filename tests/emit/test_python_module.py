@@ -11,6 +11,7 @@ from types import ModuleType
 import handmade
 import numpy as np
 import pytest
+
 from symgen.emit.c import emit_c
 from symgen.emit.python import emit_python
 

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import handmade
 import pytest
+
 from symgen.emit.c import emit_c
 
 pytestmark = pytest.mark.toolchain
-STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -O2".split()
+STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror", "-O2"]
 FLOAT = ["-Wfloat-conversion", "-Wunsuffixed-float-constants"]
 LANGUAGES = {"c": ["-std=c99"], "c++": ["-xc++", "-std=c++11"]}
 NAMES = {
