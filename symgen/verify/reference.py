@@ -96,19 +96,23 @@ class Reference:
         """
         try:
             with precision(bits):
-                evaluation = Evaluation(
-                    self.system,
-                    self.ranks,
-                    q=[ball(x) for x in state.q],
-                    qd=[ball(x) for x in state.qd],
-                    qdd=[ball(x) for x in state.qdd],
-                    u=[ball(x) for x in state.u],
-                    parameters=[ball(x) for x in state.parameters],
-                    literals=self.literals() if literals is None else literals,
-                )
+                evaluation = self.evaluation(state, literals)
                 return {name: QUANTITIES[name](evaluation) for name in quantities}
         except ZeroDivisionError as fault:
             raise ReferenceValueError(f"{self.model.name}: a rank drops at this state") from fault
+
+    def evaluation(self, state: State, literals: Sequence[Any] | None = None) -> Evaluation:
+        """The state with every intermediate at hand, at the working precision of the caller."""
+        return Evaluation(
+            self.system,
+            self.ranks,
+            q=[ball(x) for x in state.q],
+            qd=[ball(x) for x in state.qd],
+            qdd=[ball(x) for x in state.qdd],
+            u=[ball(x) for x in state.u],
+            parameters=[ball(x) for x in state.parameters],
+            literals=self.literals() if literals is None else literals,
+        )
 
 
 def _accurate(matrix: Any) -> bool:

@@ -37,9 +37,8 @@ class Expectation:
         with precision(DISTANCE_BITS):
             return norm(arb_mat(self.value.nrows(), self.value.ncols(), list(entries)) - self.value)
 
-    def error(self, entries: Sequence[float]) -> float:
-        """|y - y*| in units of d + eps |y*|; 0 for an exact result, infinite where the unit is 0."""
-        distance = self.distance(entries)
+    def in_units(self, distance: float) -> float:
+        """A distance in units of d + eps |y*|; 0 for an exact result, infinite for another where the unit is 0."""
         if distance == 0:
             return 0.0
         return distance / self.unit if self.unit else float("inf")

@@ -1,0 +1,111 @@
+"""The generated C, compiled as a user would and called state by state."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import os
+import shutil
+import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from symgen.ir.kernel import Kernel, Scalar, Status
+
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
+LONGEST_COMPILATION = 600.0
+C_TYPES: dict[Scalar, Any] = {"float64": ctypes.c_double, "float32": ctypes.c_float}
+SUFFIXES: dict[Scalar, str] = {"float64": "", "float32": "_f"}
+
+
+@dataclass(frozen=True, slots=True)
+class CSource:
+    """A generated header and source; `stem` names the files without their endings."""
+
+    stem: str
+    header: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a kernel made of one state; entries the kernel did not write are NaN."""
+
+    status: int
+    entries: tuple[float, ...]
+
+    @property
+    def valid(self) -> bool:
+        """Whether the status is 0 and every entry is finite."""
+        return self.status == Status.OK and all(map(math.isfinite, self.entries))
+
+
+class CompilationError(Exception):
+    """The compiler refused generated C; the text is its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compiler:
+    """A C compiler of this machine."""
+
+    command: tuple[str, ...]
+    version: str
+
+
+def find_compiler() -> Compiler | None:
+    """The compiler in CC, else cc, else gcc; None when there is none."""
+    for command in (os.environ.get("CC", "").split(), ["cc"], ["gcc"]):
+        if command and shutil.which(command[0]):
+            told = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False)
+            return Compiler(tuple(command), (told.stdout.splitlines() or ["unknown"])[0])
+    return None
+
+
+class Compilation:
+    """A compiler at work in the background; `library` waits for it."""
+
+    def __init__(self, compiler: Compiler, source: CSource, folder: Path) -> None:
+        (folder / f"{source.stem}.h").write_text(source.header, encoding="utf-8")
+        path = folder / f"{source.stem}.c"
+        path.write_text(source.source, encoding="utf-8")
+        self._target = folder / f"{source.stem}.so"
+        command = [*compiler.command, *FLAGS, "-o", str(self._target), str(path), "-lm"]
+        self._log = folder / f"{source.stem}.log"
+        with self._log.open("wb") as log:
+            self._process = subprocess.Popen(command, stdout=log, stderr=log)
+
+    def library(self) -> ctypes.CDLL:
+        """The loaded library; raises CompilationError with the compiler's message."""
+        if self._process.wait(LONGEST_COMPILATION) != 0:
+            raise CompilationError(self._log.read_text(encoding="utf-8", errors="replace"))
+        return ctypes.CDLL(str(self._target))
+
+    def cancel(self) -> None:
+        """Stop a compiler that still runs."""
+        if self._process.poll() is None:
+            self._process.kill()
+            self._process.wait()
+
+
+class CFunction:
+    """One kernel of a library: arrays, then the parameter struct, then the result."""
+
+    def __init__(self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar) -> None:
+        self._function = library[f"{model}_{kernel.name}{SUFFIXES[scalar]}"]
+        self._function.restype = ctypes.c_int
+        self._scalar = C_TYPES[scalar]
+        self._arguments = tuple(argument.name for argument in kernel.arguments)
+        self._result = self._scalar * max(1, math.prod(kernel.shape))
+
+    def __call__(self, arrays: dict[str, Any], parameters: Any) -> Outcome:
+        """Run on C arrays made by `c_array`."""
+        result = self._result(*([math.nan] * self._result._length_))
+        status = self._function(*(arrays[name] for name in self._arguments), parameters, result)
+        return Outcome(int(status), tuple(result))
+
+
+def c_array(scalar: Scalar, values: Sequence[Any]) -> Any:
+    """Numbers as a C array of the scalar type; a parameter struct has one member at least."""
+    return (C_TYPES[scalar] * max(1, len(values)))(*values)

@@ -1,0 +1,108 @@
+"""Laws that generated results obey: projector, Penrose conditions, skew symmetry, balance of power.
+
+A law of exact values holds for results y = y* + e up to terms linear in e; with |e| <= 16 (d + eps |y*|) that gives
+each defect a bound, to which what the reference itself violates (rounded states of dependent constraints) is added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, TypeAlias
+
+from flint import arb, arb_mat
+
+from symgen.verify.reference import BITS, Reference
+from symgen.verify.reference_linear import column, norm
+from symgen.verify.reference_quantities import Evaluation
+from symgen.verify.reference_tape import precision
+from symgen.verify.states import Sample
+from symgen.verify.tolerance import FACTOR, Expectation
+
+Values: TypeAlias = Mapping[str, Any]
+Law: TypeAlias = tuple[str, Callable[[Values], Any], Callable[[Values, Mapping[str, float]], float]]
+
+
+def defects(
+    reference: Reference,
+    sample: Sample,
+    expected: Mapping[str, Expectation],
+    results: Mapping[str, tuple[float, ...]],
+) -> Iterator[tuple[str, float]]:
+    """Each law the results can be tested on at one state, with its defect over its bound."""
+    with precision(BITS):
+        exact = {name: expectation.value for name, expectation in expected.items()}
+        given = {
+            name: arb_mat(exact[name].nrows(), exact[name].ncols(), list(entries)) for name, entries in results.items()
+        }
+        room = {name: FACTOR * expectation.unit for name, expectation in expected.items()}
+        evaluation = reference.evaluation(sample.state)
+        for needed, (name, defect, bound) in _laws(evaluation, sample.admissible):
+            if needed <= given.keys():
+                allowed = bound(exact, room) + 2 * norm(defect(exact))
+                found = norm(defect(given))
+                yield name, found / allowed if allowed else float(found > 0)
+
+
+def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[set[str], Law]]:
+    n, b = "nullspace_projector", "constraint_jacobian"
+    yield {n}, ("N N = N", lambda y: y[n] * y[n] - y[n], lambda _, e: 3 * e[n] + e[n] ** 2)
+    yield {n}, ("N' = N", lambda y: y[n].transpose() - y[n], lambda _, e: 2 * e[n])
+    yield (
+        {n, b},
+        ("B N = 0", lambda y: y[b] * y[n], lambda y, e: norm(y[b]) * e[n] + (norm(y[n]) + e[n]) * e[b]),
+    )
+    yield from _penrose()
+    c = "projected_coriolis_matrix"
+    rate = _projected_mass_rate(evaluation)
+    yield (
+        {c},
+        ("d/dt G~ - 2 C~ is skew", lambda y: rate - y[c] - y[c].transpose(), lambda _, e: 2 * e[c]),
+    )
+    if admissible:
+        q = "forward_dynamics"
+        weight = evaluation.at.mass * evaluation.rate
+        rest = _power_without_accelerations(evaluation)
+        yield (
+            {q},
+            ("power balance", lambda y: weight.transpose() * y[q] + rest, lambda _, e: norm(weight) * e[q]),
+        )
+
+
+def _penrose() -> Iterator[tuple[set[str], Law]]:
+    """The four conditions on A = M~ and X = M~+."""
+    a, x = "projected_control_matrix", "projected_control_pseudoinverse"
+
+    def product_bound(y: Values, e: Mapping[str, float]) -> float:
+        return 2 * ((norm(y[a]) + e[a]) * e[x] + norm(y[x]) * e[a])
+
+    def first(y: Values, e: Mapping[str, float]) -> float:
+        return (norm(y[a]) + e[a]) * product_bound(y, e) + 2 * e[a]
+
+    def second(y: Values, e: Mapping[str, float]) -> float:
+        return (norm(y[x]) + e[x]) * product_bound(y, e) + 2 * e[x]
+
+    yield {a, x}, ("A X A = A (A = M~, X = M~+)", lambda y: y[a] * y[x] * y[a] - y[a], first)
+    yield {a, x}, ("X A X = X", lambda y: y[x] * y[a] * y[x] - y[x], second)
+    yield {a, x}, ("(A X)' = A X", lambda y: _skew(y[a] * y[x]), product_bound)
+    yield {a, x}, ("(X A)' = X A", lambda y: _skew(y[x] * y[a]), product_bound)
+
+
+def _skew(matrix: Any) -> Any:
+    return matrix - matrix.transpose()
+
+
+def _projected_mass_rate(e: Evaluation) -> Any:
+    """d/dt (N G N) along N qd."""
+    velocity = e.projected_rate
+    half = e.projector_dot(velocity) * e.at.mass * e.projector
+    return half + half.transpose() + e.projector * e.mass_dot(velocity) * e.projector
+
+
+def _power_without_accelerations(e: Evaluation) -> Any:
+    """d/dt (T + U) - qd'(M u + Q_a) + qd'B' lambda, but for the term qd'G qdd."""
+    rate = e.rate.transpose()
+    kinetic = rate * (e.mass_dot(e.rate) * e.rate) * arb(0.5)
+    multipliers = e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
+    constraint = (e.at.constraints * e.rate).transpose() * multipliers
+    supplied = rate * (e.at.control * column(e.u) + e.applied(e.rate))
+    return kinetic + rate * e.at.potential_gradient - supplied + constraint

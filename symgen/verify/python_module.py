@@ -1,0 +1,50 @@
+"""The generated NumPy module, run as it would be imported, without touching the disk."""
+
+from __future__ import annotations
+
+import math
+import sys
+import types
+from collections.abc import Sequence
+from typing import Any
+
+from symgen.ir.kernel import Kernel, Status
+from symgen.verify.compile import Outcome
+from symgen.verify.reference import State
+
+MODULE_NAME = "symgen_verified_module"
+
+
+class PythonModule:
+    """A generated module in a module object of its own."""
+
+    def __init__(self, source: str) -> None:
+        self.module = types.ModuleType(MODULE_NAME)
+        sys.modules[MODULE_NAME] = self.module  # dataclasses look their module up by name
+        try:
+            exec(compile(source, "<generated module>", "exec"), self.module.__dict__)
+        finally:
+            del sys.modules[MODULE_NAME]
+
+    def run(self, kernel: Kernel, states: Sequence[State]) -> list[Outcome]:
+        """All states in one vectorised call; a state without result has NaN entries and no status of its own."""
+        import numpy as np
+
+        arrays = [np.array([getattr(s, a.name) for s in states], dtype=np.float64) for a in kernel.arguments]
+        columns = np.array([s.parameters for s in states], dtype=np.float64).reshape(len(states), -1).T
+        result = getattr(self.module, kernel.name)(*arrays, p=self.module.Parameters(*columns))
+        rows: list[list[float]] = result.reshape(len(states), -1).tolist()
+        return [Outcome(self._status(row), tuple(row)) for row in rows]
+
+    def run_single(self, kernel: Kernel, state: State) -> Outcome:
+        """One state without leading axes."""
+        arrays: list[Any] = [list(getattr(state, argument.name)) for argument in kernel.arguments]
+        try:
+            result = getattr(self.module, kernel.name)(*arrays, p=self.module.Parameters(*state.parameters))
+        except self.module.StateError as refusal:
+            return Outcome(int(refusal.status), (math.nan,) * max(1, math.prod(kernel.shape)))
+        return Outcome(0, tuple(result.reshape(-1).tolist()))
+
+    @staticmethod
+    def _status(row: Sequence[float]) -> int:
+        return int(Status.OK if all(map(math.isfinite, row)) else Status.NOT_FINITE)

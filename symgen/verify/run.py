@@ -1,0 +1,235 @@
+"""Verification: every emitted quantity of every target against the reference, and the laws the results obey."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeAlias
+
+import flint
+
+import symgen
+from symgen.ir.kernel import Kernel, Scalar
+from symgen.model.model import Model
+from symgen.naming import file_stem
+from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, InvariantRecord
+from symgen.verify.comparison import Results, check_laws, compare, failures_of
+from symgen.verify.compile import (
+    SUFFIXES,
+    CFunction,
+    Compilation,
+    CompilationError,
+    Compiler,
+    CSource,
+    Outcome,
+    c_array,
+    find_compiler,
+)
+from symgen.verify.conditions import condition_numbers
+from symgen.verify.python_module import PythonModule
+from symgen.verify.reference import Reference, ReferenceValueError
+from symgen.verify.states import (
+    FEWEST_STATES,
+    Sample,
+    VerificationError,
+    affordable_states,
+    rounded,
+    sample_states,
+)
+from symgen.verify.tolerance import Expectation, expectations
+
+Progress: TypeAlias = Callable[[str], None]
+Expected: TypeAlias = Sequence[Mapping[str, Expectation]]
+LONGEST_EXCERPT = 2000
+
+
+def verify(
+    model: Model,
+    kernels: Sequence[Kernel],
+    c_sources: Mapping[Scalar, CSource],
+    python_source: str | None,
+    states: int | None = None,
+    progress: Progress = lambda _: None,
+) -> Certificate:
+    """Run what was generated and compare it with the reference.
+
+    `kernels` name the emitted quantities with their arguments and shapes (those of one program serve for all targets);
+    `states` None takes 64, or fewer (8 at least) where a count of operations predicts more than 20 s.
+    Raises VerificationError when fewer than 8 admissible states are found.
+    """
+    names = tuple(kernel.name for kernel in kernels)
+    compiler = find_compiler() if c_sources else None
+    with _compilations(compiler, c_sources) as compilations:
+        progress("verifying: looking for states")
+        reference = _reference(model)
+        count = affordable_states(reference) if states is None else max(states, FEWEST_STATES)
+        doubles = sample_states(reference, names, count)
+        scalars: dict[Scalar, tuple[Sample, ...]] = {scalar: _rounded(doubles, scalar) for scalar in c_sources}
+        if python_source is not None:
+            scalars["float64"] = doubles
+        expected = _expected(reference, names, scalars, progress)
+        progress("verifying: running C and Python")
+        results, failures = _run_c(model, kernels, compilations, scalars)
+    if python_source is not None:
+        outcomes, faults = _run_python(python_source, kernels, doubles)
+        results["Python float64"] = ("float64", outcomes)
+        failures += faults
+    errors: list[ErrorRecord] = []
+    laws: list[InvariantRecord] = []
+    for target, (scalar, made) in results.items():
+        for name in names:
+            record = compare(name, target, [e[name] for e in expected[scalar]], made[name])
+            errors.append(record)
+            failures += failures_of(record, made[name], scalars[scalar])
+        laws += check_laws(target, reference, scalars[scalar], expected[scalar], made)
+    failures += [
+        f"{law.target} violates {law.name}: {law.largest:.3g} times the allowed defect"
+        for law in laws
+        if law.largest > 1
+    ]
+    return Certificate(
+        model=model.name,
+        states=len(doubles),
+        ranks=(
+            ("constraints", reference.ranks.constraints),
+            ("geometric constraints", reference.ranks.geometric),
+            ("degree of actuation", reference.ranks.actuation),
+        ),
+        errors=tuple(errors),
+        invariants=tuple(laws),
+        conditions=tuple(ConditionRecord(*record) for record in condition_numbers(reference, doubles)),
+        versions=_versions(compiler),
+        hashes=tuple(_hashes(model, c_sources, python_source)),
+        failures=tuple(failures),
+        notes=("no C compiler: C not verified",) if c_sources and compiler is None else (),
+    )
+
+
+def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[dict[Scalar, CSource], str | None]:
+    """C sources by scalar type, and the Python source, among the files of a model (paths relative to its folder)."""
+    texts = {path: content if isinstance(content, str) else content.decode() for path, content in files.items()}
+    stem = file_stem(model.name)
+    c_sources = {
+        scalar: CSource(stem + suffix, texts[f"c/{stem}{suffix}.h"], texts[f"c/{stem}{suffix}.c"])
+        for scalar, suffix in SUFFIXES.items()
+        if f"c/{stem}{suffix}.c" in texts
+    }
+    return c_sources, texts.get(f"python/{stem}.py")
+
+
+@contextmanager
+def _compilations(
+    compiler: Compiler | None, c_sources: Mapping[Scalar, CSource]
+) -> Iterator[dict[Scalar, Compilation]]:
+    """Compilers at work on all sources, in a folder that goes away."""
+    with tempfile.TemporaryDirectory(prefix="symgen-verify-") as folder:
+        started: dict[Scalar, Compilation] = {}
+        try:
+            if compiler is not None:
+                for scalar, source in c_sources.items():
+                    started[scalar] = Compilation(compiler, source, Path(folder))
+            yield started
+        finally:
+            for compilation in started.values():
+                compilation.cancel()
+
+
+def _reference(model: Model) -> Reference:
+    try:
+        return Reference(model)
+    except ReferenceValueError as fault:
+        raise VerificationError(
+            f"{fault}; give a start under `configuration` that satisfies them, and the ranges of the coordinates"
+        ) from fault
+
+
+def _rounded(samples: Sequence[Sample], scalar: Scalar) -> tuple[Sample, ...]:
+    return tuple(rounded(sample, scalar) for sample in samples)
+
+
+def _expected(
+    reference: Reference, names: Sequence[str], samples: Mapping[Scalar, Sequence[Sample]], progress: Progress
+) -> dict[Scalar, list[dict[str, Expectation]]]:
+    """Reference values and error units, by scalar type and state."""
+    found: dict[Scalar, list[dict[str, Expectation]]] = {scalar: [] for scalar in samples}
+    for scalar, chosen in samples.items():
+        for index, sample in enumerate(chosen):
+            if index % 8 == 0:
+                progress(f"verifying: reference for {scalar}, state {index + 1} of {len(chosen)}")
+            found[scalar].append(expectations(reference, sample.state, names, scalar, f"{scalar} {index}"))
+    return found
+
+
+def _run_c(
+    model: Model,
+    kernels: Sequence[Kernel],
+    compilations: Mapping[Scalar, Compilation],
+    samples: Mapping[Scalar, Sequence[Sample]],
+) -> tuple[dict[str, tuple[Scalar, Results]], list[str]]:
+    """Outcomes of every kernel at every state by target, and what did not compile."""
+    results: dict[str, tuple[Scalar, Results]] = {}
+    failures = []
+    for scalar, compilation in compilations.items():
+        target = f"C {scalar}"
+        try:
+            library = compilation.library()
+        except CompilationError as refusal:
+            failures.append(f"{target} does not compile: {str(refusal)[:LONGEST_EXCERPT]}")
+            continue
+        functions = [CFunction(library, model.name, kernel, scalar) for kernel in kernels]
+        outcomes: dict[str, list[Outcome]] = {kernel.name: [] for kernel in kernels}
+        for sample in samples[scalar]:
+            state = sample.state
+            arrays = {name: c_array(scalar, getattr(state, name)) for name in ("q", "qd", "qdd", "u")}
+            parameters = c_array(scalar, state.parameters)
+            for kernel, function in zip(kernels, functions, strict=True):
+                outcomes[kernel.name].append(function(arrays, parameters))
+        results[target] = (scalar, outcomes)
+    return results, failures
+
+
+def _run_python(
+    source: str, kernels: Sequence[Kernel], samples: Sequence[Sample]
+) -> tuple[dict[str, list[Outcome]], list[str]]:
+    """Outcomes of every kernel over all states; the first state must give the same bits alone as in the batch."""
+    module = PythonModule(source)
+    states = [sample.state for sample in samples]
+    outcomes = {kernel.name: module.run(kernel, states) for kernel in kernels}
+    failures = [
+        f"Python float64, {kernel.name}: one state alone and the same state in a batch differ"
+        for kernel in kernels
+        if module.run_single(kernel, states[0]).entries != outcomes[kernel.name][0].entries
+        and outcomes[kernel.name][0].valid
+    ]
+    return outcomes, failures
+
+
+def _versions(compiler: Compiler | None) -> tuple[tuple[str, str], ...]:
+    import numpy as np
+
+    return (
+        ("symgen", symgen.__version__),
+        ("python", platform.python_version()),
+        ("numpy", np.__version__),
+        ("python-flint", flint.__version__),
+        ("compiler", "none" if compiler is None else compiler.version),
+        ("machine", platform.machine()),
+    )
+
+
+def _hashes(model: Model, c_sources: Mapping[Scalar, CSource], python_source: str | None) -> Iterator[tuple[str, str]]:
+    """SHA-256 of the model's text and of every text that was run."""
+    yield "model", model.text_hash
+    for source in c_sources.values():
+        yield f"c/{source.stem}.h", _hash(source.header)
+        yield f"c/{source.stem}.c", _hash(source.source)
+    if python_source is not None:
+        yield f"python/{file_stem(model.name)}.py", _hash(python_source)
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
