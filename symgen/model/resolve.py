@@ -19,6 +19,7 @@ from symgen.model.declarations import (
     read_parameters,
     read_ranges,
 )
+from symgen.model.dimensions import check_units
 from symgen.model.expression import Number
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean, name_mistake
@@ -77,6 +78,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         notices=(),
         text_hash=hashlib.sha256(text.encode()).hexdigest(),
     )
+    scope.mistakes.extend(check_units(tree, model))
     check_mechanics(scope, tree, model, kinetic_read, whole)
     notice_empty_outputs(scope, tree, model)
     _notice_unused(scope, tree)

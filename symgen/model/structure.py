@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from symgen.diagnostics import Mistake, Notice
-from symgen.model.algebra import BEYOND, Monomial, NotPolynomialError, Polynomial, is_zero
+from symgen.model.algebra import BEYOND, RELATIVE_ZERO, Monomial, NotPolynomialError, Polynomial, is_zero
 from symgen.model.expression import Binary, Expression, Negation
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import ConstraintRow
@@ -36,24 +36,22 @@ def check_nonholonomic(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mis
 
 
 def check_geometric(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mistake | Notice]:
-    """A row without coordinates is either nothing or a contradiction."""
-    values: list[tuple[float, float]] = []
-    for q, parameters in mechanics.anywhere(ATTEMPTS):
-        try:
-            values.append(mechanics.expansion(q, parameters).of(row.expression).get((), (0.0, 0.0)))
-        except NotPolynomialError:
-            return
-        except (ArithmeticError, ValueError):
-            continue
-        if len(values) == POINTS:
-            break
-    first = values[0] if values else (0.0, 0.0)
-    moves = any(abs(value - first[0]) > 1e-9 * (size + first[1]) for value, size in values)
-    if values and all(is_zero(value) for value in values):
+    """A row that does not depend on the configuration is either nothing or a contradiction."""
+    try:
+        with_defaults = list(_values(mechanics, row.expression, mechanics.defaults))
+        with_others = list(_values(mechanics, row.expression, None))
+    except NotPolynomialError:
+        return
+    if not with_defaults or any(
+        abs(value - with_defaults[0][0]) > RELATIVE_ZERO * (size + with_defaults[0][1]) for value, size in with_defaults
+    ):
+        return
+    if all(is_zero(value) for value in with_defaults + with_others):
         yield Notice(f"the constraint `{row.name}` is zero for all configurations and says nothing", row.span)
-    elif values and not moves:
-        message = f"the constraint `{row.name}` demands {first[0]:.6g} = 0"
-        yield Mistake(message, "a geometric constraint is an expression of coordinates that can become zero", row.span)
+    else:
+        demand = f"{with_defaults[0][0]:.6g} = 0"
+        message = f"the constraint `{row.name}` does not depend on the configuration: it demands {demand}"
+        yield Mistake(message, "write an expression of coordinates that can become zero", row.span)
 
 
 def check_domain(mechanics: Mechanics, expression: Expression, what: str) -> Iterator[Mistake]:
@@ -74,14 +72,23 @@ def _check_degree(
     mechanics: Mechanics, expression: Expression, degree: int, message: str, remedy: str
 ) -> Iterator[Mistake]:
     try:
-        for polynomial in _polynomials(mechanics, expression):
-            wrong = _wrong_monomial(polynomial, degree)
+        whole = _wrong_term(mechanics, expression, degree)
+        if whole is None:
+            return
+        # Point at the first summand at fault, unless only the whole sum is.
+        for summand in _summands(expression):
+            wrong = _wrong_term(mechanics, summand, degree)
             if wrong is not None:
-                culprit = _summand(mechanics, expression, degree)
-                yield Mistake(f"{message}: it has {_shown(wrong)}", remedy, culprit.span)
+                yield Mistake(f"{message}: it has {_shown(wrong)}", remedy, summand.span)
                 return
+        yield Mistake(f"{message}: it has {_shown(whole)}", remedy, expression.span)
     except NotPolynomialError as error:
         yield Mistake(f"{message}: it {error.what}", remedy, error.span)
+
+
+def _wrong_term(mechanics: Mechanics, expression: Expression, degree: int) -> Monomial | None:
+    found = (_wrong_monomial(polynomial, degree) for polynomial in _polynomials(mechanics, expression))
+    return next((monomial for monomial in found if monomial is not None), None)
 
 
 def _wrong_monomial(polynomial: Polynomial, degree: int) -> Monomial | None:
@@ -93,15 +100,6 @@ def _shown(monomial: Monomial) -> str:
     if monomial == BEYOND:
         return "a term of fourth or higher degree in the rates"
     return f"a term with {'*'.join(monomial)}" if monomial else "a term without rates"
-
-
-def _summand(mechanics: Mechanics, expression: Expression, degree: int) -> Expression:
-    """The first summand of the expression that has a term of another degree, to point at."""
-    for summand in _summands(expression):
-        for polynomial in _polynomials(mechanics, summand):
-            if _wrong_monomial(polynomial, degree) is not None:
-                return summand
-    return expression
 
 
 def _summands(expression: Expression) -> Iterable[Expression]:
@@ -121,6 +119,21 @@ def _polynomials(mechanics: Mechanics, expression: Expression) -> Iterator[Polyn
     for q, parameters in mechanics.anywhere(ATTEMPTS):
         try:
             yield mechanics.expansion(q, parameters).of(expression)
+        except (ArithmeticError, ValueError):
+            continue
+        found += 1
+        if found == POINTS:
+            return
+
+
+def _values(
+    mechanics: Mechanics, expression: Expression, parameters: dict[str, float] | None
+) -> Iterator[tuple[float, float]]:
+    """Value and size of an expression without rates at a few random configurations, with those or random parameters."""
+    found = 0
+    for q, others in mechanics.anywhere(ATTEMPTS):
+        try:
+            yield mechanics.expansion(q, parameters or others).of(expression).get((), (0.0, 0.0))
         except (ArithmeticError, ValueError):
             continue
         found += 1

@@ -1,0 +1,153 @@
+"""Dimensions inferred through the expressions of a model: only contradictions in what the user wrote are mistakes.
+
+Names without a unit are free and fit everywhere.  So are literals, save those that are plainly counts: 1/2, 1, 2, 4,
+integers that something is divided by, and quotients of integers (so that `m/2*x_dot**2` has a unit).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TypeAlias
+
+from symgen.diagnostics import Mistake, Span
+from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.model import Model
+from symgen.model.reading import entries, member
+from symgen.model.source import MappingNode, ScalarNode
+from symgen.model.units import NUMBER, SECOND, Unit, parse_unit
+
+Dimension: TypeAlias = Unit | None
+"""None where a dimension is free."""
+
+_COUNTS = frozenset({Fraction(1), Fraction(2), Fraction(4), Fraction(1, 2), Fraction(1, 4)})
+_SAME_UNIT = "use one unit for each kind of quantity, such as m throughout; nothing is converted"
+_CHECK_TERMS = "check the terms, and the units declared for their names"
+
+
+def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
+    """Units that are not read, and contradictions between those that are."""
+    mistakes: list[Mistake] = []
+    units = _declared(tree, mistakes)
+    if not units and not mistakes:
+        return []
+    inference = _Inference(model, units, mistakes)
+    for parameter in model.parameters:
+        inference.agrees(parameter.value, units.get(parameter.name), f"the value of `{parameter.name}`")
+    kinetic = inference.of(model.kinetic_energy)
+    potential = inference.of(model.potential_energy)
+    if kinetic is not None and potential is not None and kinetic != potential:
+        mistakes.append(
+            _clash("the potential energy", potential, "the kinetic energy", kinetic, model.potential_energy)
+        )
+    energy = kinetic if kinetic is not None else potential
+    for row in model.constraints:
+        inference.of(row.expression)
+    forces = {c.name: energy.times(units[c.name], -1) for c in model.coordinates if energy and c.name in units}
+    for force in model.applied_forces:
+        what = f"the applied force on `{force.coordinate}`"
+        inference.agrees(force.expression, forces.get(force.coordinate), what)
+    for column in model.inputs:
+        for coordinate, coefficient in column.acts_on:
+            force_unit, input_unit = forces.get(coordinate), units.get(column.name)
+            found = inference.of(coefficient)
+            if force_unit and input_unit and found and input_unit.times(found) != force_unit:
+                what = f"the force of `{column.name}` on `{coordinate}`"
+                needed = f"the generalized force of `{coordinate}`"
+                mistakes.append(_clash(what, input_unit.times(found), needed, force_unit, coefficient))
+    return mistakes
+
+
+class _Inference:
+    """The dimensions of expressions; each contradiction is recorded once and then counts as free."""
+
+    def __init__(self, model: Model, units: dict[str, Unit], mistakes: list[Mistake]) -> None:
+        self._units = dict(units)
+        for coordinate in model.coordinates:
+            if coordinate.name in units:
+                self._units[coordinate.rate] = units[coordinate.name].times(SECOND, -1)
+        self._mistakes = mistakes
+        for definition in model.definitions:
+            found = self.of(definition.value)
+            if found is not None:
+                self._units[definition.name] = found
+
+    def agrees(self, expression: Expression, declared: Dimension, what: str) -> None:
+        """Records a mistake where the expression has another dimension than `declared`."""
+        found = None if isinstance(expression, Number) else self.of(expression)
+        if declared is not None and found is not None and found != declared:
+            self._mistakes.append(_clash(what, found, "its unit", declared, expression))
+
+    def of(self, expression: Expression) -> Dimension:
+        """The dimension of an expression."""
+        match expression:
+            case Number(value=value):
+                return NUMBER if value in _COUNTS else None
+            case Pi():
+                return NUMBER
+            case Name(name=name):
+                return self._units.get(name)
+            case Negation(operand=operand):
+                return self.of(operand)
+            case Binary(operator="+" | "-", left=left, right=right):
+                return self._sum(left, right)
+            case Binary(operator=operator, left=left, right=right):
+                return self._product(operator, left, right)
+            case Power(base=base, exponent=exponent):
+                found = self.of(base)
+                return None if found is None else found.to_power(exponent)
+            case Call():
+                return self._call(expression)
+
+    def _sum(self, left: Expression, right: Expression) -> Dimension:
+        # A literal that is added takes the unit of what it is added to, also where it looks like a count.
+        a = None if isinstance(left, Number) else self.of(left)
+        b = None if isinstance(right, Number) else self.of(right)
+        if a is not None and b is not None and a != b:
+            self._mistakes.append(_clash("this term", b, "the one before", a, right))
+            return None
+        return a if a is not None else b
+
+    def _product(self, operator: str, left: Expression, right: Expression) -> Dimension:
+        if operator == "/" and isinstance(right, Number) and right.value.denominator == 1:
+            return NUMBER if isinstance(left, Number) and left.value.denominator == 1 else self.of(left)
+        a, b = self.of(left), self.of(right)
+        return None if a is None or b is None else a.times(b, 1 if operator == "*" else -1)
+
+    def _call(self, call: Call) -> Dimension:
+        found = [self.of(argument) for argument in call.arguments]
+        if call.function == "sqrt":
+            return None if found[0] is None else found[0].to_power(Fraction(1, 2))
+        if call.function == "atan2":
+            if found[0] is not None and found[1] is not None and found[0] != found[1]:
+                self._mistakes.append(_clash("this argument", found[1], "the first", found[0], call.arguments[1]))
+        elif found[0] is not None and found[0] != NUMBER:
+            self._mistakes.append(
+                Mistake(
+                    f"`{call.function}` of something in {found[0]}",
+                    "the argument must be an angle in rad or a number",
+                    call.arguments[0].span,
+                )
+            )
+        return NUMBER
+
+
+def _declared(tree: MappingNode, mistakes: list[Mistake]) -> dict[str, Unit]:
+    """The units of coordinates, parameters and inputs by name; unreadable ones are mistakes."""
+    units: dict[str, Unit] = {}
+    for block in ("coordinates", "parameters", "inputs"):
+        for key, value in entries(tree.get(block)):
+            node = member(value, "unit")
+            if isinstance(node, ScalarNode) and node.value.strip():
+                unit = parse_unit(node)
+                if isinstance(unit, Mistake):
+                    mistakes.append(unit)
+                else:
+                    units[key.value] = unit
+    return units
+
+
+def _clash(what: str, found: Unit, other: str, expected: Unit, expression: Expression) -> Mistake:
+    span: Span | None = expression.span
+    scale_only = found.exponents == expected.exponents
+    message = f"{what} is in {found}, {other} in {expected}"
+    return Mistake(message, _SAME_UNIT if scale_only else _CHECK_TERMS, span)
