@@ -11,20 +11,21 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sympy import lambdify
+from witness_models import EXTRA
 
 from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
 from symgen.derive.select import derive_quantities
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Status
 from symgen.ir.schedule import schedule
-from symgen.model.load import load_model
+from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
 from symgen.witness.casadi_derivation import witness_functions
 from symgen.witness.configurations import configurations
 from symgen.witness.lagrange import differentiate
 from symgen.witness.translate import default_parameters
 
-MODELS = sorted((Path(__file__).parents[2] / "models").glob("*.yaml"))
+SHIPPED = {path.stem: path for path in sorted((Path(__file__).parents[2] / "models").glob("*.yaml"))}
 ALL_THREE = {
     "mass_matrix",
     "coriolis_matrix",
@@ -113,9 +114,9 @@ class SympyWitness:
         return np.array([[float(entry) for entry in row] for row in matrix.tolist()])
 
 
-@pytest.mark.parametrize("path", MODELS, ids=[path.stem for path in MODELS])
-def test_three_derivations_agree(path: Path) -> None:
-    model = load_model(path)
+@pytest.mark.parametrize("name", [*SHIPPED, *EXTRA])
+def test_three_derivations_agree(name: str) -> None:
+    model = load_model(SHIPPED[name]) if name in SHIPPED else load_text(EXTRA[name], name)
     witness = witness_functions(model)
     sympy = SympyWitness(model, derive_closed_forms(model))
     derivations = derive_quantities(model, model.outputs)
