@@ -7,8 +7,12 @@ from collections.abc import Iterator
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
+from symgen.model.names import counted
 
 SAMPLES = 4
+
+# A configuration whose rank depends on which of these is taken for zero is too close to a singularity to tell.
+THRESHOLDS = (1e-9, 1e-5)
 
 
 def check_motion(
@@ -34,11 +38,14 @@ def check_motion(
         )
         return
     n = len(mechanics.coordinates)
-    ranks = [rank(jacobian) for jacobian in jacobians]
+    low, high = ([rank(jacobian, threshold) for jacobian in jacobians] for threshold in THRESHOLDS)
+    ranks = [a if a == b else -1 for a, b in zip(low, high, strict=True)]
     generic = max(ranks)
+    if generic < 0:
+        ranks, generic = high, max(high)
     if generic == n:
         yield Mistake(
-            f"the mechanism cannot move: {n} coordinates under {generic} independent constraints (δ = 0)",
+            f"the mechanism cannot move: {counted(n, 'coordinate')} under {counted(generic, 'independent constraint')} (δ = 0)",
             "remove a constraint, or add the coordinate that is still free",
             spans["constraints"],
         )
@@ -86,8 +93,8 @@ def _check_independent(
 ) -> Iterator[Mistake]:
     if len(chosen) != delta:
         yield Mistake(
-            f"`independent_velocities` has {len(chosen)} names, the system has δ = {delta}",
-            f"name {delta} coordinates whose rates determine all others",
+            f"`independent_velocities` has {counted(len(chosen), 'name')}, the system has δ = {delta}",
+            f"name {counted(delta, 'coordinate')} whose rates determine all others",
             span,
         )
         return

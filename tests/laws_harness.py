@@ -1,0 +1,101 @@
+"""Kernels of a small model run by the interpreter and judged by the 50-digit reference at states given by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+
+from symgen.derive.select import Derivations, derive_quantities
+from symgen.ir.interpret import Interpreter, round_float32
+from symgen.ir.kernel import Kernel, Program, Scalar, Status
+from symgen.ir.schedule import schedule
+from symgen.model.load import load_text
+from symgen.model.model import Model
+from symgen.verify.reference import Reference, State
+from symgen.verify.reference_system import parameters_from
+from symgen.verify.tolerance import FACTOR, expectations
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def shipped(name: str) -> str:
+    """The text of a model file of the repository."""
+    return (ROOT / "models" / f"{name}.yaml").read_text()
+
+
+class System:
+    """One model with its derivation, its kernels for both scalar types and its reference, each made on first use."""
+
+    def __init__(self, text: str, outputs: Sequence[str] = ("all",)) -> None:
+        self.model: Model = load_text(text, "laws.yaml")
+        self.derivations: Derivations = derive_quantities(self.model, outputs)
+        self.reference = Reference(self.model)
+        self._programs: dict[Scalar, Program] = {}
+
+    def program(self, scalar: Scalar = "float64") -> Program:
+        if scalar not in self._programs:
+            mechanics, quantities = self.derivations.mechanics, self.derivations.quantities
+            self._programs[scalar] = schedule(mechanics, quantities, scalar)
+        return self._programs[scalar]
+
+    def kernel(self, name: str, scalar: Scalar = "float64") -> Kernel:
+        return next(kernel for kernel in self.program(scalar).kernels if kernel.name == name)
+
+    @property
+    def names(self) -> list[str]:
+        return [quantity.name for quantity in self.derivations.quantities]
+
+    def state(
+        self,
+        q: Sequence[float],
+        qd: Sequence[float] = (),
+        qdd: Sequence[float] = (),
+        u: Sequence[float] = (),
+        parameters: Mapping[str, float] | None = None,
+        scalar: Scalar = "float64",
+    ) -> State:
+        """A state with floats of the scalar type; rates, accelerations and inputs default to uneven numbers."""
+        n, m = len(self.model.coordinates), len(self.model.inputs)
+        uneven = [0.71, -0.43, 0.37, 0.83, -0.59, 0.29, -0.97, 0.53, 0.61, -0.31, 0.47, -0.89]
+        given = [float(x) for x in parameters_from(self.model, dict(parameters or {}))]
+        parts = (q, qd or uneven[:n], qdd or uneven[-n:][::-1], u or uneven[2 : 2 + m], given)
+        return State(*(tuple(_float(x, scalar) for x in part) for part in parts))
+
+    def run(self, name: str, state: State, scalar: Scalar = "float64") -> tuple[Status, list[float]]:
+        program = self.program(scalar)
+        arguments = {"q": state.q, "qd": state.qd, "qdd": state.qdd, "u": state.u}
+        return Interpreter(program.sincos, scalar).run(self.kernel(name, scalar), arguments, state.parameters)
+
+    def matrix(self, name: str, state: State, scalar: Scalar = "float64") -> list[list[float]]:
+        """A quantity as rows; a vector is one column."""
+        status, values = self.run(name, state, scalar)
+        assert status is Status.OK, f"{name}: {status.name}"
+        shape = self.kernel(name, scalar).shape
+        columns = shape[1] if len(shape) > 1 else 1
+        return [values[i : i + columns] for i in range(0, len(values), columns)]
+
+    def errors(self, state: State, names: Sequence[str] = (), scalar: Scalar = "float64") -> dict[str, float]:
+        """The error of each quantity in units of the tolerance: at most 1 for a correct kernel."""
+        names = list(names or self.names)
+        expected = expectations(self.reference, state, names, scalar, "laws")
+        errors = {}
+        for name in names:
+            status, values = self.run(name, state, scalar)
+            assert status is Status.OK, f"{name}: {status.name} at q = {state.q}"
+            errors[name] = expected[name].in_units(expected[name].distance(values)) / FACTOR
+        return errors
+
+    def assert_right(self, state: State, names: Sequence[str] = (), scalar: Scalar = "float64") -> None:
+        wrong = {name: error for name, error in self.errors(state, names, scalar).items() if not error <= 1}
+        assert not wrong, f"{self.model.name} {scalar} at q = {state.q}: {wrong}"
+
+
+def _float(value: float, scalar: Scalar) -> float:
+    return float(value) if scalar == "float64" else round_float32(float(value))
+
+
+@lru_cache(maxsize=None)
+def system(text: str, outputs: tuple[str, ...] = ("all",)) -> System:
+    """A system shared by the tests of one process."""
+    return System(text, outputs)
