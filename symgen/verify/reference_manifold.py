@@ -22,6 +22,8 @@ from symgen.verify.reference_tape import precision
 RANK_BITS = 256
 RANK_STARTS = 24
 RANK_POINTS = 6
+MOST_STEPS = 60
+MOST_SLOW_STEPS = 6
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,8 @@ def onto_manifold(
     residual, jacobian = system.geometry(q.entries(), parameters, literals)
     size = norm(residual)
     damping = 1e-3
-    for _ in range(60):
+    slow = 0
+    for _ in range(MOST_STEPS):
         if size <= tolerance:
             return [entry.mid() for entry in q.entries()]
         gram = jacobian * jacobian.transpose()
@@ -52,6 +55,9 @@ def onto_manifold(
         trial = (q - step).mid()
         residual_trial, jacobian_trial = system.geometry(trial.entries(), parameters, literals)
         size_trial = norm(residual_trial)
+        slow = slow + 1 if size_trial > 0.9 * size else 0
+        if slow > MOST_SLOW_STEPS:
+            return None
         if size_trial < size:
             q, residual, jacobian = trial, residual_trial, jacobian_trial
             damping = max(damping * min(0.03, size_trial / size), 1e-25)

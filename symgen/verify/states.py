@@ -94,7 +94,7 @@ def _candidates(
     for index, point in enumerate(points):
         parameters = _parameters(reference, generator, vary=index > 0)
         start = point
-        if last is not None and index % 2 and system.r_geometric:
+        if last is not None and index % 4 and system.r_geometric:
             start = _step(reference, last, generator)
         q = onto_manifold(system, start, parameters, literals)
         if q is None:
