@@ -2,48 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
 
+from symgen.closedform.forms import ClosedForm
+from symgen.closedform.singular import SingularSet
+from symgen.closedform.structure import Integrability, Structure
 from symgen.model.model import Model
-
-
-class ClosedForm(Protocol):
-    """A quantity in closed form.
-
-    `matrix` is a SymPy matrix in names of the model and of the intermediates (None: not attempted, `note` says why);
-    `intermediates` are (symbol, expression) pairs in order of use.
-    """
-
-    @property
-    def matrix(self) -> Any: ...
-
-    @property
-    def intermediates(self) -> Sequence[tuple[Any, Any]]: ...
-
-    @property
-    def note(self) -> str: ...
-
-
-@dataclass(frozen=True, slots=True)
-class Structure:
-    """Dimensions and classes of the system; `rank` is the generic rank of B, `alpha` the generic degree of actuation."""
-
-    rank: int
-    delta_loc: int
-    delta_diff: int
-    alpha: int
-    actuation: str
-
-
-@dataclass(frozen=True, slots=True)
-class SingularSet:
-    """Where a quantity does not exist or changes rank: the zeros of a SymPy expression, or words where it is None."""
-
-    quantity: str
-    zero: Any
-    text: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,49 +22,50 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class ErrorRow:
-    """Errors of one quantity in one language and precision: largest in units of the tolerance, and relative."""
+    """Errors of one kernel of one target over all states, in units of d + eps |y*|; `relative` is the largest over |y*|."""
 
     quantity: str
-    kernel: str
-    largest: float
-    percentile_99: float
+    target: str
     median: float
-    tolerance_units: float
+    percentile_99: float
+    largest: float
+    relative: float
 
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """What verification measured; shown in the PDF only."""
+    """What a run measured; shown in the PDF only.  `invariants` and `facts` are (name, value) as text."""
 
     states: int
-    remarks: tuple[str, ...]
     errors: tuple[ErrorRow, ...]
-    invariants: tuple[tuple[str, str], ...]
-    conditions: tuple[tuple[str, str], ...] = ()
-    versions: tuple[tuple[str, str], ...] = ()
+    invariants: tuple[tuple[str, str], ...] = ()
+    facts: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """A drawing with its caption."""
+    """A drawing as SVG text, with its caption."""
 
-    name: str
     caption: str
     svg: str
 
 
 @dataclass(frozen=True, slots=True)
 class ReportInput:
-    """Everything the report says; without `verification` and `charts` it is a function of model and symgen alone."""
+    """Everything the report says; without `verification` and `charts` it is a function of model and symgen alone.
+
+    `operation_counts`: quantity -> kind of operation (add, mul, div, sqrt, sincos, other) -> number.
+    `skipped`: decisions with their reasons, and quantities that do not exist with theirs.
+    """
 
     model: Model
     version: str
+    forms: Mapping[str, ClosedForm]
     structure: Structure
-    closed_forms: Mapping[str, ClosedForm]
+    integrability: tuple[Integrability, ...] = ()
+    singular_sets: tuple[SingularSet, ...] = ()
     skipped: tuple[tuple[str, str], ...] = ()
     operation_counts: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
-    singular_sets: tuple[SingularSet, ...] = ()
-    integrability: tuple[str, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
     notices: tuple[str, ...] = ()
     verification: Verification | None = None

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from symgen.model.expression import Expression
 from symgen.model.model import Model
-from symgen.report.content import ClosedForm, ReportInput
-from symgen.report.document import Block, Formula
-from symgen.report.from_expression import expression_layout
+from symgen.closedform.forms import ClosedForm
+from symgen.report.content import ReportInput
+from symgen.report.document import Block, Formula, Paragraph, Reference, Text
 from symgen.report.from_sympy import ACCELERATION, COORDINATE, PARAMETER, RATE, SympyLayout
-from symgen.report.layout import Array, Layout, Letter, Numeral, equation
-from symgen.report.matrices import array_blocks, matrix_blocks
+from symgen.report.layout import Layout, equation
+from symgen.report.matrices import Denominators, matrix_blocks, packed
 from symgen.report.names import name_layout
-from symgen.report.prose import SYMBOLS, paragraph
+from symgen.report.prose import SYMBOLS, paragraph, say
 
 
 def name_order(model: Model) -> Mapping[str, tuple[int, int]]:
@@ -41,11 +40,12 @@ class Context:
         self.full = report_input.model.report == "full"
         order = name_order(report_input.model)
         self.layout = SympyLayout(order)
-        self.taken = frozenset(order) | _intermediate_names(report_input.closed_forms)
+        self.denominators = Denominators(frozenset(order), _intermediate_names(report_input.forms))
+        self._defined: dict[str, str] = {}
 
     def form(self, quantity: str) -> ClosedForm | None:
         """The closed form of a quantity, where the model has one."""
-        return self.input.closed_forms.get(quantity)
+        return self.input.forms.get(quantity)
 
     def matrix(self, quantity: str) -> Any:
         """The SymPy matrix of a quantity, or None."""
@@ -65,30 +65,35 @@ class Context:
         shown = SYMBOLS[quantity] if symbol is None else symbol
         blocks: list[Block] = []
         if form.intermediates:
-            blocks += [paragraph("With the intermediate expressions"), self._intermediates(form)]
+            blocks += self._intermediates(form, f"with_{quantity}")
         if form.matrix is not None:
-            blocks += matrix_blocks(shown, form.matrix, self.layout, self.taken, label)
+            blocks += matrix_blocks(shown, form.matrix, self.layout, self.denominators, label)
         if form.note:
-            blocks.append(paragraph("{}", sentence(form.note)))
+            blocks.append(_remark(shown, form.note, form.matrix is not None))
         return tuple(blocks)
 
-    def expressions(self, symbol: Layout, rows: tuple[tuple[Expression, ...], ...]) -> tuple[Block, ...]:
-        """A matrix of expressions of the model file, as the user wrote them."""
-        array = Array(tuple(tuple(expression_layout(entry) for entry in row) for row in rows))
-        return array_blocks(symbol, array, None)
+    def _intermediates(self, form: ClosedForm, label: str) -> list[Block]:
+        """The definitions of the names a form uses, those of earlier forms by reference."""
+        new = [(symbol, value) for symbol, value in form.intermediates if symbol.name not in self._defined]
+        earlier = sorted({self._defined[symbol.name] for symbol, _ in form.intermediates if symbol.name in self._defined})
+        self._defined |= {symbol.name: label for symbol, _ in new}
+        known = say(" and".join([" {}"] * len(earlier)), *map(Reference, earlier))
+        if not new:
+            return [Paragraph((*say("In the intermediate expressions"), *known, "."))]
+        opening = "With the intermediate expressions" if not earlier else "With the intermediate expressions of"
+        text: Text = (opening, *known, " and") if earlier else (opening,)
+        equations = (equation(name_layout(s.name), self.layout.expression(value)) for s, value in new)
+        return [Paragraph(text), Formula(tuple(packed(equations)), label)]
 
-    def column(self, names: tuple[str, ...]) -> Layout:
-        """Names as a column vector in a line: (a, b, c) transposed is left to the reader."""
-        return Array((tuple(name_layout(name) for name in names),)) if names else Numeral("0")
 
-    def _intermediates(self, form: ClosedForm) -> Formula:
-        equations = []
-        for symbol, value in form.intermediates:
-            name = symbol if isinstance(symbol, str) else symbol.name
-            is_matrix = hasattr(value, "shape")
-            right = self.layout.matrix(value) if is_matrix else self.layout.expression(value)
-            equations.append(equation(name_layout(name), right))
-        return Formula(tuple(equations))
+def _remark(symbol: Layout, note: str, printed: bool) -> Block:
+    """Why a form is given in named parts or not at all; the formula after the semicolon stands in the text already."""
+    reason = note.split(";")[0].strip()
+    if printed:
+        return paragraph("Written out without names it would be too long ({}).", reason.removeprefix("not written out: "))
+    if reason.startswith("not written out: "):
+        return paragraph("{} is evaluated by this formula and not written out: {}.", symbol, reason.removeprefix("not written out: "))
+    return paragraph("{}", sentence(note))
 
 
 def sentence(text: str) -> str:
@@ -108,8 +113,3 @@ def _intermediate_names(forms: Mapping[str, ClosedForm]) -> frozenset[str]:
 def text_of(description: str) -> str:
     """A description as running text on one line."""
     return " ".join(description.split())
-
-
-def word(text: str) -> Letter:
-    """An upright word inside a formula."""
-    return Letter(text, "upright")

@@ -25,13 +25,16 @@ from symgen.report.layout import Layout
 from symgen.report.measure import page_width
 
 ROOM = 40.0
+LINE = 44.0
+COLUMN_GAP = 1.3
+"""Widths in em of displayed formulas, of a line of text, and of the space between the columns of a table."""
 SPECIAL: dict[str, str] = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
     "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}",
     "|": r"\textbar{}", '"': r"\textquotedbl{}", "`": r"\textasciigrave{}", "–": "--", "—": "---", "’": "'",
     "‘": "`", "“": "``", "”": "''", "…": r"\ldots{}", "\u00a0": "~", "−": "$-$", "·": r"$\cdot$", "×": r"$\times$",
     "°": r"$^\circ$", "√": r"$\surd$", "→": r"$\to$", "\n": " ", "\r": " ", "\t": " ",
-    "⁻": r"$^{-}$", "²": "$^2$", "³": "$^3$",
+    "⁻": r"$^{-}$", **{character: f"$^{digit}$" for digit, character in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
 }  # fmt: skip
 
 
@@ -117,12 +120,7 @@ class _LatexView:
         return f"\\begin{{align*}}\n{body}\n\\end{{align*}}"
 
     def _table(self, table: Table) -> str:
-        whole = sum(table.widths)
-        share = 0.92 if 0 not in table.widths else 0.62
-        columns = "".join(
-            rf">{{\raggedright\arraybackslash}}p{{{share * width / whole:.3f}\linewidth}}" if width else "l"
-            for width in table.widths
-        )
+        columns = "".join(_columns(table))
         head = " & ".join(rf"\textbf{{{self._text(heading)}}}" for heading in table.headings)
         rows = "\n".join(" & ".join(self._text(cell) for cell in row) + r" \\" for row in table.rows)
         caption = f"\\noindent {self._text(table.caption)}\n\n" if table.caption else ""
@@ -130,3 +128,31 @@ class _LatexView:
             f"{caption}\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n\\hline\n{head} \\\\\n\\hline\n\\endhead\n"
             f"{rows}\n\\hline\n\\end{{longtable}}"
         )
+
+
+def _columns(table: Table) -> list[str]:
+    """Column types: narrow columns as wide as their content, the others share what is left of the line."""
+    cells = zip(table.headings, *table.rows, strict=True)
+    natural = [max(_text_width(cell) for cell in column) + COLUMN_GAP for column in cells]
+    taken = sum(width for width, share in zip(natural, table.widths, strict=True) if share == 0)
+    shares = sum(table.widths)
+    left = max(LINE - taken - COLUMN_GAP * sum(share > 0 for share in table.widths), 12.0)
+    return [
+        rf">{{\raggedright\arraybackslash}}p{{{left * share / shares:.1f}em}}" if share else "l" for share in table.widths
+    ]
+
+
+def _text_width(text: Text) -> float:
+    """The width of a cell in em, estimated a little wide."""
+    width = 0.0
+    for part in text:
+        match part:
+            case str():
+                width += 0.5 * len(part)
+            case InlineMath(node=node):
+                width += page_width(node)
+            case InlineCode(text=inside) | Emphasis(text=inside):
+                width += 0.53 * len(inside)
+            case Reference():
+                width += 1.8
+    return width

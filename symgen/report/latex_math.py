@@ -10,6 +10,7 @@ from symgen.report.layout import (
     Delimiter,
     Fenced,
     Fraction,
+    Gap,
     Layout,
     Letter,
     Numeral,
@@ -31,6 +32,7 @@ GREEK: dict[str, str] = {
     "ξ": r"\xi", "π": r"\pi", "ρ": r"\rho", "σ": r"\sigma", "τ": r"\tau", "υ": r"\upsilon", "φ": r"\varphi",
     "χ": r"\chi", "ψ": r"\psi", "ω": r"\omega", "Γ": r"\Gamma", "Δ": r"\Delta", "Θ": r"\Theta", "Λ": r"\Lambda",
     "Ξ": r"\Xi", "Π": r"\Pi", "Σ": r"\Sigma", "Υ": r"\Upsilon", "Φ": r"\Phi", "Ψ": r"\Psi", "Ω": r"\Omega",
+    "∂": r"\partial",
 }  # fmt: skip
 RELATIONS = {"=": "=", "≠": r"\neq", "≡": r"\equiv", "≤": r"\leq", "≥": r"\geq", "<": "<", ">": ">", "∈": r"\in", ":=": ":="}
 FUNCTIONS = frozenset(
@@ -56,6 +58,8 @@ def latex_math(node: Layout) -> str:
             return ", "
         case Punctuation(text=text):
             return rf"\text{{{text}}}\ "
+        case Gap():
+            return r"\qquad "
         case Delimiter(text=text, upper=upper):
             mark = rf"\bigl{text}" if text in "([" else rf"\bigr{text}"
             return mark + ("" if upper is None else f"^{{{latex_math(upper)}}}")

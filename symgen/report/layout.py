@@ -52,6 +52,11 @@ class Punctuation:
 
 
 @dataclass(frozen=True, slots=True)
+class Gap:
+    """Wide space between equations that share a line."""
+
+
+@dataclass(frozen=True, slots=True)
 class Scripts:
     """A base with a subscript, a superscript, or both."""
 
@@ -101,10 +106,9 @@ class Application:
 
 @dataclass(frozen=True, slots=True)
 class Product:
-    """Factors side by side; `dotted` sets a multiplication point between them."""
+    """Factors side by side."""
 
     factors: tuple[Layout, ...]
-    dotted: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +146,7 @@ Layout: TypeAlias = (
     | Relation
     | Sign
     | Punctuation
+    | Gap
     | Scripts
     | Accent
     | Fraction

@@ -12,6 +12,7 @@ from symgen.report.layout import (
     Delimiter,
     Fenced,
     Fraction,
+    Gap,
     Layout,
     Letter,
     Numeral,
@@ -50,6 +51,8 @@ def mathml(node: Layout) -> str:
             return '<mo separator="true">,</mo>'
         case Punctuation(text=text):
             return f"<mtext>{escape(text)}\u00a0</mtext>"
+        case Gap():
+            return '<mspace width="2em"/>'
         case Delimiter(text=text, upper=upper):
             mark = f'<mo stretchy="false" form="{"prefix" if text in "([" else "postfix"}">{escape(text)}</mo>'
             return mark if upper is None else f"<msup>{mark}{mathml(upper)}</msup>"

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import sympy
 
 from symgen.report.document import Block, Formula
 from symgen.report.from_sympy import SympyLayout
-from symgen.report.layout import Array, Fraction, Layout, Letter, Numeral, Product, Punctuation, Row, Scripts, equation, size
+from symgen.report.layout import Accent, Array, Fenced, Fraction, Gap, Layout, Letter, Numeral, Product, Punctuation, Row, Scripts, equation, size
 from symgen.report.measure import page_width
 from symgen.report.names import name_layout
 from symgen.report.prose import paragraph
+from symgen.report.setting import power
 
 ROOM = 40.0
 LARGEST = 3000
 """Nodes above which a matrix is described, not printed."""
-DENOMINATOR_NAMES = ("a", "d", "h", "w", "D_0")
+DENOMINATOR_NAMES = ("a", "d", "h", "w")
 ZERO = Numeral("0")
 
 
@@ -37,29 +39,93 @@ def array_blocks(symbol: Layout, array: Array, label: str | None) -> tuple[Block
     )
     what = "components" if column else "entries on and above the diagonal" if symmetric else "entries"
     kind = "is symmetric; its " if symmetric and not column else "has the "
-    words = f"{{}} {kind}{what} that are not zero are" if symmetric and not column else f"{{}} {kind}non-zero {what}"
-    return (paragraph(words, symbol), Formula(entries, label))
+    complete = all(entry != ZERO for row in rows for entry in row)
+    if symmetric and not column:
+        words = f"{{}} {kind}{what}{'' if complete else ' that are not zero'} are"
+    else:
+        words = f"{{}} {kind}{'' if complete else 'non-zero '}{what}"
+    return (paragraph(words, symbol), Formula(tuple(packed(entries)), label))
 
 
-def matrix_blocks(symbol: Layout, matrix: Any, layout: SympyLayout, taken: frozenset[str], label: str | None) -> tuple[Block, ...]:
+def packed(equations: Iterable[Layout]) -> Iterator[Layout]:
+    """Short equations side by side, as many as a line holds."""
+    line: list[Layout] = []
+    for node in equations:
+        extended: list[Layout] = [*line, Punctuation(","), Gap(), node] if line else [node]
+        if line and page_width(Row(tuple(extended))) > ROOM:
+            yield Row(tuple(line))
+            extended = [node]
+        line = extended
+    if line:
+        yield Row(tuple(line))
+
+
+class Denominators:
+    """The denominators named so far in a report, so that each is defined once."""
+
+    def __init__(self, taken: frozenset[str], intermediates: frozenset[str]) -> None:
+        self._taken = taken | intermediates
+        self._intermediates = intermediates
+        self._named: dict[Any, str] = {}
+
+    def common(self, matrix: Any) -> tuple[Any, int] | None:
+        """A sum or intermediate that divides most entries that are not zero, at least two, and its usual power."""
+        entries = [entry for entry in matrix if entry != 0]
+        powers: Counter[tuple[Any, int]] = Counter()
+        for entry in entries:
+            powers.update(self._denominators(entry))
+        found: Counter[Any] = Counter()
+        for (base, _), count in powers.items():
+            found[base] += count
+        shared = [factor for factor, count in found.items() if count >= 2 and 2 * count > len(entries)]
+        if not shared:
+            return None
+        factor = max(shared, key=lambda candidate: (found[candidate], str(candidate)))
+        return factor, max((count, exponent) for (base, exponent), count in powers.items() if base == factor)[1]
+
+    def _denominators(self, entry: Any) -> list[tuple[Any, int]]:
+        """Sums and intermediates in the denominator of an entry, with their powers."""
+        powers = (f for f in (entry.args if entry.is_Mul else (entry,)) if f.is_Pow and f.exp.is_Integer and f.exp < 0)
+        return [(f.base, -int(f.exp)) for f in powers if f.base.is_Add or str(f.base) in self._intermediates]
+
+    def name(self, factor: Any) -> tuple[str, bool]:
+        """The name of a denominator, and whether it is new."""
+        if factor.is_Symbol:
+            return factor.name, False
+        found = self._named.get(factor)
+        if found is not None:
+            return found, False
+        used = self._taken | set(self._named.values())
+        name = next((name for name in DENOMINATOR_NAMES if name not in used), f"D_{len(self._named)}")
+        self._named[factor] = name
+        return name, True
+
+
+def matrix_blocks(
+    symbol: Layout, matrix: Any, layout: SympyLayout, denominators: Denominators, label: str | None
+) -> tuple[Block, ...]:
     """A SymPy matrix, with the denominator most entries share set before it under a name of its own."""
-    named = _common_denominator(matrix, taken)
-    if named is None:
+    shared = denominators.common(matrix)
+    if shared is None:
         array = layout.matrix(matrix)
-        if size(array) > LARGEST:
-            return (_too_long(symbol, size(array)),)
-        return array_blocks(symbol, array, label)
-    name, denominator, numerators = named
-    array = layout.matrix(numerators)
+        return array_blocks(symbol, array, label) if size(array) <= LARGEST else (_too_long(symbol, size(array)),)
+    factor, exponent = shared
+    name, new = denominators.name(factor)
+    array = layout.matrix(matrix.applyfunc(lambda entry: _times(entry, factor, sympy.Symbol(name), exponent)))
     if size(array) > LARGEST:
         return (_too_long(symbol, size(array)),)
-    where = equation(name_layout(name), layout.expression(denominator))
-    over = Fraction(Numeral("1"), name_layout(name))
-    whole = equation(symbol, Product((over, array)))
+    letter = name_layout(name)
+    scale = letter if exponent == 1 else power(letter, Numeral(str(exponent)))
+    where = equation(letter, layout.expression(factor))
+    whole = equation(symbol, Product((Fraction(Numeral("1"), scale), array)))
     if page_width(whole) <= ROOM:
-        return (Formula((whole,), label), paragraph("with"), Formula((where,)))
-    scaled = Product((name_layout(name), symbol))
-    return (paragraph("With the common denominator"), Formula((where,)), *array_blocks(scaled, array, label))
+        if not new:
+            return (Formula((whole,), label),)
+        return (Formula((whole,), label), paragraph("with"), Formula((where,), f"denominator_{name}"))
+    opening: tuple[Block, ...] = ()
+    if new:
+        opening = (paragraph("With the common denominator"), Formula((where,), f"denominator_{name}"))
+    return (*opening, *array_blocks(Product((scale, symbol)), array, label))
 
 
 def _entry_symbol(symbol: Layout, i: int, j: int | None) -> Layout:
@@ -67,11 +133,11 @@ def _entry_symbol(symbol: Layout, i: int, j: int | None) -> Layout:
     index: Layout = Numeral(str(i + 1))
     if j is not None:
         index = Row((Numeral(str(i + 1)), Punctuation(","), Numeral(str(j + 1))))
-    if isinstance(symbol, Product) and len(symbol.factors) == 2 and isinstance(symbol.factors[0], Letter):
+    if isinstance(symbol, Product) and len(symbol.factors) == 2:
         return Product((symbol.factors[0], _entry_symbol(symbol.factors[1], i, j)))
-    if isinstance(symbol, Letter):
+    if isinstance(symbol, (Letter, Accent)):
         return Scripts(symbol, index)
-    return Scripts(Row((Letter("(", "upright"), symbol, Letter(")", "upright"))), index)
+    return Scripts(Fenced(symbol), index)
 
 
 def _too_long(symbol: Layout, nodes: int) -> Block:
@@ -79,37 +145,15 @@ def _too_long(symbol: Layout, nodes: int) -> Block:
     return paragraph(f"The closed form of {{}} has about {nodes} symbols and is not printed.", symbol)
 
 
-def _common_denominator(matrix: Any, taken: frozenset[str]) -> tuple[str, Any, Any] | None:
-    """A sum that divides at least two entries and most of those that are not zero: its name, itself, the numerators."""
-    entries = [entry for entry in matrix if entry != 0]
-    found: Counter[Any] = Counter()
-    for entry in entries:
-        found.update(_denominators(entry))
-    shared = [factor for factor, count in found.items() if count >= 2 and 2 * count > len(entries)]
-    if not shared:
-        return None
-    factor = max(shared, key=lambda candidate: (found[candidate], str(candidate)))
-    name = next(candidate for candidate in DENOMINATOR_NAMES if candidate not in taken)
-    symbol = sympy.Symbol(name)
-    numerators = matrix.applyfunc(lambda entry: _times(entry, factor, symbol))
-    return name, factor, numerators
-
-
-def _denominators(entry: Any) -> list[Any]:
-    """Sums in the denominator of an entry, to whatever power."""
-    factors = entry.args if entry.is_Mul else (entry,)
-    return [factor.base for factor in factors if factor.is_Pow and factor.exp.is_negative and factor.base.is_Add]
-
-
-def _times(entry: Any, factor: Any, symbol: Any) -> Any:
-    """entry · factor, with the factor cancelled or written by its name."""
+def _times(entry: Any, factor: Any, symbol: Any, exponent: int) -> Any:
+    """entry · factor**exponent, with the factor cancelled or written by its name."""
     if entry == 0:
         return entry
     kept = []
-    power = 1
+    remaining = exponent
     for part in entry.args if entry.is_Mul else (entry,):
         if part.is_Pow and part.base == factor and part.exp.is_Integer:
-            power += int(part.exp)
+            remaining += int(part.exp)
         else:
             kept.append(part)
-    return sympy.Mul(*kept, symbol**power)
+    return sympy.Mul(*kept, symbol**remaining)

@@ -9,6 +9,7 @@ from symgen.report.layout import (
     Delimiter,
     Fenced,
     Fraction,
+    Gap,
     Layout,
     Letter,
     Numeral,
@@ -28,6 +29,7 @@ OPERATOR = 1.22
 RELATION = 1.4
 FENCE = 0.42
 COLUMN_GAP = 1.1
+GAP = 2.0
 SEPARATION = {"": 0.03, "thin": 0.2, "point": 0.7}
 WIDE = frozenset("mwMWΘΩΦΨ")
 
@@ -45,6 +47,8 @@ def page_width(node: Layout) -> float:
             return 0.8 if prefix else OPERATOR
         case Punctuation(text=text):
             return 0.45 * len(text) + 0.2
+        case Gap():
+            return GAP
         case Delimiter(upper=upper):
             return FENCE + (SCRIPT * page_width(upper) if upper else 0.0)
         case Scripts(base=base, lower=lower, upper=upper):

@@ -52,7 +52,12 @@ class _TypstView:
         self.sections = [self._section(section) for section in document.sections]
 
     def _section(self, section: Section) -> str:
-        return "\n\n".join([f"{'=' * section.level} {self._text(section.title)}", *map(self._block, section.blocks)])
+        parts = [f"{'=' * section.level} {self._text(section.title)}"]
+        for block, follower in zip(section.blocks, (*section.blocks[1:], None), strict=True):
+            source = self._block(block)
+            opens = isinstance(block, Paragraph) and isinstance(follower, (Formula, Items, Table))
+            parts.append(f"#block(sticky: true)[{source}]" if opens else source)
+        return "\n\n".join(parts)
 
     def _text(self, text: Text) -> str:
         return "".join(self._inline(part) for part in text)
@@ -91,7 +96,7 @@ class _TypstView:
         lines = []
         for node in equations:
             for position, line in enumerate(break_lines(node, page_width, ROOM)):
-                body = f"math.equation(block: false, $display({typst_math(line)})$)"
+                body = f"$ {typst_math(line)} $"
                 lines.append(f"pad(left: 2em, {body})" if position else body)
         if label is None:
             return f"#formula(none, {', '.join(lines)})"

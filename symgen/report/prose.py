@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TypeAlias
 
 from symgen.report.document import Emphasis, Inline, InlineCode, InlineMath, Paragraph, Reference, Text
-from symgen.report.layout import Accent, Layout, Letter, Numeral, Product, Punctuation, Relation, Row, Scripts
+from symgen.report.layout import Accent, Fenced, Fraction, Layout, Letter, Numeral, Product, Punctuation, Relation, Row, Scripts, Sum
 
 Slot: TypeAlias = str | Layout | InlineCode | Emphasis | Reference
 
@@ -44,7 +44,7 @@ def pseudoinverse(node: Layout) -> Layout:
 
 def inverse(node: Layout) -> Layout:
     """The inverse."""
-    return _raised(node, Letter("−1", "upright"))
+    return _raised(node, Sum((("-", ONE),)))
 
 
 def _raised(node: Layout, upper: Layout) -> Layout:
@@ -81,6 +81,18 @@ def number(value: int) -> Numeral:
     return Numeral(str(value))
 
 
+def plus(*terms: Layout) -> Layout:
+    """The sum of terms."""
+    return terms[0] if len(terms) == 1 else Sum(tuple(("+", term) for term in terms))
+
+
+def minus_sum(positive: tuple[Layout, ...], negative: tuple[Layout, ...]) -> Layout:
+    """The sum of the first nodes minus the others."""
+    return Sum((*(("+", term) for term in positive), *(("-", term) for term in negative)))
+
+
+ZERO, ONE, TWO = Numeral("0"), Numeral("1"), Numeral("2")
+HALF = Fraction(ONE, TWO)
 q, u, lam, g, tau, nu = bold("q"), bold("u"), bold("λ"), bold("g"), bold("τ"), bold("ν")
 qd, qdd = Accent(q, "dot"), Accent(q, "ddot")
 G, C, Q, B, M, F, N, W, IDENTITY = (bold(letter) for letter in "GCQBMFNWI")
@@ -126,6 +138,13 @@ SYMBOLS: dict[str, Layout] = {
     "inverse_dynamics": u,
     "forward_dynamics": qdd,
     "multipliers": lam,
+    "admissible_velocity": juxtaposed(NB, Scripts(qd, ZERO)),
+    "admissible_acceleration": plus(juxtaposed(NB, Scripts(qdd, ZERO)), juxtaposed(NB_dot, qd)),
+    "projected_configuration": minus_sum((q,), (juxtaposed(pseudoinverse(B), g),)),
+    "inverse_dynamics_residual": minus_sum((juxtaposed(NB, tau),), (juxtaposed(Mt, u),)),
+    "actuator_bias": juxtaposed(transposed(W), Fenced(minus_sum((tau,), (juxtaposed(G, W, Accent(nu, "dot")),)))),
+    "energy": listed((T, U)),
+    "singularity": Letter("σ"),
     "actuator_velocity": nu,
     "actuator_mass_matrix": juxtaposed(transposed(W), G, W),
 }

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from symgen.report.context import Context
 from symgen.report.document import Block, Formula, Reference, Section
-from symgen.report.layout import Fraction, Layout, Letter, Numeral, Product, Row, Scripts, Sum, equation
-from symgen.report.names import name_layout
+from symgen.report.layout import Accent, Fenced, Fraction, Layout, Letter, Product, Row, Scripts, Sum, equation
 from symgen.report.prose import (
+    HALF,
+    TWO,
+    ZERO,
     B,
     B_dot,
     C,
@@ -14,6 +16,7 @@ from symgen.report.prose import (
     M,
     Q,
     Qa,
+    Slot,
     T,
     U,
     equals,
@@ -22,6 +25,7 @@ from symgen.report.prose import (
     lam,
     listed,
     paragraph,
+    plus,
     q,
     qd,
     qdd,
@@ -30,28 +34,33 @@ from symgen.report.prose import (
     u,
 )
 
-ZERO = Numeral("0")
 PARTIAL = Letter("∂", "upright")
 
 
 def equations_of_motion(context: Context) -> Section:
     """Lagrange's equations of the first kind and their matrices."""
-    constrained, driven = bool(context.model.r), bool(context.model.m)
+    names: list[Slot] = [G, C, Q]
+    pattern = "Here {} is the mass matrix, {} the Coriolis matrix and {} the vector of potential forces."
+    if context.model.applied_forces:
+        pattern = "Here {} is the mass matrix, {} the Coriolis matrix, {} the vector of potential forces and {} that of the applied forces."
+        names.append(Qa)
     blocks: list[Block] = [
-        paragraph("Lagrange's equations of the first kind for the energies above, paper (2) and (3), are in matrix form"),
+        paragraph("Lagrange's equations of the first kind, paper (2), read in matrix form, paper (3),"),
         Formula((_motion(context),), "motion"),
-        paragraph(
-            "with the mass matrix {}, the Coriolis matrix {} and the potential forces {}.", G, C, Q
-        ) if not context.model.applied_forces else paragraph(
-            "with the mass matrix {}, the Coriolis matrix {}, the potential forces {} and the applied forces {}.", G, C, Q, Qa
-        ),
+        paragraph(pattern, *names),
         *_mass(context),
         *_coriolis(context),
         *_potential(context),
-        *_applied(context),
     ]
-    blocks += _jacobian(context) if constrained else []
-    blocks += _control(context) if driven else []
+    if context.model.applied_forces:
+        blocks += [paragraph("The applied forces are"), *context.quantity("applied_force", "Qa")]
+    if context.model.r:
+        blocks += _jacobian(context)
+    if context.model.m:
+        blocks += [
+            paragraph("The control matrix has one column for each input, the coefficients of its power:"),
+            *context.quantity("control_matrix", "M"),
+        ]
     return Section(say("Equations of motion"), tuple(blocks))
 
 
@@ -63,37 +72,30 @@ def _motion(context: Context) -> Layout:
     right: list[Layout] = [juxtaposed(M, u)] if context.model.m else []
     if context.model.applied_forces:
         right.append(Qa)
-    return equals(_plus(left), _plus(right) if right else ZERO)
-
-
-def _plus(terms: list[Layout]) -> Layout:
-    return terms[0] if len(terms) == 1 else Sum(tuple(("+", term) for term in terms))
+    return equals(plus(*left), plus(*right) if right else ZERO)
 
 
 def _mass(context: Context) -> list[Block]:
-    half = Fraction(Numeral("1"), Numeral("2"))
-    quadratic = equals(T, Product((half, transposed(qd), G, qd)))
+    quadratic = equals(T, Product((HALF, transposed(qd), G, qd)))
     return [
-        paragraph("The kinetic energy {} equals {}, so that {} consists of its second derivatives:", Reference("T"), quadratic.pieces[-1], G),
+        paragraph("Writing the kinetic energy {} as {} gives", Reference("T"), quadratic),
         *context.quantity("mass_matrix", "G"),
     ]
 
 
 def _coriolis(context: Context) -> list[Block]:
     if context.vanishes("coriolis_matrix"):
-        return [paragraph("The mass matrix is constant, therefore {}.", equals(C, ZERO))]
-    half = Fraction(Numeral("1"), Numeral("2"))
+        return [paragraph("The mass matrix is constant; therefore {}.", equals(C, ZERO))]
     a, b, c = Letter("a"), Letter("b"), Letter("c")
-    terms: tuple[tuple[Letter, Letter, Letter], ...] = ((a, b, c), (a, c, b), (b, c, a))
-    derivatives = [_partial(Scripts(G, listed(t[:2])), Scripts(Letter("q"), None, t[2])) for t in terms]
-    bracket = Row((Letter("(", "upright"), Sum((("+", derivatives[0]), ("+", derivatives[1]), ("-", derivatives[2]))), Letter(")", "upright")))
-    rate = Scripts(name_layout("q_dot"), None, c)
-    christoffel = equation(Scripts(C, listed((a, b))), Product((half, bracket, rate)))
-    skew = Sum((("+", _dot(G)), ("-", Product((Numeral("2"), C)))))
+    derivatives = [_partial(Scripts(G, listed(pair)), Scripts(Letter("q"), None, by)) for pair, by in (((a, b), c), ((a, c), b), ((b, c), a))]
+    bracket = Sum((("+", derivatives[0]), ("+", derivatives[1]), ("-", derivatives[2])))
+    rate = Scripts(Accent(Letter("q"), "dot"), None, c)
+    christoffel = equation(Scripts(C, listed((a, b))), Product((HALF, Fenced(bracket), rate)))
+    skew = Sum((("+", Accent(G, "dot")), ("-", Product((TWO, C)))))
     return [
-        paragraph("The Coriolis matrix is formed with Christoffel symbols (summed over {}),", c),
+        paragraph("The Coriolis matrix consists of Christoffel symbols (sum over {}),", c),
         Formula((christoffel,)),
-        paragraph("the choice for which {} is skew-symmetric. It is", skew),
+        paragraph("the choice that makes {} skew-symmetric. It is", skew),
         *context.quantity("coriolis_matrix", "C"),
     ]
 
@@ -102,54 +104,31 @@ def _partial(of: Layout, by: Layout) -> Layout:
     return Fraction(Row((PARTIAL, of)), Row((PARTIAL, by)))
 
 
-def _dot(node: Layout) -> Layout:
-    from symgen.report.layout import Accent
-
-    return Accent(node, "dot")
-
-
 def _potential(context: Context) -> list[Block]:
     if context.vanishes("potential_force"):
-        return [paragraph("There are no potential forces: {}.", equals(Q, ZERO))]
-    gradient = equals(Q, transposed(Row((Letter("(", "upright"), _partial(U, q), Letter(")", "upright")))))
-    return [paragraph("The potential forces {} are", gradient), *context.quantity("potential_force", "Q")]
-
-
-def _applied(context: Context) -> list[Block]:
-    if not context.model.applied_forces:
-        return []
-    return [paragraph("The applied forces are"), *context.quantity("applied_force", "Qa")]
+        return [paragraph("There are no potential forces, {}.", equals(Q, ZERO))]
+    gradient = equals(Q, transposed(Fenced(_partial(U, q))))
+    return [paragraph("The potential forces, {}, are", gradient), *context.quantity("potential_force", "Q")]
 
 
 def _jacobian(context: Context) -> list[Block]:
     kinds = {row.kind for row in context.model.constraints}
-    made = {
-        frozenset({"geometric"}): ("Differentiating the constraints {} gives {}, paper (1), with {}:", [Reference("constraints_geometric")]),
-        frozenset({"nonholonomic"}): ("The constraints {} read {}, paper (1); the coefficients of the rates are {}:", [Reference("constraints_nonholonomic")]),
-    }
     velocity = equals(juxtaposed(B, qd), ZERO)
-    if len(kinds) == 2:
-        opening = paragraph(
-            "Differentiating {} and taking the coefficients of {} gives {}, paper (1), with {}:",
-            Reference("constraints_geometric"), Reference("constraints_nonholonomic"), velocity, B,
-        )
-    else:
-        pattern, slots = made[frozenset(kinds)]
-        opening = paragraph(pattern, *slots, velocity, B)
-    blocks: list[Block] = [opening, *context.quantity("constraint_jacobian", "B")]
-    acceleration = equals(Sum((("+", juxtaposed(B, qdd)), ("+", juxtaposed(B_dot, qd)))), ZERO)
+    references = [Reference(f"constraints_{kind}") for kind in ("geometric", "nonholonomic") if kind in kinds]
+    pattern = {
+        frozenset({"geometric"}): "The time derivative of {} is {}, paper (1), with the coefficient matrix",
+        frozenset({"nonholonomic"}): "The constraints {} read {}, paper (1), with the coefficient matrix",
+        frozenset({"geometric", "nonholonomic"}): (
+            "The time derivative of {} together with {} reads {}, paper (1), with the coefficient matrix"
+        ),
+    }[frozenset(kinds)]
+    blocks: list[Block] = [paragraph(pattern, *references, velocity), *context.quantity("constraint_jacobian", "B")]
     if context.vanishes("constraint_jacobian_dot"):
-        blocks.append(paragraph("{} is constant; accelerations satisfy {}.", B, equals(juxtaposed(B, qdd), ZERO)))
+        blocks.append(paragraph("{} is constant, so that accelerations satisfy {}.", B, equals(juxtaposed(B, qdd), ZERO)))
     else:
-        blocks.append(paragraph("Accelerations satisfy {} with", acceleration))
-        blocks += context.quantity("constraint_jacobian_dot")
+        acceleration = equals(plus(juxtaposed(B, qdd), juxtaposed(B_dot, qd)), ZERO)
+        blocks += [paragraph("A further derivative, {}, restricts the accelerations, with", acceleration)]
+        blocks += context.quantity("constraint_jacobian_dot", "Bdot")
     if "geometric" in kinds:
-        blocks.append(paragraph("The residual of the geometric constraints is written {}.", g))
+        blocks.append(paragraph("The left-hand sides of {} are collected in {}.", Reference("constraints_geometric"), g))
     return blocks
-
-
-def _control(context: Context) -> list[Block]:
-    return [
-        paragraph("The control matrix has one column for each input:"),
-        *context.quantity("control_matrix", "M"),
-    ]

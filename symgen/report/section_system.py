@@ -7,12 +7,30 @@ from symgen.model.model import Input, Range
 from symgen.report.context import Context, text_of
 from symgen.report.document import Block, Formula, InlineCode, InlineMath, Section, Table, Text
 from symgen.report.from_expression import expression_layout
-from symgen.report.layout import Fenced, Layout, Letter, Numeral, Product, Punctuation, Row, Scripts, Sum, equation, signed
+from symgen.report.layout import Layout, Letter, Punctuation, Row, Scripts, Sum, equation, signed
 from symgen.report.names import name_layout
 from symgen.report.numerals import rational_text
-from symgen.report.prose import B, Q, Qa, T, U, equals, lam, number, paragraph, q, say, small_m, small_n, small_r, u
+from symgen.report.prose import (
+    ONE,
+    ZERO,
+    B,
+    Q,
+    Qa,
+    T,
+    U,
+    equals,
+    lam,
+    number,
+    paragraph,
+    q,
+    say,
+    small_m,
+    small_n,
+    small_r,
+    u,
+)
+from symgen.report.setting import product
 
-ZERO = Numeral("0")
 SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -158,12 +176,7 @@ def _virtual_power(control: Input) -> Layout:
     for coordinate, coefficient in control.acts_on:
         sign, factor = signed(expression_layout(coefficient))
         rate = name_layout(f"{coordinate}_dot")
-        if factor == Numeral("1"):
-            terms.append((sign, rate))
-        elif isinstance(factor, Sum):
-            terms.append((sign, Product((rate, Fenced(factor)))))
-        else:
-            terms.append((sign, Product((rate, *(factor.factors if isinstance(factor, Product) else (factor,))))))
+        terms.append((sign, rate if factor == ONE else product([factor, rate])))
     return Sum(tuple(terms)) if terms else ZERO
 
 

@@ -79,20 +79,12 @@ def call(name: str, arguments: tuple[Layout, ...]) -> Layout:
 
 
 def product(factors: list[Layout]) -> Layout:
-    """Factors side by side; a bare function before something that is no function gets parentheses."""
+    """Factors side by side, functions last: what follows a bare function would read as its argument."""
     flat: list[Layout] = []
     for factor in factors:
-        flat.extend(factor.factors if isinstance(factor, Product) and not factor.dotted else (factor,))
-    for position, factor in enumerate(flat[:-1]):
-        follower = flat[position + 1]
-        if isinstance(factor, Application) and not isinstance(follower, Application):
-            flat[position] = Application(factor.function, as_parenthesised(factor.argument))
+        flat.extend(factor.factors if isinstance(factor, Product) else (factor,))
+    flat.sort(key=lambda factor: isinstance(factor, Application))
     return flat[0] if len(flat) == 1 else Product(tuple(as_factor(factor) for factor in flat))
-
-
-def as_parenthesised(node: Layout) -> Layout:
-    """The node between parentheses."""
-    return node if isinstance(node, Fenced) else Fenced(node)
 
 
 def quotient(numerator: Layout, denominator: Layout) -> Layout:

@@ -11,6 +11,7 @@ from symgen.report.layout import (
     Delimiter,
     Fenced,
     Fraction,
+    Gap,
     Layout,
     Letter,
     Numeral,
@@ -43,6 +44,8 @@ def text_math(node: Layout) -> str:
             return SIGNS[text] if prefix else f" {SIGNS[text]} "
         case Punctuation(text=text):
             return f"{text} "
+        case Gap():
+            return "   "
         case Delimiter(text=text, upper=upper):
             return text + ("" if upper is None else _raised(upper))
         case Scripts(base=base, lower=lower, upper=upper):

@@ -9,6 +9,7 @@ from symgen.report.layout import (
     Delimiter,
     Fenced,
     Fraction,
+    Gap,
     Layout,
     Letter,
     Numeral,
@@ -42,9 +43,9 @@ def typst_math(node: Layout) -> str:
         case Numeral(text=text):
             return text
         case Letter(text=text, style="italic"):
-            return text if len(text) == 1 else f"upright({quoted(text)})"
+            return text if len(text) == 1 and text.isalpha() else f"upright({quoted(text)})"
         case Letter(text=text, style=style):
-            upright = f"upright({text if len(text) == 1 else quoted(text)})"
+            upright = f"upright({text if len(text) == 1 and text.isalpha() else quoted(text)})"
             return f"bold({upright})" if style == "bold" else upright
         case Relation(text=text):
             return f" {text} "
@@ -54,6 +55,8 @@ def typst_math(node: Layout) -> str:
             return "comma"
         case Punctuation(text=text):
             return f"{quoted(text)} med"
+        case Gap():
+            return "wide"
         case Delimiter(text=text, upper=upper):
             return DELIMITERS[text] if upper is None else f"attach({DELIMITERS[text]}, t: {typst_math(upper)})"
         case Scripts(base=base, lower=lower, upper=upper):
@@ -69,8 +72,9 @@ def typst_math(node: Layout) -> str:
         case Fenced(body=body, fence=fence):
             return f"lr({DELIMITERS[fence]} {typst_math(body)} {CLOSING[fence]})"
         case Application(function=function, argument=argument):
-            air = " " if isinstance(argument, Fenced) else " thin "
-            return f"{typst_math(function)}{air}{typst_math(argument)}"
+            if isinstance(argument, Fenced):
+                return f"{typst_math(function)}{typst_math(argument)}"
+            return f"{typst_math(function)} thin {typst_math(argument)}"
         case Product(factors=factors):
             parts = [typst_math(factors[0])]
             for left, right in zip(factors, factors[1:], strict=False):

@@ -1,0 +1,57 @@
+"""Composes the report of a model: sections in the order of a derivation, from the model to the published formulas."""
+
+from __future__ import annotations
+
+from symgen.report.content import ReportInput
+from symgen.report.context import Context, sentence, text_of
+from symgen.report.document import Document, Section, Text
+from symgen.report.prose import delta_diff, equals, number, say, small_m, small_n, small_r
+from symgen.report.section_bookkeeping import omissions, operations
+from symgen.report.section_equations import equations_of_motion
+from symgen.report.section_freedom import freedom
+from symgen.report.section_inverse import inverse_dynamics
+from symgen.report.section_projection import projection
+from symgen.report.section_published import published
+from symgen.report.section_singular import singular
+from symgen.report.section_system import system
+from symgen.report.section_verification import charts, verification
+
+
+def compose(report_input: ReportInput) -> Document:
+    """The document of a model, ready for any of the renderers."""
+    context = Context(report_input)
+    sections: list[Section] = [
+        system(context),
+        equations_of_motion(context),
+        freedom(context),
+        projection(context),
+        inverse_dynamics(context),
+        singular(context),
+        omissions(context),
+    ]
+    if report_input.operation_counts:
+        sections.append(operations(context))
+    sections += [*published(context), *verification(context), *charts(context)]
+    model = report_input.model
+    return Document(
+        title=text_of(model.description) or model.name,
+        subtitle=f"Inverse dynamics of the model {model.name}",
+        summary=_summary(context),
+        sections=tuple(sections),
+        colophon=f"Derived by symgen {report_input.version}. Numbers with the word paper refer to A. Müller, Motion equations in redundant "
+        "coordinates with application to inverse dynamics of constrained mechanical systems.",
+    )
+
+
+def _summary(context: Context) -> Text:
+    model = context.model
+    source = f" Source: {sentence(text_of(model.source))}" if model.source else ""
+    return say(
+        "The motion equations of this system are derived in redundant coordinates, without Lagrange multipliers and without a choice of "
+        "independent coordinates, and solved for the inputs: {} coordinates, {} constraints, {} independent velocities, {} inputs.{}",
+        equals(small_n, number(model.n)),
+        equals(small_r, number(model.r)),
+        equals(delta_diff, number(context.structure.differential_freedom)),
+        equals(small_m, number(model.m)),
+        source,
+    )

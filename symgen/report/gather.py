@@ -1,0 +1,80 @@
+"""Brings together what the report says: closed forms, structure, counts, verdicts; and, measured, errors and charts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+
+from symgen import __version__
+from symgen.closedform.forms import derive_closed_forms
+from symgen.closedform.published import decide_published
+from symgen.derive.select import Derivations
+from symgen.derive.structure import Structure
+from symgen.emit.operations import count_operations
+from symgen.ir.kernel import Program
+from symgen.model.model import Model
+from symgen.report.content import Chart, ErrorRow, ReportInput, Verdict, Verification
+from symgen.verify.certificate import Certificate
+
+
+def gather(model: Model, derivations: Derivations, structure: Structure, program: Program) -> ReportInput:
+    """Everything that is a function of the model and symgen alone."""
+    counts = {kernel.name: count_operations(kernel.statements) for kernel in program.kernels}
+    forms = derive_closed_forms(model, {name: count.total for name, count in counts.items()})
+    skipped = [(decision.what, decision.why) for decision in structure.decisions]
+    skipped += [(name, reason) for name, reason in derivations.absent]
+    return ReportInput(
+        model=model,
+        version=__version__,
+        forms=forms.forms,
+        structure=forms.structure,
+        integrability=forms.integrability,
+        singular_sets=forms.singular_sets,
+        skipped=tuple(skipped),
+        operation_counts={name: asdict(count) for name, count in counts.items()},
+        verdicts=tuple(Verdict(v.position, v.verdict, v.explanation) for v in decide_published(model, forms)),
+        notices=tuple(notice.message for notice in model.notices),
+    )
+
+
+def with_measurements(report: ReportInput, certificate: Certificate, charts: Sequence[Chart]) -> ReportInput:
+    """The same report with what this run measured."""
+    errors = tuple(
+        ErrorRow(
+            quantity=record.quantity,
+            target=record.target,
+            median=record.median,
+            percentile_99=record.percentile_99,
+            largest=record.largest,
+            relative=record.largest_relative,
+        )
+        for record in certificate.errors
+    )
+    invariants = tuple((f"{law.target}: {law.name}", f"{law.largest:.2g}") for law in certificate.invariants)
+    verification = Verification(certificate.states, errors, invariants, (*certificate.versions, *_notes(certificate)))
+    return replace(report, verification=verification, charts=tuple(charts))
+
+
+def _notes(certificate: Certificate) -> Sequence[tuple[str, str]]:
+    return [("not verified", note) for note in certificate.notes]
+
+
+CAPTIONS: Mapping[str, str] = {
+    "coordinates": "Coordinates along the path {path}.",
+    "determinants": "Determinants of the projected control matrix along the path {path}, for every choice of as many "
+    "inputs as there are degrees of freedom; marks show where a choice fails.",
+    "inputs": "Inputs along the path {path}.",
+}
+
+
+def path_charts(model: Model) -> tuple[Chart, ...]:
+    """The charts of every path of the model."""
+    from symgen.paths.charts import charts
+    from symgen.paths.figures import figure_data
+
+    drawn = []
+    for path in model.paths:
+        data = figure_data(model, path)
+        for name, svg in charts(model, data).items():
+            drawn.append(Chart(CAPTIONS[name].format(path=path.name), svg))
+    return tuple(drawn)
