@@ -242,7 +242,9 @@ constraints:
         ({"lift": "z_dot - y*x_dot"}, ["not integrable"]),
         # alone not integrable, but y is constant
         ({"level": "y_dot", "lift": "z_dot - y*x_dot"}, ["integrable", "integrable"]),
-        ({"lift": "z_dot - y*x_dot", "circle": "x*x_dot + y*y_dot"}, ["not integrable", "integrable"]),
+        # on a circle y*dx is closed
+        ({"lift": "z_dot - y*x_dot", "circle": "x*x_dot + y*y_dot"}, ["integrable", "integrable"]),
+        ({"lift": "z_dot - y*x_dot", "turn": "a_dot - x*x_dot"}, ["not integrable", "integrable"]),
     ],
 )
 def test_integrable_rows_are_found(rows: dict[str, str], expected: list[str]) -> None:
