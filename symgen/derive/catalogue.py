@@ -120,7 +120,7 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("constraint_pseudoinverse", _nxr, lambda d: flatten(d.space.pseudoinverse), _constraint),
     Entry("nullspace_projector", _nxn, lambda d: flatten(d.space.projector), _constraint),
     Entry("nullspace_projector_dot", _nxn, lambda d: flatten(d.projector_dot(d.mechanics.qd)), _constraint),
-    Entry("weighted_pseudoinverse", _nxr, lambda d: flatten(d.weighted_pseudoinverse()), _weighted),
+    Entry("weighted_pseudoinverse", _nxr, lambda d: flatten(d.weighted_pseudoinverse), _weighted),
     Entry("weighted_nullspace_projector", _nxn, lambda d: flatten(d.weighted_projector), _weighted),
     Entry("control_matrix", _nxm, lambda d: flatten(d.mechanics.control_matrix)),
     Entry(
@@ -147,7 +147,13 @@ CATALOGUE: tuple[Entry, ...] = (
     ),
     Entry("minimal_mass_matrix", _dxd, lambda d: flatten(d.minimal(d.mechanics.mass_matrix)), _partition, PARTITION),
     Entry("minimal_coriolis_matrix", _dxd, lambda d: flatten(d.minimal_coriolis_matrix()), _partition_rate, PARTITION),
-    Entry("minimal_potential_force", _d, lambda d: d.minimal_vector(d.mechanics.potential_force), _partition, PARTITION),
+    Entry(
+        "minimal_potential_force",
+        _d,
+        lambda d: d.minimal_vector(d.mechanics.potential_force),
+        _partition,
+        PARTITION,
+    ),
     Entry("minimal_applied_force", _d, lambda d: d.minimal_vector(d.mechanics.applied_force), _partition, PARTITION),
     Entry(
         "minimal_control_matrix",

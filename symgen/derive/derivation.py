@@ -183,6 +183,7 @@ class Derivation:
             return identity(self.graph, self.n)
         return self._columns([self.inertia.solve(row) for row in self.mechanics.mass_matrix])
 
+    @cached_property
     def weighted_pseudoinverse(self) -> Matrix:
         """B_G^+ = (I - N_{B,G}) B^+."""
         complement = subtract(identity(self.graph, self.n), self.weighted_projector)
@@ -301,10 +302,18 @@ class Derivation:
         return tuple(a + b for a, b in zip(lifted, self.inertia.solve(rest), strict=True))
 
     def multipliers(self) -> Vector:
-        """lambda = (B^+)^T (f - G q_ddot): the one of least norm where rows depend on each other."""
-        mechanics = self.mechanics
-        inertial = matvec(self.graph, mechanics.mass_matrix, self.forward_dynamics)
-        return self.space.lift_transposed(subtract_vectors(mechanics.applied_balance, inertial))
+        """lambda = (B_G^+)^T (f - G B^+ a) (16): the one of least norm where rows depend on each other.
+
+        No acceleration along the constraints enters, so none has to cancel; (B_G^+)^T M is formed before it meets u,
+        because it vanishes for inputs that load no constraint.
+        """
+        mechanics, graph = self.mechanics, self.graph
+        weights = transpose(self.weighted_pseudoinverse, self.r)
+        lifted = self.space.lift(mechanics.constraint_acceleration_bias(mechanics.qd))
+        inertial = matvec(graph, mechanics.mass_matrix, lifted)
+        free = matvec(graph, weights, tuple(a - b for a, b in zip(inertial, mechanics.bias_force, strict=True)))
+        driven = matvec(graph, matmul(graph, weights, mechanics.control_matrix, self.m), mechanics.u)
+        return tuple(a + b for a, b in zip(free, driven, strict=True))
 
     # diagnostics -----------------------------------------------------------------------------------------------------
 

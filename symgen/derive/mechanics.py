@@ -208,7 +208,10 @@ class Mechanics:
     @cached_property
     def applied_balance(self) -> Vector:
         """f = M u - C q_dot - Q + Q_a, the right-hand side of G q_ddot + B^T lambda = f."""
-        driven = matvec(self.graph, self.control_matrix, self.u) if self.m else tuple(self.graph.zero for _ in self.q)
-        bias = [c + f for c, f in zip(self.coriolis_force, self.potential_force, strict=True)]
-        bias = [b - a for b, a in zip(bias, self.applied_force, strict=True)]
-        return subtract_vectors(driven, tuple(bias))
+        return subtract_vectors(matvec(self.graph, self.control_matrix, self.u), self.bias_force)
+
+    @cached_property
+    def bias_force(self) -> Vector:
+        """C q_dot + Q - Q_a."""
+        conservative = [c + f for c, f in zip(self.coriolis_force, self.potential_force, strict=True)]
+        return tuple(f - a for f, a in zip(conservative, self.applied_force, strict=True))

@@ -274,7 +274,7 @@ class Graph:
         return self._node(name, args)
 
     def trig(self, name: str, argument: Scalar) -> Scalar:
-        """Sine or cosine, keyed by the integer combination of leaves in its argument; the leading sign is pulled out."""
+        """Sine or cosine, keyed by the integer combination of leaves in its argument; its sign is pulled out."""
         form = self.angle_form(argument)
         if not form:
             return self.zero if name == "sin" else self.one
