@@ -149,7 +149,12 @@ STRUCTURES = {
 @pytest.mark.parametrize("name", sorted(STRUCTURES))
 def test_degrees_of_freedom(name: str) -> None:
     structure = shipped(name)[1].structure
-    found = (structure.local_freedom, structure.differential_freedom, structure.degree_of_actuation, structure.actuation)
+    found = (
+        structure.local_freedom,
+        structure.differential_freedom,
+        structure.degree_of_actuation,
+        structure.actuation,
+    )
     assert found == STRUCTURES[name]
 
 

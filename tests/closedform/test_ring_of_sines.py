@@ -112,7 +112,10 @@ def test_factors_are_sines_of_differences() -> None:
     _, factors = factorise(ring.ring, ring.value(expression).numerator)
     assert len(factors) == 2
     shared = common_factor(ring.ring, [ring.value(expression).numerator, ring.value(sine(difference)).numerator])
-    assert Speller(ring.ring).polynomial(ring.ring.normal(shared)) in (sin(Symbol("a") - Symbol("b")), sin(Symbol("b") - Symbol("a")))
+    assert Speller(ring.ring).polynomial(ring.ring.normal(shared)) in (
+        sin(Symbol("a") - Symbol("b")),
+        sin(Symbol("b") - Symbol("a")),
+    )
 
 
 def test_a_fraction_is_cancelled_across_identities() -> None:
