@@ -1,4 +1,4 @@
-"""What goes wrong, as data: a user's mistakes (with place, excerpt and remedy) and notices; our own bugs are another type."""
+"""What goes wrong, as data: a user's mistakes (with place, excerpt, remedy) and notices; our own bugs are another type."""
 
 from __future__ import annotations
 
@@ -52,20 +52,26 @@ class SymgenBug(Exception):
 EXCERPT_WIDTH = 110
 
 
+def printable(text: str) -> str:
+    """The text with a visible character for each that would move the cursor, reverse the line or colour the screen."""
+    return "".join(c if c.isprintable() else " " if c == "\t" else "�" for c in text)
+
+
 def render_mistake(file: str, text: str, mistake: Mistake) -> str:
     """One mistake as text, ending in a line break."""
+    message, remedy = printable(mistake.message), printable(mistake.remedy)
     if mistake.span is None:
-        return f"{file}: {mistake.message}\n  remedy: {mistake.remedy}\n"
+        return f"{file}: {message}\n  remedy: {remedy}\n"
     span = mistake.span
     lines = text.splitlines()
     line = lines[span.line - 1] if 0 < span.line <= len(lines) else ""
     start = max(0, span.column - 1 - EXCERPT_WIDTH // 2) if len(line) > EXCERPT_WIDTH else 0
-    excerpt = line[start : start + EXCERPT_WIDTH].replace("\t", " ")
+    excerpt = printable(line[start : start + EXCERPT_WIDTH])
     width = max(1, min(span.end_column - span.column, len(excerpt) - (span.column - 1 - start)))
     marker = " " * (span.column - 1 - start) + "^" * width
     gutter = f"{span.line:5d} | "
     return (
-        f"{file}:{span.line}:{span.column}: {mistake.message}\n"
+        f"{file}:{span.line}:{span.column}: {message}\n"
         f"{gutter}{excerpt}\n{' ' * (len(gutter) - 2)}| {marker}\n"
-        f"  remedy: {mistake.remedy}\n"
+        f"  remedy: {remedy}\n"
     )

@@ -74,6 +74,8 @@ def read_parameters(scope: Scope, tree: MappingNode, ranges: DeclaredRanges) -> 
         number = _number(value, values)
         values[key.value] = 1.0 if math.isnan(number) else number
         unit = text_of(member(node, "unit"))
+        if not scope.owns(key):
+            continue
         parameters.append(Parameter(key.value, unit, description_of(node), value, ranges.get(key.value), key.span))
     return tuple(parameters)
 
@@ -87,6 +89,8 @@ def read_definitions(scope: Scope, tree: MappingNode) -> tuple[Definition, ...]:
     for key, node in block:
         known = [*parameters, *(definition.name for definition in definitions)]
         value = _ordered(scope, key, node, f"the definition `{key.value}`", STATE, known, cycles)
+        if not scope.owns(key):
+            continue
         if value is not None and any(
             scope.kinds[name.name] == "rate" or name.name in scope.rate_definitions for name in names_in(value)
         ):
@@ -103,11 +107,11 @@ def read_constraints(scope: Scope, tree: MappingNode) -> tuple[ConstraintRow, ..
     block = tree.get("constraints")
     for key, node in entries(member(block, "geometric")):
         expression = scope.expression(node, f"the geometric constraint `{key.value}`", CONFIGURATION)
-        if expression is not None:
+        if expression is not None and scope.owns(key):
             rows.append(ConstraintRow(key.value, "geometric", expression, node.span))
     for key, node in entries(member(block, "nonholonomic")):
         expression = scope.expression(node, f"the constraint `{key.value}`", STATE)
-        if expression is not None:
+        if expression is not None and scope.owns(key):
             rows.append(ConstraintRow(key.value, "nonholonomic", expression, node.span))
     return tuple(rows)
 
@@ -124,7 +128,8 @@ def read_inputs(scope: Scope, tree: MappingNode) -> tuple[Input, ...]:
                 if expression is not None:
                     column.append((target.value, expression))
         unit = text_of(member(node, "unit"))
-        inputs.append(Input(key.value, unit, description_of(node), tuple(column), key.span))
+        if scope.owns(key):
+            inputs.append(Input(key.value, unit, description_of(node), tuple(column), key.span))
     return tuple(inputs)
 
 

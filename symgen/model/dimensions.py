@@ -15,6 +15,7 @@ from symgen.model.model import Model
 from symgen.model.reading import entries, member
 from symgen.model.source import MappingNode, ScalarNode
 from symgen.model.units import NUMBER, SECOND, Unit, parse_unit
+from symgen.model.walk import names_in
 
 Dimension: TypeAlias = Unit | None
 """None where a dimension is free."""
@@ -32,7 +33,8 @@ def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
         return []
     inference = _Inference(model, units, mistakes)
     for parameter in model.parameters:
-        inference.agrees(parameter.value, units.get(parameter.name), f"the value of `{parameter.name}`")
+        what = f"the value of `{parameter.name}`"
+        inference.agrees(parameter.value, units.get(parameter.name), what, "its unit")
     kinetic = inference.of(model.kinetic_energy)
     potential = inference.of(model.potential_energy)
     if kinetic is not None and potential is not None and kinetic != potential:
@@ -45,7 +47,8 @@ def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
     forces = {c.name: energy.times(units[c.name], -1) for c in model.coordinates if energy and c.name in units}
     for force in model.applied_forces:
         what = f"the applied force on `{force.coordinate}`"
-        inference.agrees(force.expression, forces.get(force.coordinate), what)
+        needed = f"the generalized force of `{force.coordinate}`"
+        inference.agrees(force.expression, forces.get(force.coordinate), what, needed)
     for column in model.inputs:
         for coordinate, coefficient in column.acts_on:
             force_unit, input_unit = forces.get(coordinate), units.get(column.name)
@@ -71,11 +74,11 @@ class _Inference:
             if found is not None:
                 self._units[definition.name] = found
 
-    def agrees(self, expression: Expression, declared: Dimension, what: str) -> None:
-        """Records a mistake where the expression has another dimension than `declared`."""
-        found = None if isinstance(expression, Number) else self.of(expression)
+    def agrees(self, expression: Expression, declared: Dimension, what: str, other: str) -> None:
+        """Records a mistake where `what`, the expression, has another dimension than `other`, which is `declared`."""
+        found = self._of_term(expression)
         if declared is not None and found is not None and found != declared:
-            self._mistakes.append(_clash(what, found, "its unit", declared, expression))
+            self._mistakes.append(_clash(what, found, other, declared, expression))
 
     def of(self, expression: Expression) -> Dimension:
         """The dimension of an expression."""
@@ -98,10 +101,12 @@ class _Inference:
             case Call():
                 return self._call(expression)
 
+    def _of_term(self, expression: Expression) -> Dimension:
+        """As `of`, but a number that stands for itself has the unit its place demands, even 1 or 2."""
+        return self.of(expression) if any(names_in(expression)) else None
+
     def _sum(self, left: Expression, right: Expression) -> Dimension:
-        # A literal that is added takes the unit of what it is added to, also where it looks like a count.
-        a = None if isinstance(left, Number) else self.of(left)
-        b = None if isinstance(right, Number) else self.of(right)
+        a, b = self._of_term(left), self._of_term(right)
         if a is not None and b is not None and a != b:
             self._mistakes.append(_clash("this term", b, "the one before", a, right))
             return None
@@ -142,7 +147,7 @@ def _declared(tree: MappingNode, mistakes: list[Mistake]) -> dict[str, Unit]:
                 if isinstance(unit, Mistake):
                     mistakes.append(unit)
                 else:
-                    units[key.value] = unit
+                    units.setdefault(key.value, unit)
     return units
 
 

@@ -44,8 +44,9 @@ def check_motion(
     if generic < 0:
         ranks, generic = high, max(high)
     if generic == n:
+        against = f"{counted(n, 'coordinate')} under {counted(generic, 'independent constraint')}"
         yield Mistake(
-            f"the mechanism cannot move: {counted(n, 'coordinate')} under {counted(generic, 'independent constraint')} (δ = 0)",
+            f"the mechanism cannot move: {against} (δ = 0)",
             "remove a constraint, or add the coordinate that is still free",
             spans["constraints"],
         )

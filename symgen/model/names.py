@@ -35,6 +35,11 @@ RESERVED: dict[str, str] = {
 }
 
 
+def counted(number: int, noun: str) -> str:
+    """`1 row`, `2 rows`."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def is_name(text: str) -> bool:
     """Whether `text` has the form of a name, reserved or not."""
     return _NAME.fullmatch(text) is not None
@@ -64,7 +69,6 @@ def name_mistake(node: ScalarNode, what: str) -> Mistake | None:
 def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
     """The remedy for an unknown name: the nearest known one, else `otherwise`."""
     candidates = sorted(known)
-    near = difflib.get_close_matches(name, candidates, 1, 0.6)
-    if not near:
-        near = [candidate for candidate in candidates if candidate.lower() == name.lower()]
+    near = [candidate for candidate in candidates if candidate.lower() == name.lower()]
+    near = near or difflib.get_close_matches(name, candidates, 1, 0.6)
     return f"did you mean `{near[0]}`?" if near else otherwise

@@ -7,7 +7,7 @@ from fractions import Fraction
 from symgen.model.constants import constant, whole_number
 from symgen.model.expression import Expression, Number
 from symgen.model.model import Definition, Path
-from symgen.model.names import did_you_mean, name_mistake
+from symgen.model.names import counted, did_you_mean, name_mistake
 from symgen.model.reading import description_of, entries, member
 from symgen.model.scope import PATH_CONDITION, PATH_DEFINITION, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
@@ -63,8 +63,8 @@ def _path(scope: Scope, tree: MappingNode, key: ScalarNode, node: Node, coordina
     geometric = len(entries(member(tree.get("constraints"), "geometric")))
     given = len(entries(member(node, "conditions")))
     if 0 < given + geometric < len(coordinates):
-        message = f"path `{name}` has {given} conditions and {geometric} geometric constraints for "
-        message += f"{len(coordinates)} coordinates"
+        message = f"path `{name}` has {counted(given, 'condition')} and "
+        message += f"{counted(geometric, 'geometric constraint')} for {counted(len(coordinates), 'coordinate')}"
         scope.wrong(message, "add conditions until they fix every coordinate", key.span)
     if duration is None or (samples is None and count is not None):
         return None

@@ -125,7 +125,8 @@ def _coordinate_list(scope: Scope, node: Node | None, names: tuple[str, ...]) ->
             scope.wrong(f"`{name}` stands twice in `independent_velocities`", "name it once", item.span)
         else:
             chosen.append(name)
-    return tuple(chosen)
+    # With a faulty name the count would be wrong too; one mistake is enough.
+    return tuple(chosen) if len(chosen) == len(items(node)) else ()
 
 
 def _configuration(scope: Scope, node: Node | None, names: tuple[str, ...]) -> tuple[tuple[str, Fraction], ...]:

@@ -80,12 +80,16 @@ class Scope:
             self.kinds[f"{name}_ddot"] = "acceleration"
         return True
 
+    def owns(self, node: ScalarNode) -> bool:
+        """Whether this very entry declared its name, and not another one of the same name."""
+        return self.spans.get(node.value) == node.span
+
     def expression(
         self, node: Node | None, where: str, allowed: frozenset[Kind], known: Iterable[str] | None = None
     ) -> Expression | None:
         """The expression of a scalar, its names checked; `known` restricts parameters and definitions to those
-        declared before it.  None where there is a mistake (recorded) or no scalar (the shape's mistake)."""
-        if not isinstance(node, ScalarNode):
+        declared before it.  None where there is a mistake (recorded) or nothing to read (the shape's mistake)."""
+        if not isinstance(node, ScalarNode) or not node.value.strip():
             return None
         parsed = parse_expression(node)
         if isinstance(parsed, Mistake):

@@ -19,6 +19,8 @@ MAXIMUM_DEPTH = 24
 MAXIMUM_NODES = 100_000
 PLAIN_REMEDY = "write the value out, or name it under `parameters` or `definitions`"
 
+START = Span(1, 1, 2)
+
 _EventLoader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -81,7 +83,7 @@ def read_tree(text: str) -> tuple[MappingNode | None, tuple[Mistake, ...]]:
     """The document's top mapping; a syntax error is reported alone, duplicate keys are collected."""
     if len(text) > MAXIMUM_CHARACTERS:
         message = f"the file has {len(text)} characters, at most {MAXIMUM_CHARACTERS} are read"
-        return None, (Mistake(message, "split the model, or remove what does not belong to it"),)
+        return None, (Mistake(message, "split the model, or remove what does not belong to it", START),)
     mistakes: list[Mistake] = []
     try:
         root = _build(text, yaml.parse(text, Loader=_EventLoader), mistakes)
@@ -91,7 +93,9 @@ def read_tree(text: str) -> tuple[MappingNode | None, tuple[Mistake, ...]]:
         return None, (_syntax_mistake(text),)
     if root is None:
         return None, (
-            Mistake("the file is empty", "write a model; a minimal one has `model`, `coordinates`, `kinetic_energy`"),
+            Mistake(
+                "the file is empty", "write a model; a minimal one has `model`, `coordinates`, `kinetic_energy`", START
+            ),
         )
     if not isinstance(root, MappingNode):
         message = "a model file is a mapping of names to values"
@@ -177,7 +181,7 @@ def _scalar(text: str, event: yaml.ScalarEvent) -> ScalarNode:
     assert event.start_mark is not None
     assert event.end_mark is not None
     raw = text[event.start_mark.index : event.end_mark.index]
-    return ScalarNode(event.value, _span(event), raw, event.style is not None)
+    return ScalarNode(event.value, _span(event), raw, bool(event.style))
 
 
 def _span(event: yaml.Event) -> Span:

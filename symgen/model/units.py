@@ -128,4 +128,4 @@ def _remedy(name: str) -> str:
     if name in _SPEEDS:
         return "write angular rates in rad/s"
     # Case matters in units, so that the nearest name is looked for among the common ones only.
-    return did_you_mean(name, _PREFIXABLE, "use SI units: kg, m, s, A, K, rad, N, J, W, Pa, Hz, with prefixes")
+    return did_you_mean(name, ["kg", *_PREFIXABLE], "use SI units: kg, m, s, A, K, rad, N, J, W, Pa, Hz, with prefixes")

@@ -1,0 +1,265 @@
+"""Good models spoiled in one way each; what symgen says about each stands in expected/<group>.txt."""
+
+from __future__ import annotations
+
+HEAD = """\
+model: carriage
+coordinates:
+  x: {unit: m}
+  a: {unit: rad}
+parameters:
+  m: {value: 2, unit: kg}
+  l: {value: 0.5, unit: m}
+"""
+KINETIC = "kinetic_energy: m/2*x_dot**2 + m*l**2/2*a_dot**2\n"
+GOOD = HEAD + KINETIC
+
+
+def energy(terms: str) -> str:
+    """The good model with those terms as kinetic energy."""
+    return f"{HEAD}kinetic_energy: {terms}\n"
+
+
+def potential(expression: str) -> str:
+    """The good model with that potential energy."""
+    return f"{GOOD}potential_energy: {expression}\n"
+
+
+def geometric(row: str) -> str:
+    """The good model with that geometric constraint."""
+    return f"{GOOD}constraints: {{geometric: {{c: {row}}}}}\n"
+
+
+def nonholonomic(row: str) -> str:
+    """The good model with that constraint on the rates."""
+    return f"{GOOD}constraints: {{nonholonomic: {{c: {row}}}}}\n"
+
+
+def units(x: str, a: str, m: str, length: str) -> str:
+    """The good model with those units."""
+    return f"""\
+model: carriage
+coordinates:
+  x: {{unit: {x}}}
+  a: {{unit: {a}}}
+parameters:
+  m: {{value: 2, unit: {m}}}
+  l: {{value: 0.5, unit: {length}}}
+{KINETIC}"""
+
+
+YAML = {
+    "empty_file": "",
+    "comment_only": "# nothing\n",
+    "not_a_mapping": "- a\n- b\n",
+    "broken_yaml": "model: m\ncoordinates: {x: }\nkinetic_energy: [x_dot**2\npotential_energy: 0\n",
+    "tab_indent": "model: m\ncoordinates:\n\tx: {}\n",
+    "alias_bomb": "model: m\nparameters:\n  a: &a [1, 1]\n  b: &b [*a, *a]\n",
+    "alias": GOOD + "description: *other\n",
+    "merge_key": GOOD + "configuration:\n  <<: {x: 0}\n",
+    "tag": GOOD + "description: !!python/object/apply:os.system [ls]\n",
+    "second_document": GOOD + "---\nmodel: other\n",
+    "duplicate_key": GOOD + KINETIC,
+    "deep_nesting": "model: " + "[" * 40 + "]" * 40 + "\n",
+    "huge_file": "model: " + "a" * 1_000_001,
+    "terminal_escape": 'model: m\n"\\x1b[31m": red\n',
+    "control_character": "model: m\ndescription: a\x07b\n",
+    "escaped_control_character": GOOD + 'description: "a\\x07b"\n',
+    "reversed_text": GOOD + 'description: "a\u202eb"\n',
+    "complex_key": GOOD + "? [a, b]\n: 1\n",
+}
+SHAPE = {
+    "missing_everything": "description: nothing\n",
+    "unknown_key": GOOD + "descripton: wrong\n",
+    "unknown_key_without_neighbour": GOOD.replace("unit: rad", "colour: red"),
+    "empty_value": GOOD + "potential_energy:\n",
+    "empty_block": GOOD + "inputs:\n",
+    "no_coordinates": "model: m\ncoordinates: {}\nkinetic_energy: 0\n",
+    "list_for_a_mapping": GOOD + "constraints: [a, b]\n",
+    "mapping_for_a_text": GOOD + "description: {a: b}\n",
+    "mapping_for_an_expression": GOOD + "potential_energy: {a: 1}\n",
+    "scalar_for_a_coordinate": GOOD.replace("x: {unit: m}", "x: m"),
+    "bodies_form": GOOD
+    + "gravity: [0, 0, -9.81]\nbodies: {b: {mass: 1}}\nallocation: {preload: 1}\ntrig_range: wide\n",
+    "input_on_a_joint": GOOD + "inputs: {T: {joint: a}}\n",
+    "comma_in_flow": GOOD + "inputs: {T: {acts_on: {a: atan2(x, l)}}}\n",
+    "comma_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, from the vertical"),
+    "report": GOOD + "report: long\n",
+    "model_name_is_a_path": GOOD.replace("carriage", "../../x"),
+    "model_name_reserved": GOOD.replace("carriage", "while"),
+    "long_name": GOOD.replace("carriage", "a" * 60),
+    "range_of_three": GOOD.replace("unit: rad", "range: [1, 2, 3]"),
+}
+EXPRESSIONS = {
+    k: potential(v)
+    for k, v in {
+        "caret": "m*x^2",
+        "decimal_comma": "1,5*x",
+        "tower": "x*9**9**9",
+        "big_exponent": "x**100",
+        "variable_exponent": "x**a",
+        "exponent_by_zero": "x**(1/0)",
+        "python": "__import__('os').system('ls')",
+        "attribute": "tip.x + 1",
+        "unbalanced": "(x + 1",
+        "closing": "x + 1)",
+        "empty_parentheses": "sin() + x",
+        "unknown_function": "sinus(a)",
+        "call_of_a_name": "m(x)",
+        "wrong_arity": "sin(a, x)",
+        "atan2_arity": "atan2(a)",
+        "missing_operator": "2x",
+        "missing_operator_names": "m x",
+        "function_without_argument": "sin*x",
+        "dangling": "x +",
+        "double_operator": "x */ 2",
+        "superscript": "x²",
+        "minus_sign": "x − 1",
+        "greek": "α*x",
+        "multiplication_dot": "m·x",
+        "assignment": "x = 1",
+        "prime": "x' + 1",
+        "brackets": "a[0]",
+        "huge_number": "1e999",
+        "many_digits": "1" + "0" * 60,
+        "hexadecimal": "0x10",
+        "floor_division": "x//2",
+        "percent": "x % 2",
+        "null": "null",
+        "true": "true",
+        "lambda": "lambda x",
+    }.items()
+}
+EXPRESSIONS["deep_parentheses"] = potential("(" * 200 + "x" + ")" * 200)
+EXPRESSIONS["deep_signs"] = potential("-" * 200 + "x")
+EXPRESSIONS["long_sum"] = potential(" + ".join(["x"] * 400))
+EXPRESSIONS["very_long"] = potential("x+" * 15000 + "x")
+EXPRESSIONS["second_line"] = GOOD + "potential_energy: >-\n  m*x\n  + sin(b)\n"
+EXPRESSIONS["double_quotes"] = GOOD + 'potential_energy: "m*x + b"\n'
+NAMES = {
+    "unknown": potential("m*y"),
+    "near": GOOD.replace("m*l**2", "mm*l**2"),
+    "rate_of_nothing": potential("y_dot"),
+    "reserved": HEAD.replace("  l:", "  lambda:").replace("  a:", "  sin:") + "kinetic_energy: m/2*x_dot**2\n",
+    "reserved_pi_t": GOOD + "definitions: {pi: x, t: a}\n",
+    "reserved_null": GOOD + 'definitions: {null: x, "true": a}\n',
+    "ending_in_dot": GOOD + "definitions: {x_dot: 2, foo_ddot: 3}\n",
+    "leading_underscore": GOOD + "definitions: {_b: 2}\n",
+    "umlaut": GOOD + "definitions: {Höhe: 2}\n",
+    "collision": GOOD
+    + "definitions: {x: 2, m: 3}\ninputs: {a: {acts_on: {x: 1}}}\nconstraints: {geometric: {l: x - l}}\n",
+    "cycle": GOOD + "definitions:\n  b: c + 1\n  c: 2*b\n",
+    "own_definition": GOOD + "definitions: {b: b + 1}\n",
+    "forward": GOOD + "definitions:\n  b: c + 1\n  c: 2*x\n",
+    "parameter_cycle": GOOD.replace("value: 2,", "value: l,").replace("value: 0.5", "value: m"),
+    "parameter_forward": GOOD.replace("value: 2,", "value: 2*l,"),
+    "parameter_of_a_coordinate": GOOD.replace("value: 2,", "value: 2*x,"),
+    "parameter_division_by_zero": GOOD.replace("value: 2,", "value: 1/0,"),
+    "parameter_outside_range": GOOD.replace("value: 2,", "value: 2, range: [3, 4],"),
+    "time_in_energy": potential("m*x*sin(t)"),
+    "time_in_constraint": GOOD + "constraints: {geometric: {c: x - t}}\n",
+    "rate_in_potential": potential("m*x_dot"),
+    "rate_in_potential_by_definition": GOOD + "potential_energy: m*v\ndefinitions: {v: x_dot}\n",
+    "rate_in_geometric": GOOD + "constraints: {geometric: {c: x_dot - a_dot}}\n",
+    "rate_in_control_matrix": GOOD + "inputs: {K: {acts_on: {x: x_dot}}}\n",
+    "acceleration_in_force": GOOD + "applied_forces: {x: -x_ddot}\n",
+    "input_in_force": GOOD + "inputs: {K: {acts_on: {x: 1}}}\napplied_forces: {x: K}\n",
+    "multiplier_in_force": GOOD
+    + "constraints: {nonholonomic: {c: x_dot - a_dot}}\napplied_forces: {x: multiplier_c}\n",
+    "row_in_force": GOOD + "constraints: {nonholonomic: {c: x_dot - a_dot}}\napplied_forces: {x: c}\n",
+    "force_on_nothing": GOOD + "applied_forces: {z: 1, x_dot: 2}\n",
+    "configuration": GOOD + "configuration: {z: 1, x: l}\n",
+    "independent_rate": GOOD + "independent_velocities: [x_dot, z, a, a]\n",
+    "outputs": GOOD + "outputs: [mass_matrx, energy]\n",
+    "one_output": GOOD + "outputs: al\n",
+    "ranges": GOOD + "ranges: {z: [0, 1], x: [2, 1], x_dot: [0, 1/0], a: [0, b], m: [3, 5]}\n",
+    "two_ranges": GOOD.replace("unit: rad", "unit: rad, range: [0, 1]") + "ranges: {a: [0, 2]}\n",
+    "tolerance": GOOD + "tolerances: {constraint_rank: 2, actuation_rank: -1}\n",
+}
+STRUCTURE = {
+    "linear_term": energy("m/2*x_dot**2 + m*l**2/2*a_dot**2 + 3*x_dot"),
+    "potential_in_kinetic": energy("m/2*x_dot**2 + m*l**2/2*a_dot**2 - 9*m*x"),
+    "cubic": energy("m/2*x_dot**2 + 7*a_dot**3"),
+    "quartic": energy("m/2*x_dot**2 + 7*(a_dot**2)**2"),
+    "divided_by_rate": energy("m/2*x_dot**2/a_dot"),
+    "sine_of_rate": energy("m/2*x_dot**2 + sin(a_dot)"),
+    "root_of_rate": energy("m/2*x_dot**2 + sqrt(a_dot**2)"),
+    "half_power": energy("m/2*x_dot**2 + a_dot**(1/2)"),
+    "hidden_in_definition": HEAD + "definitions: {v: 5*x_dot + 1}\nkinetic_energy: m/2*v**2 + m*l**2/2*a_dot**2\n",
+    "zero": energy("0"),
+    "never_defined": energy("m/2*x_dot**2 + m*l**2/2*a_dot**2/sqrt(-1 - 5*x**2)"),
+    "affine_row": nonholonomic("x_dot - 3"),
+    "quadratic_row": nonholonomic("x_dot*a_dot"),
+    "geometric_among_nonholonomic": nonholonomic("x - l"),
+    "number_row": geometric("1"),
+    "parameter_row": geometric("l - 1"),
+    "coordinates_cancel": geometric("x - l - (x - l) + 2*l"),
+    "several_in_one_file": energy("m/2*x_dot**2 + 3*x_dot")
+    + "potential_energy: m*b\nconstraints: {nonholonomic: {c: 7*x_dot**2}}\n"
+    + "inputs: {K: {acts_on: {z: 1}}}\ndescripton: d\n",
+}
+MECHANISM = {
+    "negative_mass": HEAD.replace("value: 2", "value: -2") + KINETIC,
+    "indefinite": energy("m/2*x_dot**2 + m*l*x_dot*a_dot"),
+    "massless": energy("m/2*x_dot**2"),
+    "inconsistent": geometric("x**2 + l**2"),
+    "inconsistent_pair": GOOD + "constraints: {geometric: {c: x - l, d: x - 2*l}}\n",
+    "immobile": GOOD + "constraints: {geometric: {c: x - l, d: sin(a)}}\n",
+    "immobile_nonholonomic": GOOD + "constraints: {geometric: {c: x - l}, nonholonomic: {d: 5*a_dot + 3*x_dot}}\n",
+    "count_of_independent": geometric("x - l*sin(a)") + "independent_velocities: [x, a]\n",
+    "dependent_independent": geometric("x - l") + "independent_velocities: [x]\n",
+}
+UNITS = {
+    "degrees": units("m", "deg", "kg", "m"),
+    "rpm": GOOD + "inputs: {K: {unit: rpm, acts_on: {x: 1}}}\n",
+    "unknown_unit": units("m", "rad", "pound", "m"),
+    "near_unit": units("M", "rad", "Kg", "m"),
+    "no_unit": units("m + 1", "rad", "kg", "m"),
+    "caret": units("m", "rad", "kg^2", "m"),
+    "m_and_mm": units("m", "rad", "kg", "mm"),
+    "mass_plus_length": potential("9*(m + l)"),
+    "sine_of_a_length": potential("9*m*sin(x)"),
+    "energies": potential("m*l"),
+    "in_definition": GOOD + "definitions: {b: x + m}\n",
+    "in_constraint": geometric("x + m"),
+    "input": GOOD + "inputs: {K: {unit: N*m, acts_on: {x: 1}}}\n",
+    "lever": GOOD + "inputs: {K: {unit: N, acts_on: {x: cos(a), a: cos(a)}}}\n",
+    "applied": GOOD.replace("parameters:", "parameters:\n  d: {value: 1, unit: N*s/m}")
+    + "applied_forces: {a: -d*x_dot}\n",
+    "parameter_value": GOOD.replace("value: 2,", "value: 2*l,")
+    .replace("  m:", "  h:")
+    .replace(
+        "  l: {value: 0.5, unit: m}",
+        "  l: {value: 0.5, unit: m}\n  m: {value: 3*l, unit: kg}\n  k: {value: l/2, unit: kg}",
+    )
+    .replace("  h: {value: 2*l, unit: kg}\n", ""),
+    "atan2": potential("m*atan2(x, m)"),
+}
+P = "published:\n  - "
+PUBLISHED_AND_PATHS = {
+    "quantity": GOOD + P + '{equation: "(1)", quantity: mass_matrx, value: [1]}\n',
+    "ragged": GOOD + P + '{equation: "(1)", quantity: mass_matrix, value: [[1, 2], [3]]}\n',
+    "unknown_name": GOOD + P + '{equation: "(1)", quantity: mass_matrix, value: [[b, 2], [3, x_ddot]]}\n',
+    "where_collides": GOOD + P + '{equation: "(1)", quantity: mass_matrix, where: {m: 2}, value: [[m]]}\n',
+    "time": GOOD + P + '{equation: "(1)", quantity: mass_matrix, value: [[t]]}\n',
+    "neither": GOOD + P + '{equation: "(1)"}\n',
+    "equation_without_side": GOOD + P + '{equation: "(1)", equations: [{left: x_ddot}]}\n',
+    "independent": GOOD
+    + P
+    + '{equation: "(1)", singular_set: {quantity: orthogonal_complement, where_zero: cos(a), independent: [z]}}\n',
+    "path_name": GOOD + "paths: {../x: {duration: 1, conditions: {c: x, d: a}}}\n",
+    "path_duration": GOOD + "paths: {p: {duration: 0, samples: 1.5, conditions: {c: x, d: a}}}\n",
+    "path_too_free": GOOD + "paths: {p: {duration: 1, conditions: {c: x - t}}}\n",
+    "path_names": GOOD
+    + "paths: {p: {duration: 1, definitions: {b: x, x: t, r: c}, conditions: {c: x - s, d: a_dot}, start: {z: 0}}}\n",
+}
+GROUPS = {
+    "yaml": YAML,
+    "shape": SHAPE,
+    "expressions": EXPRESSIONS,
+    "names": NAMES,
+    "structure": STRUCTURE,
+    "mechanism": MECHANISM,
+    "units": UNITS,
+    "published_and_paths": PUBLISHED_AND_PATHS,
+}

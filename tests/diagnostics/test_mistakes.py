@@ -1,0 +1,102 @@
+"""Every mistake of the user with its full text: file, line, column, excerpt, remedy, all mistakes of a file at once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from spoiled_models import GOOD, GROUPS
+
+from symgen.diagnostics import ModelError
+from symgen.model.load import load_text
+
+EXPECTED = Path(__file__).parent / "expected"
+
+
+def rendered(text: str) -> str:
+    """What symgen says about a spoiled model; fails where it says nothing."""
+    with pytest.raises(ModelError) as raised:
+        load_text(text, "spoiled.yaml")
+    return raised.value.render()
+
+
+def sections(group: str) -> dict[str, str]:
+    """The expected texts of a group by case."""
+    found: dict[str, str] = {}
+    for section in (EXPECTED / f"{group}.txt").read_text(encoding="utf-8").split("== ")[1:]:
+        name, _, text = section.partition("\n")
+        found[name] = text
+    return found
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_mistakes_are_told_with_place_and_remedy(group: str) -> None:
+    expected = sections(group)
+    said = {name: rendered(text) + "\n" for name, text in GROUPS[group].items()}
+    assert list(said) == list(expected)
+    for name, text in said.items():
+        assert text == expected[name], f"case {name} of {group}"
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_every_mistake_has_a_place_and_a_remedy(group: str) -> None:
+    for name, text in GROUPS[group].items():
+        with pytest.raises(ModelError) as raised:
+            load_text(text, "spoiled.yaml")
+        lines = text.count("\n") + 2
+        for mistake in raised.value.mistakes:
+            assert mistake.remedy, name
+            assert mistake.span is not None, name
+            assert 1 <= mistake.span.line <= lines, name
+            assert mistake.span.end_column > mistake.span.column >= 1, name
+
+
+def test_the_unspoiled_model_has_no_mistakes() -> None:
+    assert load_text(GOOD, "good.yaml").notices == ()
+
+
+def test_harmless_descriptions_survive() -> None:
+    description = r"*/ {{ x }} {% raw %} \n <script> %s $HOME ' \" & # ünïcödé"
+    model = load_text(f"{GOOD}description: '{description.replace(chr(39), chr(39) * 2)}'\n", "m.yaml")
+    assert model.description == description
+
+
+def test_notices() -> None:
+    text = f"""{GOOD}
+definitions: {{b: x}}
+outputs: [mass_matrix, multipliers, control_matrix, orthogonal_complement, constraint_residual, point_position]
+constraints: {{}}
+"""
+    assert [notice.message for notice in load_text(text, "m.yaml").notices] == [
+        "`point_position` is not made: this model has no named points",
+        "`multipliers` is not made: the model has no constraints",
+        "`control_matrix` is not made: the model has no inputs",
+        "`orthogonal_complement` is not made: the model names no `independent_velocities`",
+        "`constraint_residual` is not made: the model has no geometric constraints",
+        "the definition `b` is not used",
+    ]
+
+
+def test_rows_that_say_nothing_are_notices() -> None:
+    text = f"{GOOD}constraints: {{geometric: {{c: sin(a)**2 + cos(a)**2 - 1}}, nonholonomic: {{d: 0*x_dot}}}}\n"
+    assert [notice.message for notice in load_text(text, "m.yaml").notices] == [
+        "the constraint `c` is zero for all configurations and says nothing",
+        "the constraint `d` is zero for all motions and says nothing",
+    ]
+
+
+def test_a_file_that_is_not_text(tmp_path: Path) -> None:
+    from symgen.model.load import load_model
+
+    path = tmp_path / "m.yaml"
+    path.write_bytes(b"model: m\ndescription: \xff\n")
+    with pytest.raises(ModelError, match="the file is not text in UTF-8"):
+        load_model(path)
+
+
+def test_windows_line_ends_and_byte_order_mark(tmp_path: Path) -> None:
+    from symgen.model.load import load_model
+
+    path = tmp_path / "m.yaml"
+    path.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
+    assert load_model(path).name == "carriage"
