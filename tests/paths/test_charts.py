@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from symgen.model.load import load_model
+from symgen.model.load import load_model, load_text
 from symgen.paths.charts import charts
 from symgen.paths.figures import figure_data
 
@@ -51,3 +51,23 @@ def test_zeros_are_marked() -> None:
     assert len(triangles) == 3
     assert [text["determinants"].count(f'<use xlink:href="#{triangle}"') for triangle in triangles] == [2, 2, 2]
     assert text["inputs"].count("stroke-dasharray: 1.4,1.4") == 6
+
+
+@pytest.mark.parametrize(
+    ("inputs", "expected"),
+    [("", ["coordinates"]), ("inputs: {f: {acts_on: {x: 1}}}", ["coordinates", "inputs"])],
+)
+def test_systems_with_fewer_inputs_than_degrees_of_freedom(inputs: str, expected: list[str]) -> None:
+    text = f"""
+model: free
+coordinates: {{x: {{}}, y: {{}}}}
+kinetic_energy: x_dot**2 + y_dot**2
+{inputs}
+paths: {{go: {{duration: 1, samples: 5, conditions: {{along: x - t**2, across: y}}}}}}
+"""
+    model = load_text(text, "free.yaml")
+    data = figure_data(model, model.paths[0])
+    assert (data.curves, data.printed) == ((), None)
+    assert list(charts(model, data)) == expected
+    if model.inputs:
+        assert data.u[:, 0] == pytest.approx(4.0)
