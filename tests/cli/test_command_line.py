@@ -1,0 +1,212 @@
+"""The command line: options, exit codes, what is printed and what is left on disk."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from symgen import cli, pipeline
+from symgen.diagnostics import Notice, SymgenBug
+from symgen.ir.kernel import Scalar
+from symgen.model.load import load_model
+from symgen.results import LargestError, Options, Result, Summary, WrongUseError
+
+MODELS = Path(__file__).resolve().parents[2] / "models"
+SKATE = str(MODELS / "skate.yaml")
+SUMMARY = Summary(
+    n=3,
+    r=1,
+    delta=2,
+    m=2,
+    skipped=(("potential forces", "the potential energy is constant"),),
+    operations=(("inverse_dynamics", 8),),
+    errors=(LargestError("C float32", "inverse_dynamics", 3e-7, 1e-5),),
+)
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Options]:
+    """Replaces the pipeline by one that answers at once and remembers what it was asked for."""
+    seen: list[Options] = []
+
+    def generate(path: Path, options: Options, progress: Callable[[str], None]) -> Result:
+        seen.append(options)
+        progress("deriving")
+        files = {"c/skate.c": "source\n", "derivation.json": "{}\n", "certificate.json": "{}\n"}
+        return Result(load_model(path), files, SUMMARY, notices=(Notice("a notice"),))
+
+    monkeypatch.setattr(pipeline, "generate", generate)
+    monkeypatch.chdir(tmp_path)
+    return seen
+
+
+def code(*arguments: str) -> int:
+    """The exit code, also where argparse leaves by itself."""
+    try:
+        return cli.main(arguments)
+    except SystemExit as leaving:
+        return int(leaving.code or 0)
+
+
+def test_generates_into_generated(asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert code(SKATE) == 0
+    assert asked == [Options()]
+    assert (tmp_path / "generated/skate/c/skate.c").read_text() == "source\n"
+    out, err = capsys.readouterr()
+    assert "n = 3, r = 1, δ = 2, m = 2" in out
+    assert "C float32       3.0e-07   1.0e-05   inverse_dynamics" in out
+    assert "potential forces   the potential energy is constant" in out
+    assert "generated/skate/c/skate.c" in out
+    assert "skate: deriving ..." in err
+    assert "notice: a notice" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options"),
+    [
+        (["--outputs", "energy, mass_matrix"], Options(outputs=("energy", "mass_matrix"))),
+        (["--scalar", "float32"], Options(scalars=("float32",))),
+        (["--only", "python,c"], Options(parts=("c", "python"))),
+        (["--no-verify", "--states", "200"], Options(verify=False, states=200)),
+    ],
+)
+def test_options(asked: list[Options], arguments: list[str], options: Options) -> None:
+    assert code(SKATE, *arguments) == 0
+    assert asked == [options]
+
+
+def test_out_and_quiet(asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert code(SKATE, "--out", str(tmp_path / "there"), "--quiet") == 0
+    assert (tmp_path / "there/skate/derivation.json").exists()
+    assert capsys.readouterr() == ("", "")
+    assert len(asked) == 1
+
+
+def test_check_compares_and_writes_nothing(
+    asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert code(SKATE, "--check") == 1
+    assert capsys.readouterr().out == ("generated/skate/c/skate.c: missing\ngenerated/skate/derivation.json: missing\n")
+    assert not (tmp_path / "generated").exists()
+    assert not asked[0].verify
+    assert code(SKATE) == 0
+    assert code(SKATE, "--check") == 0
+
+
+def test_verify_writes_the_certificate_of_what_is_on_disk(
+    asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert code("verify", SKATE) == 1
+    assert "run symgen again" in capsys.readouterr().err
+    assert not (tmp_path / "generated/skate/certificate.json").exists()
+    assert code(SKATE) == 0
+    (tmp_path / "generated/skate/certificate.json").unlink()
+    assert code("verify", SKATE) == 0
+    assert (tmp_path / "generated/skate/certificate.json").exists()
+    assert asked[0] == Options(parts=("c", "python"))
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["no_such.yaml"],
+        ["verify"],
+        ["verify", "no_such.yaml"],
+        ["explain", "no_such.yaml"],
+        [SKATE, "--scalar", "float16"],
+        [SKATE, "--only", "rust"],
+        [SKATE, "--states", "7"],
+        [SKATE, "--outputs", ","],
+        [SKATE, "--unknown"],
+        [str(MODELS)],
+        [SKATE, str(MODELS / "../models/skate.yaml")],
+        ["schema", "extra"],
+    ],
+)
+def test_wrong_use(asked: list[Options], arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert code(*arguments) == 2
+    assert "Traceback" not in capsys.readouterr().err
+    assert len(asked) <= 2
+
+
+def failing(error: BaseException) -> Callable[..., Result]:
+    def generate(_path: Path, _options: Options, _progress: Callable[[str], None]) -> Result:
+        raise error
+
+    return generate
+
+
+@pytest.mark.parametrize(
+    ("error", "expected", "message"),
+    [
+        (WrongUseError("no quantity named x"), 2, "symgen: no quantity named x"),
+        (SymgenBug("schedule: a cycle"), 2, "internal error: schedule: a cycle"),
+        (ZeroDivisionError("oops"), 2, "fault of symgen"),
+        (PermissionError(13, "Permission denied", "m.yaml"), 2, "symgen: m.yaml: Permission denied"),
+        (KeyboardInterrupt(), 130, "earlier output is unchanged"),
+    ],
+)
+def test_failures(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], error: Exception, expected: int, message: str
+) -> None:
+    monkeypatch.setattr(pipeline, "generate", failing(error))
+    assert code(SKATE) == expected
+    assert message in capsys.readouterr().err
+
+
+def test_failed_verification_writes_nothing(
+    asked: list[Options], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert code(SKATE) == 0
+    before = (tmp_path / "generated/skate/c/skate.c").read_text()
+    failures = ("inverse_dynamics, C float32: error 1e-2",)
+    result = Result(load_model(Path(SKATE)), {"c/skate.c": "bad"}, SUMMARY, failures=failures)
+    monkeypatch.setattr(pipeline, "generate", lambda *_: result)
+    assert code(SKATE) == 1
+    assert failures[0] in capsys.readouterr().err
+    assert (tmp_path / "generated/skate/c/skate.c").read_text() == before
+    assert len(asked) == 1
+
+
+def test_a_mistake_does_not_stop_the_next_model(
+    asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "bad.yaml").write_text("model: bad\ncoordinates: {x: {}}\nkinetic_energy: x_dot**2*nonsense\n")
+    assert code("bad.yaml", SKATE) == 1
+    err = capsys.readouterr().err
+    assert "bad.yaml:3:" in err
+    assert "remedy:" in err
+    assert "Traceback" not in err
+    assert (tmp_path / "generated/skate").exists()
+    assert not (tmp_path / "generated/bad").exists()
+    assert len(asked) == 2
+
+
+def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert code("schema") == 0
+    assert "properties" in json.loads(capsys.readouterr().out)
+
+
+def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert code("--help") == 0
+    assert "examples:" in capsys.readouterr().out
+    assert code("--version") == 0
+    assert capsys.readouterr().out.startswith("symgen ")
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+def test_the_real_pipeline_to_c(tmp_path: Path, scalar: Scalar) -> None:
+    assert code(SKATE, "--out", str(tmp_path), "--only", "c", "--no-verify", "--quiet", "--scalar", scalar) == 0
+    suffix = "" if scalar == "float64" else "_f"
+    assert {path.name for path in (tmp_path / "skate/c").iterdir()} == {f"skate{suffix}.h", f"skate{suffix}.c"}
+
+
+def test_out_is_a_file(asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "generated").write_text("")
+    assert code(SKATE) == 2
+    assert "Traceback" not in capsys.readouterr().err
+    assert len(asked) == 1

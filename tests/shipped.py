@@ -1,0 +1,44 @@
+"""The shipped models, derived and emitted once for each test process."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from symgen.derive.select import derive_quantities
+from symgen.emit.c import emit_c
+from symgen.emit.python import emit_python
+from symgen.ir.kernel import Program, Scalar
+from symgen.ir.schedule import schedule
+from symgen.model.load import load_model
+from symgen.model.model import Model
+
+ROOT = Path(__file__).resolve().parent.parent
+NAMES = tuple(sorted(path.stem for path in (ROOT / "models").glob("*.yaml")))
+SCALARS: tuple[Scalar, ...] = ("float64", "float32")
+
+
+@cache
+def model(name: str) -> Model:
+    return load_model(ROOT / "models" / f"{name}.yaml")
+
+
+@cache
+def programs(name: str) -> dict[Scalar, Program]:
+    derivations = derive_quantities(model(name), model(name).outputs)
+    return {scalar: schedule(derivations.mechanics, derivations.quantities, scalar) for scalar in SCALARS}
+
+
+@cache
+def sources(name: str) -> dict[str, str]:
+    files = emit_python(model(name), programs(name)["float64"])
+    for scalar in SCALARS:
+        files |= emit_c(model(name), programs(name)[scalar])
+    return files
+
+
+def write_sources(name: str, folder: Path) -> None:
+    """C and Python of a model under `folder`."""
+    for path, text in sources(name).items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text)

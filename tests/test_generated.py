@@ -1,0 +1,31 @@
+"""generated/ is what symgen makes of models/ today, byte for byte and file by file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from symgen.pipeline import generate
+from symgen.results import Options
+from symgen.write import compare
+
+ROOT = Path(__file__).resolve().parent.parent
+MODELS = sorted((ROOT / "models").glob("*.yaml"))
+LIMIT = 1_000_000
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+def test_generated_files_are_current(path: Path) -> None:
+    result = generate(path, Options(verify=False), lambda _: None)
+    assert compare(ROOT / "generated" / result.model.name, result.files) == (), (
+        "run `make generated` and look at the change"
+    )
+
+
+def test_every_folder_has_its_model() -> None:
+    assert {folder.name for folder in (ROOT / "generated").iterdir()} == {path.stem for path in MODELS}
+
+
+def test_no_file_is_large() -> None:
+    assert [path for path in (ROOT / "generated").rglob("*") if path.is_file() and path.stat().st_size > LIMIT] == []

@@ -1,0 +1,38 @@
+"""Every shipped model compiles without a warning: gcc and clang, C99 and C++11, both scalar types."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import shipped
+
+pytestmark = pytest.mark.toolchain
+STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror"]
+DOUBLE = re.compile(r"\b(v?cvtss2sd|v?cvtsd2ss|v?(?:add|sub|mul|div|sqrt|mov|ucomi|comi)sd|fcvt)\b")
+COMPILERS = {
+    "gcc": ["-std=c99", "-O1"],
+    "g++": ["-xc++", "-std=c++11", "-fsyntax-only"],
+    "clang": ["-std=c99", "-fsyntax-only"],
+    "clang++": ["-xc++", "-std=c++11", "-fsyntax-only"],
+}
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("name", shipped.NAMES)
+def test_no_warning(tool: Callable[[str], str], tmp_path: Path, name: str, compiler: str) -> None:
+    shipped.write_sources(name, tmp_path)
+    for source in sorted((tmp_path / "c").glob("*.c")):
+        flags = [*STRICT, *COMPILERS[compiler]]
+        if source.stem.endswith("_f"):
+            flags += ["-Wfloat-conversion"] + (["-Wunsuffixed-float-constants"] if compiler == "gcc" else [])
+        command = [tool(compiler), *flags, "-c", str(source), "-o", str(tmp_path / f"{source.stem}.o")]
+        made = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert made.returncode == 0, made.stderr
+    if compiler == "gcc":
+        command = [tool("objdump"), "-d", str(tmp_path / f"{name}_f.o")]
+        text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+        assert not DOUBLE.search(text)
