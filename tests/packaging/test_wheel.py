@@ -39,14 +39,7 @@ def test_generates_from_an_installed_wheel(wheel: Path, tmp_path: Path) -> None:
     home = tmp_path / "venv"
     venv.create(home, with_pip=False)
     python = home / "bin/python"
-    site = Path(
-        subprocess.run(
-            [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"],
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout.strip()
-    )
+    site = next(home.glob("lib/python3*/site-packages"))
     zipfile.ZipFile(wheel).extractall(site)
     # Only its folder is added, so the path files of an editable install there are not read.
     (site / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n")
@@ -54,24 +47,14 @@ def test_generates_from_an_installed_wheel(wheel: Path, tmp_path: Path) -> None:
     elsewhere.mkdir()
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
 
-    def run(*arguments: str) -> str:
-        command = [str(python), "-m", *arguments]
-        made = subprocess.run(command, cwd=elsewhere, env=environment, capture_output=True, text=True, check=False)
+    def run(interpreter: str | Path, *arguments: str, path: str = "") -> str:
+        given = environment | ({"PYTHONPATH": path} if path else {})
+        command = [str(interpreter), *arguments]
+        made = subprocess.run(command, cwd=elsewhere, env=given, capture_output=True, text=True, check=False)
         assert made.returncode == 0, made.stdout + made.stderr
         return made.stdout
 
-    run("symgen", str(ROOT / "models/skate.yaml"), "--no-verify")
-    code = "import sys, symgen; sys.stdout.write(symgen.__file__)"
-    found = subprocess.run(
-        [python, "-c", code], cwd=elsewhere, env=environment, capture_output=True, text=True, check=True
-    )
-    assert found.stdout.startswith(str(site))
-    here = subprocess.run(
-        [sys.executable, "-m", "symgen", str(ROOT / "models/skate.yaml"), "--check", "--out", "generated"],
-        cwd=elsewhere,
-        env=environment | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert here.returncode == 0, here.stdout + here.stderr
+    assert run(python, "-c", "import symgen; print(symgen.__file__)").startswith(str(site))
+    model = str(ROOT / "models/skate.yaml")
+    run(python, "-m", "symgen", model, "--no-verify")
+    run(sys.executable, "-m", "symgen", model, "--check", path=str(ROOT))
