@@ -52,18 +52,21 @@ class PathSolver:
             raise self._lost(t)
         return solution
 
-    def follow(self, q: Array, begin: float, end: float) -> Array:
-        """q at `end` from q at `begin`, in as many steps as keep Newton's corrections far smaller than the motion."""
+    def follow(self, q: Array, begin: float, end: float, known: tuple[Array, Array] | None = None) -> Array:
+        """q at `end` from q at `begin`, in as many steps as keep Newton's corrections far smaller than the motion.
+
+        `known` are q̇ and q̈ at `begin`, where the caller has them already.
+        """
         interval = step = end - begin
         t = begin
         while t < end:
             step = min(step, end - t)
-            qd, qdd = self.derivatives(q, t)
+            qd, qdd = known or self.derivatives(q, t)
             motion = qd * step + qdd * step**2 / 2
             solution = self._newton(q + motion, t + step)
             reach = 0.2 * float(np.max(np.abs(motion))) + 1e-3
             if solution is not None and np.max(np.abs(solution - q - motion)) <= reach:
-                q, t = solution, (end if step == end - t else t + step)
+                q, t, known = solution, (end if step == end - t else t + step), None
                 step *= 2
             elif step < SMALLEST_STEP * interval:
                 raise self._lost(t)
@@ -139,9 +142,10 @@ def solve_path(model: Model, path: Path) -> Trajectory:
     solver = PathSolver(model, path)
     times = np.linspace(0.0, float(path.duration), path.samples)
     positions = [solver.start()]
-    for begin, end in pairwise(times):
-        positions.append(solver.follow(positions[-1], float(begin), float(end)))
-    derivatives = [solver.derivatives(q, float(t)) for q, t in zip(positions, times, strict=True)]
+    derivatives = [solver.derivatives(positions[0], 0.0)]
+    for begin, end in pairwise(float(t) for t in times):
+        positions.append(solver.follow(positions[-1], begin, end, derivatives[-1]))
+        derivatives.append(solver.derivatives(positions[-1], end))
     qd = np.array([rate for rate, _ in derivatives])
     _check_nonholonomic(solver, times, positions, qd)
     return Trajectory(times, np.array(positions), qd, np.array([acceleration for _, acceleration in derivatives]))

@@ -1,4 +1,4 @@
-"""Where the drives J alone are singular on a path: sign changes of det WᵀM_J, refined by bisecting the path itself."""
+"""Where the drives J alone are singular on a path: sign changes of det WᵀM_J, refined on the path itself."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from symgen.paths.forces import Forces, kernel_bases, oriented
 from symgen.paths.path_equations import Array
 from symgen.paths.trajectory import PathSolver, Trajectory
 
-TIME_TOLERANCE = 1e-11  # of a grid interval
+TIME_TOLERANCE = 1e-12  # of a grid interval
+MOST_STEPS = 60
 NEGLIGIBLE = 1e-12  # of the largest determinant: a sample that is itself singular
 
 
@@ -47,24 +48,30 @@ class SingularPoses:
                 if k == 0 or not zero[k - 1]:
                     found.append((float(t), self._trajectory.q[k]))
             elif k and not zero[k - 1] and signed[k - 1] * signed[k] < 0:
-                found.append(self._bisect(J, k - 1, positive=bool(signed[k - 1] > 0)))
+                found.append(self._refine(J, k - 1, float(signed[k - 1]), float(signed[k])))
         return tuple(found)
 
-    def _bisect(self, J: tuple[int, ...], k: int, positive: bool) -> tuple[float, Array]:
-        """The zero between samples k and k + 1, where the determinant leaves its sign at sample k."""
+    def _refine(self, J: tuple[int, ...], k: int, begin: float, end: float) -> tuple[float, Array]:
+        """The zero between samples k and k + 1, with the values of the determinant there.
+
+        Regula falsi with the Illinois rule: the bracket shrinks from both sides and never loses the change of sign.
+        """
         low, high = float(self._trajectory.t[k]), float(self._trajectory.t[k + 1])
         q, W, tolerance = self._trajectory.q[k], self._forces.W[k], TIME_TOLERANCE * (high - low)
-        while high - low > tolerance:
-            middle = (low + high) / 2
-            if not low < middle < high:
-                break
-            q_middle = self._solver.follow(q, low, middle)
-            W_middle, value = self._signed(q_middle, W, J)
-            if (value > 0) == positive:
-                low, q, W = middle, q_middle, W_middle
+        t, moved = low, 0
+        for _ in range(MOST_STEPS):
+            t = (low * end - high * begin) / (end - begin)
+            q_t = self._solver.follow(q, low, t)
+            W_t, value = self._signed(q_t, W, J)
+            if abs(value) <= NEGLIGIBLE * abs(end - begin) or high - low <= tolerance:
+                return t, q_t
+            if (value > 0) == (begin > 0):
+                low, begin, q, W = t, value, q_t, W_t
+                end, moved = (end / 2 if moved == 1 else end), 1
             else:
-                high = middle
-        return low, q
+                high, end = t, value
+                begin, moved = (begin / 2 if moved == -1 else begin), -1
+        return t, q_t
 
     def _signed(self, q: Array, like: Array, J: tuple[int, ...]) -> tuple[Array, float]:
         B, M = self._matrices(q, self._parameters)
