@@ -330,6 +330,12 @@ class Derivation:
             tuple(graph.function("ratio_or_zero", (x, length)) for x in row)
             for row, length in zip(rows, lengths, strict=True)
         )
+        if isinstance(self.space, HouseholderSpace):
+            space = HouseholderSpace(graph, unit_rows, self.n, everywhere=True)
+            constraint = graph.product(space.reflections.pivots)
+            seen, _ = space.actuation(mechanics.inputs, self.generic.alpha)
+            regular = graph.function("ratio_or_zero", (constraint, constraint))
+            return constraint, self._actuation_measure(seen.square() * regular)
         forms = RowForms(graph, unit_rows, self.n, self.generic.rank)
         present = [graph.function("ratio_or_zero", (length, length)) for length in lengths]
         possible = graph.sum(
@@ -339,21 +345,20 @@ class Derivation:
         if self.r:
             dependent = self.generic.rank < self.r
             constraint = graph.function("ratio_or_zero", (forms.square, possible)) if dependent else forms.square
-        actuation = self._actuation_measure(forms)
-        return constraint, actuation
+        projected = ActuationForms(forms, mechanics.inputs, self.generic.alpha).square()
+        if self.r:
+            # |M_J ^ omega|^2 / |omega|^2 sums the determinants of the projected columns
+            projected = graph.function("ratio_or_zero", (projected, forms.square))
+        return constraint, self._actuation_measure(projected)
 
-    def _actuation_measure(self, forms: RowForms) -> Scalar:
-        """e(M~)/e(M): |M_J ^ omega|^2 / |omega|^2 sums the determinants of the projected columns."""
+    def _actuation_measure(self, projected: Scalar) -> Scalar:
+        """e(M~)/e(M) from e(M~)."""
         graph, alpha = self.graph, self.generic.alpha
         if alpha == 0:
             return graph.one
         inputs = self.mechanics.inputs
-        projected = ActuationForms(forms, inputs, alpha).square()
-        columns = combinations(range(self.m), alpha)
         whole = graph.sum(
-            multivector_square(graph, wedge_all(unit(graph), [inputs[k] for k in subset])) for subset in columns
+            multivector_square(graph, wedge_all(unit(graph), [inputs[k] for k in subset]))
+            for subset in combinations(range(self.m), alpha)
         )
-        if self.r == 0:
-            return graph.function("ratio_or_zero", (projected, whole))
-        seen = graph.function("ratio_or_zero", (projected, forms.square))
-        return graph.function("ratio_or_zero", (seen, whole))
+        return graph.function("ratio_or_zero", (projected, whole))

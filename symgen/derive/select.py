@@ -15,7 +15,7 @@ from symgen.graph.traverse import cost
 from symgen.model.model import Model
 
 # Minors are built only while their number stays small; beyond, Householder reflections are cheaper anyway.
-MINOR_LIMIT = 2000
+MINOR_LIMIT = 300
 
 
 @dataclass(frozen=True, slots=True)

@@ -103,9 +103,12 @@ class MinorSpace:
 
 
 class Reflections:
-    """Householder reflections that bring the columns a_1..a_r to upper triangular form (Golub and Van Loan, 5.2)."""
+    """Householder reflections that bring the columns a_1..a_r to upper triangular form (Golub and Van Loan, 5.2).
 
-    def __init__(self, graph: Graph, columns: Sequence[Vector], n: int) -> None:
+    With `everywhere` a column that vanishes is left alone instead of giving 0/0.
+    """
+
+    def __init__(self, graph: Graph, columns: Sequence[Vector], n: int, everywhere: bool = False) -> None:
         self.graph, self.n = graph, n
         self.reflectors: list[tuple[int, Vector, Scalar]] = []
         self.pivots: list[Scalar] = []
@@ -123,7 +126,8 @@ class Reflections:
             # the sign that adds: no cancellation in the first component
             signed = norm if head.is_zero else graph.function("copysign", (norm, head))
             reach = norm * (norm + graph.function("abs", (head,)))
-            self.reflectors.append((k, (head + signed, *tail[1:]), 1 / reach))
+            factor = graph.function("ratio_or_zero", (graph.one, reach)) if everywhere else 1 / reach
+            self.reflectors.append((k, (head + signed, *tail[1:]), factor))
             self.pivots.append(squared)
             self.triangle.append((*y[:k], -signed))
 
@@ -148,11 +152,11 @@ class Reflections:
 class HouseholderSpace:
     """By the orthogonal factorisation B^T = Q R."""
 
-    def __init__(self, graph: Graph, rows: Matrix, n: int) -> None:
+    def __init__(self, graph: Graph, rows: Matrix, n: int, everywhere: bool = False) -> None:
         self.graph, self.rows, self.n = graph, rows, n
         self.rank = len(rows)
         self.delta = n - self.rank
-        self.reflections = Reflections(graph, rows, n)
+        self.reflections = Reflections(graph, rows, n, everywhere)
 
     @cached_property
     def guards(self) -> tuple[Guard, ...]:
