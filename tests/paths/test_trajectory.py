@@ -18,8 +18,8 @@ WITH_PATHS = [path.stem for path in sorted(MODELS.glob("*.yaml")) if load_model(
 
 SLIDER = """
 model: slider
-coordinates: {a: {unit: rad}, s: {unit: m}, h: {unit: m}}
-parameters: {l: {value: 0.5, unit: m}}
+coordinates: {a: {}, s: {}, h: {}}
+parameters: {l: 0.5}
 kinetic_energy: a_dot**2 + s_dot**2 + h_dot**2
 constraints:
   geometric: {x: s - l*cos(a), y: h - l*sin(a)}
@@ -32,7 +32,7 @@ paths:
 
 SKATE = """
 model: skate
-coordinates: {phi: {unit: rad}, x: {unit: m}, y: {unit: m}}
+coordinates: {phi: {}, x: {}, y: {}}
 kinetic_energy: phi_dot**2 + x_dot**2 + y_dot**2
 constraints:
   nonholonomic: {edge: sin(phi)*x_dot - cos(phi)*y_dot}
