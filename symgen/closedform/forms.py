@@ -49,13 +49,19 @@ class ClosedForm:
 
 @dataclass(frozen=True, slots=True)
 class ClosedForms:
-    """All closed forms of a model and its structure; `exact` holds the same in the ring."""
+    """All closed forms of a model and its structure; `exact` holds the same in the ring.
+
+    `actuation_determinants` are (inputs J, Delta_J = det[M_J, B^T]) for every choice of as many inputs as degrees of
+    freedom, without the common factor of the minors Phi of B: det(N_B M_J)^T (N_B M_J) = Delta_J^2 / sum Phi^2, the
+    curves of Fig. 6.  Empty for under-actuated models and where the minors are too large.
+    """
 
     model: str
     forms: Mapping[str, ClosedForm]
     structure: Structure
     integrability: tuple[Integrability, ...]
     singular_sets: tuple[SingularSet, ...]
+    actuation_determinants: tuple[tuple[tuple[str, ...], Expr], ...]
     symbol_table: Mapping[str, str]
     exact: Exact
 
@@ -80,8 +86,23 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
         structure=structure,
         integrability=derive_integrability(model, mechanics),
         singular_sets=derive_singular_sets(model, exact, speller),
+        actuation_determinants=_actuation_determinants(model, exact, speller),
         symbol_table=writer.symbol_table(),
         exact=exact,
+    )
+
+
+def _actuation_determinants(model: Model, exact: Exact, speller: Speller) -> tuple[tuple[tuple[str, ...], Expr], ...]:
+    if not model.inputs or not exact.full_actuation:
+        return ()
+    try:
+        (actuation,) = exact.actuations
+    except (TooLargeError, ValueError):
+        return ()
+    scale = speller.polynomial(exact.control_scale) ** exact.delta
+    return tuple(
+        (tuple(model.inputs[k].name for k in subset), speller.polynomial(value) / scale)
+        for subset, value in actuation.determinants.items()
     )
 
 
@@ -148,17 +169,18 @@ class _Writer:
         if model.independent_velocities:
             yield self._direct("orthogonal_complement", self._complement)
         if model.inputs:
-            yield from self._actuation_forms()
+            yield from self._actuation_forms(projector)
 
-    def _actuation_forms(self) -> Iterable[ClosedForm]:
+    def _actuation_forms(self, projector: ClosedForm) -> Iterable[ClosedForm]:
         """M, N_B M, its pseudoinverse and u."""
         exact, speller, taken = self.exact, self.speller, self.taken
+        shown = None if projector.matrix is None else Structured(projector.matrix, projector.intermediates)
         yield self._direct("control_matrix", lambda: exact.mechanics.control)
         yield self._direct(
             "projected_control_matrix",
             lambda: exact.projected_control,
             "N_B M",
-            lambda: structured_projected_control(exact, speller, taken),
+            None if shown is None else lambda: structured_projected_control(exact, speller, shown),
             exact.projector_work,
         )
         pseudoinverse = self._direct(

@@ -190,7 +190,7 @@ class _Judge:
         rest = [value for value in values if value]
         if not rest:
             return _Finding(IDENTICAL, "")
-        if self.ring.opaque and all(self._vanishes(value, self.points) for value in rest):
+        if not self.ring.is_complete and all(self._vanishes(value, self.points) for value in rest):
             return _Finding(CHECKED, "; it contains what the ring does not hold and vanishes at 40 digits")
         projected = [value for value in (self.manifold.restrict(value) for value in rest) if value]
         if not projected:

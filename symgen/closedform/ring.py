@@ -16,7 +16,7 @@ from sympy import QQ
 from sympy.polys.rings import PolyElement, PolyRing
 
 from symgen.closedform.angles import AngleBasis
-from symgen.model.expression import Expression
+from symgen.model.expression import Expression, Name
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +47,11 @@ class TrigRing:
         self.cosine = tuple(first + 2 * i + 1 for i in range(len(basis.atoms)))
         self.opaque_position = tuple(first + 2 * len(basis.atoms) + i for i in range(len(self.opaque)))
         self.angle_positions = frozenset(self.sine + self.cosine)
+
+    @cached_property
+    def is_complete(self) -> bool:
+        """Whether equality is decided by normal forms: no opaque atoms, every angle a combination of names."""
+        return not self.opaque and all(isinstance(base, Name) for atom in self.basis.atoms for base, _ in atom)
 
     @cached_property
     def zero(self) -> PolyElement:

@@ -9,18 +9,25 @@ from sympy import Expr, Integer
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.exact import Exact, TooLargeError
-from symgen.closedform.homogeneous import common_factor, factorise, homogeneous, never_zero, parity_classes
+from symgen.closedform.homogeneous import common_factor, divide, factorise, homogeneous, never_zero, parity_classes
 from symgen.closedform.minors import common_denominator
 from symgen.closedform.ring import TrigRing
 from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
 
+MOST_PRINTED = 30
+"""More expressions than this are not listed."""
+
+LARGEST_SQUARE_SUM = 4000
+"""Products of terms up to which a sum of squares is expanded to see that it has no zeros."""
+
 
 @dataclass(frozen=True, slots=True)
 class SingularSet:
-    """Where something loses rank: all of `vanishing` are zero at once; empty when that never happens.
+    """Where something loses rank: all of `vanishing` are zero at once.
 
-    `decided` is False where the expressions are sums whose common zeros were not worked out.
+    Where `decided`, there is one product, or nothing when that never happens; otherwise common zeros were not worked
+    out and `vanishing` is empty when there are too many expressions.
     """
 
     kind: Literal["constraint", "input", "parameter"]
@@ -90,13 +97,14 @@ def _common_zeros(
     """The common zeros of ring elements, one shared factor taken out."""
     ring = exact.ring
     values = [v for v in values if v]
-    shared = ring.normal(common_factor(ring, values) * content)
-    factors = essential_factors(ring, shared)
     single = len(values) == 1
-    own = values if not single else []
-    never = single or any(v.is_ground or not _can_vanish(ring, v) for v in own)
-    if not never and sum(len(v) ** 2 for v in own) <= 4000:
-        total = ring.normal(sum((v * v for v in own), ring.zero))
+    divisor = ring.one if single else common_factor(ring, values)
+    shared = ring.product(values[0] if single else ring.normal(divisor), ring.normal(content))
+    factors = essential_factors(ring, shared)
+    rest = [] if single else [divide(ring, v, divisor) for v in values]
+    never = single or any(not essential_factors(ring, v) for v in rest)
+    if not never and sum(len(v) ** 2 for v in rest) <= LARGEST_SQUARE_SUM:
+        total = ring.normal(sum((v * v for v in rest), ring.zero))
         never = not essential_factors(ring, total)
     spelled = tuple(_unsigned(speller.polynomial(ring.normal(f))) for f in factors)
     if never:
@@ -106,13 +114,11 @@ def _common_zeros(
         for factor in spelled:
             product *= factor
         return SingularSet(kind, quantity, (product,), True, f"{text} where this product vanishes")
-    printed = tuple(_unsigned(speller.polynomial(v)) for v in own)
+    if len(values) > MOST_PRINTED:
+        return SingularSet(kind, quantity, (), False, f"{text} where all {len(values)} minors vanish at once")
+    printed = tuple(_unsigned(speller.polynomial(v)) for v in values)
     return SingularSet(kind, quantity, printed, False, f"{text} where all of these vanish at once")
 
 
 def _unsigned(expression: Expr) -> Expr:
     return -expression if expression.could_extract_minus_sign() else expression
-
-
-def _can_vanish(ring: TrigRing, p: PolyElement) -> bool:
-    return bool(essential_factors(ring, p))

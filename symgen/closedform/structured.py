@@ -9,19 +9,22 @@ from itertools import combinations
 from sympy import Expr, ImmutableDenseMatrix, Integer, Symbol
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.exact import Exact
+from symgen.closedform.exact import Exact, TooLargeError
 from symgen.closedform.matrices import dot
 from symgen.closedform.minors import left_inverse_terms
 from symgen.closedform.spelling import Speller
 
+MOST_MINORS = 30
+"""More named minors than this are not listed."""
+
 
 @dataclass(slots=True)
 class Naming:
-    """Names for ring elements: equal or opposite elements share one symbol."""
+    """Names for ring elements: equal or opposite elements share one symbol; what is used is spelled at the end."""
 
     speller: Speller
     taken: frozenset[str]
-    meanings: dict[Symbol, Expr] = field(default_factory=dict)
+    elements: dict[Symbol, PolyElement] = field(default_factory=dict)
     known: dict[PolyElement, Expr] = field(default_factory=dict)
 
     def symbol(self, name: str) -> Symbol:
@@ -36,7 +39,7 @@ class Naming:
             return self.speller.polynomial(value)
         if value not in self.known:
             symbol = self.symbol(name)
-            self.meanings[symbol] = self.speller.polynomial(value)
+            self.elements[symbol] = value
             self.known[value] = symbol
             self.known[-value] = -symbol
         return self.known[value]
@@ -66,7 +69,13 @@ def name_minors(exact: Exact, naming: Naming) -> list[Mapping[tuple[int, ...], E
 
 
 def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) -> Structured:
-    """N_B = sum_K Phi_K Phi_K^T / Sigma_Phi with every Phi_J as a product of its factors."""
+    """N_B = sum_K Phi_K Phi_K^T / Sigma_Phi with every Phi_J as a product of its factors.
+
+    Raises TooLargeError when there are too many minors to list.
+    """
+    count = sum(len(minors.values) for minors in exact.minor_sets)
+    if count > MOST_MINORS:
+        raise TooLargeError(f"{count} minors")
     naming = Naming(speller, taken)
     phis = name_minors(exact, naming)
     total = naming.symbol("Sigma_Phi")
@@ -114,9 +123,8 @@ def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: froz
     return _finish(entries, naming, [(total, squares)])
 
 
-def structured_projected_control(exact: Exact, speller: Speller, taken: frozenset[str]) -> Structured:
+def structured_projected_control(exact: Exact, speller: Speller, projector: Structured) -> Structured:
     """N_B M with N_B in named minors."""
-    projector = structured_projector(exact, speller, taken)
     control = ImmutableDenseMatrix([[speller.quotient(e) for e in row] for row in exact.mechanics.control])
     return Structured(projector.matrix * control, projector.intermediates)
 
@@ -124,14 +132,15 @@ def structured_projected_control(exact: Exact, speller: Speller, taken: frozense
 def structured_inverse_dynamics(exact: Exact, speller: Speller, left: Structured, taken: frozenset[str]) -> Structured:
     """u = M~^+ tau with the load tau = G qdd + C qd + Q - Q_a as named intermediates."""
     naming = Naming(speller, taken)
-    load = []
-    for i, (entry,) in enumerate(exact.load):
-        symbol = naming.symbol(f"tau_{i + 1}")
-        naming.meanings[symbol] = speller.quotient(entry)
-        load.append(symbol if entry else Integer(0))
+    symbols = [naming.symbol(f"tau_{i + 1}") for i in range(exact.model.n)]
+    load = [symbol if entry else Integer(0) for symbol, (entry,) in zip(symbols, exact.load, strict=True)]
     matrix = left.matrix * ImmutableDenseMatrix(load)
-    used = {s for s in naming.meanings if s in load and matrix.has(s)}
-    named = tuple((symbol, meaning) for symbol, meaning in naming.meanings.items() if symbol in used)
+    used = matrix.free_symbols
+    named = tuple(
+        (symbol, speller.quotient(entry))
+        for symbol, (entry,) in zip(symbols, exact.load, strict=True)
+        if entry and symbol in used
+    )
     return Structured(matrix, (*named, *left.intermediates))
 
 
@@ -146,21 +155,12 @@ def structured_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[st
     )
 
 
-def determinant_terms(exact: Exact, speller: Speller, taken: frozenset[str]) -> tuple[tuple[Symbol, Expr], ...]:
-    """Every Delta_J with its factors: the curves of Fig. 6 are Delta_J^2 / Sigma_Phi."""
-    naming = Naming(speller, taken)
-    choices = len(exact.actuations)
-    return tuple(
-        (naming.symbol(label("Delta", j, i, choices)), speller.polynomial(value))
-        for i, actuation in enumerate(exact.actuations)
-        for j, value in actuation.determinants.items()
-    )
-
-
 def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]) -> Structured:
     """Keep the intermediates that the matrix and the sums use."""
     matrix = ImmutableDenseMatrix(entries)
     last = tuple(sums)
     used = set(matrix.free_symbols).union(*(meaning.free_symbols for _, meaning in last))
-    first = tuple((symbol, meaning) for symbol, meaning in naming.meanings.items() if symbol in used)
-    return Structured(matrix, (*first, *last))
+    first = [(symbol, value) for symbol, value in naming.elements.items() if symbol in used]
+    if len(first) > MOST_MINORS:
+        raise TooLargeError(f"{len(first)} minors")
+    return Structured(matrix, (*((symbol, naming.speller.polynomial(value)) for symbol, value in first), *last))

@@ -116,6 +116,25 @@ def test_curves_of_figure_6_are_products_of_sines() -> None:
     assert minors[Symbol("Sigma_Delta")] == sum(Symbol(f"Phi_{i}") ** 2 for i in ("1_2", "1_3", "2_3"))
 
 
+def test_actuation_determinants_are_the_curves_of_figure_6() -> None:
+    model, forms = shipped("rapkm_2rrr_rr")
+    assert [inputs for inputs, _ in forms.actuation_determinants] == [
+        ("drive_1", "drive_2"),
+        ("drive_1", "drive_3"),
+        ("drive_2", "drive_3"),
+    ]
+    mp.dps = 50
+    (point,) = generic_points(model, forms.exact.mechanics, 1)
+    jacobian = mpmath.matrix(point.matrix(forms.exact.mechanics.jacobian))
+    projector = mpmath.eye(6) - rank_pseudoinverse(jacobian, 4) * jacobian
+    values = {Symbol(name): sympy.Float(value, 50) for name, value in point.values.items()}
+    squares = point.polynomial(forms.exact.phi_squares)
+    for (first, second), (_, delta) in zip(((0, 1), (0, 2), (1, 2)), forms.actuation_determinants, strict=True):
+        minor = projector[first, first] * projector[second, second] - projector[first, second] ** 2
+        assert is_product_of_sines(delta)
+        assert abs(mp.mpf(str(delta.evalf(40, subs=values))) ** 2 / squares - minor) < 1e-30
+
+
 def test_every_minor_of_the_manipulator_is_factored() -> None:
     _, forms = shipped("rapkm_2rrr_rr")
     for symbol, meaning in forms.forms["nullspace_projector"].intermediates:

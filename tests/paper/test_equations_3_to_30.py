@@ -1,7 +1,6 @@
 """(3), (6)-(12), (14)-(22), (24)-(30): each holds as printed or as corrected, and the misprints are refuted.
 
-The table is that of the errata: where a form is printed wrong, its residual is not zero on a random system while that of
-the corrected form is.
+Where a form is printed wrong, its residual on a random system is not zero while that of the corrected form is.
 """
 
 import mpmath
