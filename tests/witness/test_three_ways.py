@@ -129,18 +129,20 @@ def test_three_derivations_agree(name: str) -> None:
     kernels = {kernel.name: kernel for kernel in program.kernels}
 
     assert set(kernels) == set(witness)
-    assert {name for name in witness if name in ALL_THREE and not sympy.has(name)} == set()
+    if name in SHIPPED:  # SymPy need not write out what a mechanism with dependent constraints would take
+        assert {quantity for quantity in witness if quantity in ALL_THREE and not sympy.has(quantity)} == set()
     for state in states(model, witness["singularity"]):
-        scale = float(np.linalg.norm(witness["mass_matrix"](state["q"], state["p"]).full() @ state["qdd"]))
-        for name, function in witness.items():
+        load = float(np.linalg.norm(witness["mass_matrix"](state["q"], state["p"]).full() @ state["qdd"]))
+        for quantity, function in witness.items():
             arguments = [argument for argument in function.name_in() if argument != "p"]
             expected = function(*(state[argument] for argument in [*arguments, "p"])).full()
-            status, entries = interpreter.run(kernels[name], {a: list(state[a]) for a in arguments}, list(state["p"]))
-            assert status is Status.OK, name
+            given = {argument: list(state[argument]) for argument in arguments}
+            status, entries = interpreter.run(kernels[quantity], given, list(state["p"]))
+            assert status is Status.OK, quantity
             others = {"kernel": np.array(entries).reshape(expected.shape)}
-            if sympy.has(name):
-                others["SymPy"] = sympy(name, state).reshape(expected.shape)
-            size = float(np.linalg.norm(expected)) + (scale if name == "inverse_dynamics_residual" else 0.0)
+            if sympy.has(quantity):
+                others["SymPy"] = sympy(quantity, state).reshape(expected.shape)
+            size = float(np.linalg.norm(expected)) + (load if quantity == "inverse_dynamics_residual" else 0.0)
             for other, value in others.items():
                 error = float(np.linalg.norm(value - expected))
-                assert error <= TOLERANCE * size + 1e-12, f"{other} differs from CasADi in {name} by {error:.1e}"
+                assert error <= TOLERANCE * size + 1e-12, f"{other} differs from CasADi in {quantity} by {error:.1e}"
