@@ -32,7 +32,10 @@ class Options:
 
 @dataclass(frozen=True, slots=True)
 class LargestError:
-    """The worst error of one target (`C float64`, `C float32`, `Python`), relative to its scale, and its tolerance."""
+    """The worst error of one target (`C float64`, ...) in units of d + eps |y|, and how many units are allowed.
+
+    d is how far the exact result moves when the inputs are rounded; see `symgen.verify.tolerance`.
+    """
 
     target: str
     quantity: str

@@ -9,6 +9,7 @@ from typing import TextIO
 from symgen.diagnostics import Notice
 from symgen.results import Summary
 
+_ERROR_NOTE = "  * in units of what rounding the inputs and the result does to it"
 _CLEAR_LINE = "\r\x1b[K"
 
 
@@ -41,8 +42,8 @@ def summary_table(name: str, summary: Summary) -> str:
         rows = [(quantity, str(count)) for quantity, count in summary.operations]
         sections.append(_columns(("quantity", "operations"), rows, "<>"))
     if summary.errors:
-        errors = [(e.target, f"{e.error:.1e}", f"{e.tolerance:.1e}", e.quantity) for e in summary.errors]
-        sections.append(_columns(("largest error", "found", "allowed", "in"), errors, "<>><"))
+        errors = [(e.target, f"{e.error:.2g}", f"{e.tolerance:g}", e.quantity) for e in summary.errors]
+        sections.append(_columns(("largest error*", "found", "allowed", "in"), errors, "<>><") + "\n" + _ERROR_NOTE)
     if summary.skipped:
         sections.append(_columns(("not needed", "because"), summary.skipped, "<<"))
     return "\n\n".join(sections) + "\n"
