@@ -90,7 +90,7 @@ def _candidates(
     points = starts(system, generator, 6 * count + 60)
     literals = reference.literals()
     last: list[Any] | None = None
-    kept = 0
+    kept = {True: 0, False: 0}
     for index, point in enumerate(points):
         parameters = _parameters(reference, generator, vary=index > 0)
         start = point
@@ -99,12 +99,13 @@ def _candidates(
         q = onto_manifold(system, start, parameters, literals)
         if q is None:
             continue
-        sample = _sample(reference, quantities, [float(x) for x in q], parameters, kept, generator)
+        in_range = _in_ranges(reference, q)
+        sample = _sample(reference, quantities, [float(x) for x in q], parameters, kept[in_range], generator)
         if sample is None:
             continue
         last = q
-        kept += 1
-        yield sample, _in_ranges(reference, sample.state.q)
+        kept[in_range] += 1
+        yield sample, in_range
 
 
 def _parameters(reference: Reference, generator: random.Random, vary: bool) -> list[float]:

@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from flint import arb
+
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
 from symgen.verify.reference_tape import ball
 
@@ -46,13 +47,13 @@ def mutations(program: Program, count: int, seed: int) -> tuple[Mutant, ...]:
         options = list(_changes(statement, earlier, generator))
         if options:
             change, changed = generator.choice(options)
-            found.append(Mutant(kernel, _with_statement(kernel, b, s, changed), f"{kernel.name}: {change}: {statement}"))
+            found.append(
+                Mutant(kernel, _with_statement(kernel, b, s, changed), f"{kernel.name}: {change}: {statement}")
+            )
     return tuple(found)
 
 
-def _changes(
-    statement: Statement, earlier: Sequence[str], generator: random.Random
-) -> Iterator[tuple[str, Statement]]:
+def _changes(statement: Statement, earlier: Sequence[str], generator: random.Random) -> Iterator[tuple[str, Statement]]:
     operands = statement.operands
     if statement.operation in FLIPPED:
         yield "sign", replace(statement, operation=FLIPPED[statement.operation])

@@ -10,6 +10,7 @@ import pytest
 import shipped
 from flint import arb_mat
 from mutation import Mutant, exact_outputs, mutations
+
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel
 from symgen.verify.comparison import compare

@@ -1,0 +1,109 @@
+"""Verification states lie where they should, and the tolerance is the one of theory.md section 6, item 9."""
+
+from __future__ import annotations
+
+import struct
+from fractions import Fraction
+from random import Random
+
+import pytest
+from flint import arb
+from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
+
+from symgen.verify.reference import Reference, State
+from symgen.verify.reference_linear import column, norm
+from symgen.verify.reference_tape import precision
+from symgen.verify.states import VerificationError, affordable_states, rounded, sample_states
+from symgen.verify.tolerance import expectations, perturbed
+
+
+def test_states_satisfy_the_constraints_and_half_of_the_rates_do() -> None:
+    reference = Reference(slider_crank())
+    samples = sample_states(reference, ["mass_matrix"], 16)
+    assert len(samples) == 16
+    assert [sample.admissible for sample in samples] == [index % 2 == 0 for index in range(16)]
+    for index, sample in enumerate(samples):
+        y = reference.matrices(sample.state, ["constraint_residual", "constraint_jacobian", "constraint_jacobian_dot"])
+        with precision(128):
+            rates = y["constraint_jacobian"] * column(sample.state.qd)
+            accelerations = y["constraint_jacobian"] * column(sample.state.qdd)
+            accelerations += y["constraint_jacobian_dot"] * column(sample.state.qd)
+            drifted = index % 4 == 3
+            assert (norm(y["constraint_residual"]) < 1e-14) is not drifted
+            assert (norm(rates) < 1e-14) is sample.admissible
+            assert (norm(accelerations) < 1e-13) is sample.admissible
+
+
+def test_states_are_deterministic_spread_and_vary_ranged_parameters() -> None:
+    samples = sample_states(Reference(skate()), ["mass_matrix"], 12)
+    assert samples == sample_states(Reference(skate()), ["mass_matrix"], 12)
+    assert samples != sample_states(Reference(skate()), ["mass_matrix"], 12, seed=1)
+    masses = {sample.state.parameters[1] for sample in samples}
+    assert len(masses) == 12
+    assert all(2 <= mass <= 3 or mass == 2.5 for mass in masses)
+    assert {sample.state.parameters[0] for sample in samples} == {0.8}
+    assert max(abs(sample.state.q[0]) for sample in samples) > 1.5
+
+
+def test_dependent_constraints_get_states_without_drift() -> None:
+    reference = Reference(three_cranks())
+    for sample in sample_states(reference, ["mass_matrix"], 8):
+        residual = reference.matrices(sample.state, ["constraint_residual"])["constraint_residual"]
+        assert norm(residual) < 1e-14
+
+
+def test_rounding_to_float32_is_exact_in_float32() -> None:
+    (sample, *_) = sample_states(Reference(double_pendulum()), ["mass_matrix"], 8)
+    for value in rounded(sample, "float32").state.q:
+        assert struct.unpack("f", struct.pack("f", value))[0] == value
+    assert rounded(sample, "float64") is sample
+
+
+def test_too_few_states_are_an_error() -> None:
+    nowhere = build("nowhere", "x y", "x_dot**2/2 + y_dot**2/2", "sqrt(-1 - x**2)")
+    with pytest.raises(VerificationError, match="only 0 regular configurations"):
+        sample_states(Reference(nowhere), ["potential_force"], 8)
+
+
+def test_affordable_states_shrink_with_the_model_only() -> None:
+    assert affordable_states(Reference(slider_crank())) == 64
+    assert affordable_states(Reference(slider_crank()), 1000) == 1000
+    names = [f"x_{i}" for i in range(30)]
+    long_chain = build("chain", " ".join(names), " + ".join(f"{n}_dot**2" for n in names))
+    assert 8 <= affordable_states(Reference(long_chain)) < 64
+
+
+def test_error_unit_follows_condition_inputs_parameters_and_literals() -> None:
+    """U' = 3 k x**2 moves by up to (2 + 1 + 1 + 1) eps |U'|: x twice, k and the literals 3 and 3 once each."""
+    model = build("spring", "x", "x_dot**2/2", "3*k*x**3/3", parameters={"k": "0.7"})
+    reference = Reference(model)
+    state = State((0.3,), (0.1,), (0.2,), (), (0.7,))
+    for scalar, eps in (("float64", 2.0**-53), ("float32", 2.0**-24)):
+        found = expectations(reference, state, ["potential_force"], scalar, "seed")["potential_force"]
+        assert found.size == pytest.approx(0.189, rel=1e-12)
+        assert 2 * eps * found.size < found.unit < 6.01 * eps * found.size
+
+
+def test_perturbations_move_every_number_by_eps() -> None:
+    reference = Reference(slider_crank())
+    state = sample_states(reference, ["mass_matrix"], 8)[0].state
+    with precision(200):
+        moved, literals = perturbed(reference, state, "float32", Random(0))
+        eps = Fraction(1, 2**24)
+        before = [*state.q, *state.qd, *state.qdd, *state.u, *state.parameters]
+        after = [*moved.q, *moved.qd, *moved.qdd, *moved.u, *moved.parameters]
+        for x, y in zip(before, after, strict=True):
+            assert abs(y - x) == abs(arb(x)) * arb(eps.numerator) / arb(eps.denominator)
+        assert len(literals) == len(reference.literals()) > 3
+        assert all(abs(float(y / x) - 1) > 1e-8 for x, y in zip(reference.literals(), literals, strict=True))
+
+
+def test_distance_is_exact_where_floats_cancel() -> None:
+    reference = Reference(double_pendulum())
+    sample = sample_states(reference, ["mass_matrix"], 8)[0]
+    expectation = expectations(reference, sample.state, ["mass_matrix"], "float64", "seed")["mass_matrix"]
+    nearest = [float(entry) for entry in expectation.value.entries()]
+    assert 0 < expectation.distance(nearest) <= 2.0**-53 * expectation.size
+    assert expectation.in_units(expectation.distance(nearest)) < 1
+    worse = [nearest[0] * (1 + 2.0**-40), *nearest[1:]]
+    assert expectation.in_units(expectation.distance(worse)) > 16
