@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from decimal import Decimal
 from fractions import Fraction
+from functools import cache
 
 from symgen.diagnostics import SymgenBug
 from symgen.ir.kernel import Scalar
@@ -34,6 +35,7 @@ def round_to(scalar: Scalar, value: Fraction) -> float:
     return float(value) if scalar == "float64" else round_to_float32(value)
 
 
+@cache
 def decimal_text(scalar: Scalar, value: Fraction) -> str:
     """The shortest decimal that reads back as `value` rounded to the scalar type; always with a point or exponent."""
     try:
