@@ -1,0 +1,178 @@
+"""Fills the marked blocks of README.md and the generated pages of docs/ from what symgen does now.
+
+`python tools/fill_readme.py` rewrites everything; `--check` only compares the deterministic blocks and lists what differs.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from symgen.closedform.forms import derive_closed_forms
+from symgen.closedform.published import decide_published
+from symgen.model.load import load_model
+from symgen.model.quantities import QUANTITIES
+
+ROOT = Path(__file__).resolve().parent.parent
+PAPER_MODELS = ("skate", "front_car", "front_car_wheelset", "rear_car", "rapkm_2rrr_rr")
+BLOCK = re.compile(r"(<!-- begin (\w+) -->\n).*?(<!-- end \2 -->)", re.DOTALL)
+
+WITH_MISTAKES = """\
+model: cart
+coordinates:
+  x: {unit: m}
+  phi: {unit: rad}
+parameters:
+  m: {value: 2, unit: kg}
+  l: {value: "0,5", unit: m}
+kinetic_energy: m/2*(x_dot**2 + l**2*ph_dot**2)
+potential_energy: m*9.81*l*cos(phi)^1
+inputs:
+  F: {unit: N, acts_on: {x: 1}}
+"""
+
+
+def symgen(*arguments: str, folder: Path = ROOT) -> str:
+    """What the command prints as its result, or else what it complains about."""
+    command = [sys.executable, "-m", "symgen", *arguments]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"}
+    result = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    return result.stdout or result.stderr
+
+
+def example_model() -> str:
+    """The car's file up to the blocks that serve the paper's tests."""
+    text = (ROOT / "models/front_car.yaml").read_text(encoding="utf-8")
+    head = re.split(r"^(?:published|paths):", text, maxsplit=1, flags=re.MULTILINE)[0]
+    lines = [line for line in head.rstrip().splitlines() if not line.startswith("#")]
+    return "```yaml\n" + "\n".join(lines).strip() + "\n```\n"
+
+
+def example_output() -> str:
+    """A run on the car, the measured column left as this machine found it."""
+    outputs = "inverse_dynamics,forward_dynamics,multipliers"
+    with tempfile.TemporaryDirectory() as folder:
+        text = symgen("models/front_car.yaml", "--outputs", outputs, "--out", folder)
+        text = text.replace(folder, "generated")
+    return f"```text\n$ symgen models/front_car.yaml --outputs {outputs}\n{text.strip()}\n```\n"
+
+
+def explained() -> str:
+    """Equation (43) in the terminal."""
+    text = symgen("explain", "models/front_car.yaml", "nullspace_projector")
+    return f"```text\n{text.strip()}\n```\n"
+
+
+def mistakes() -> str:
+    """A file with mistakes and the answer to it."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "cart.yaml").write_text(WITH_MISTAKES, encoding="utf-8")
+        text = symgen("cart.yaml", folder=Path(folder))
+    return f"```text\n{text.strip()}\n```\n"
+
+
+def paper() -> str:
+    """One line for each published formula: where it stands, what was found, and the proof."""
+    lines = ["| equation | model | what | verdict | corrected form |", "|---|---|---|---|---|"]
+    for name in PAPER_MODELS:
+        model = load_model(ROOT / f"models/{name}.yaml")
+        if not model.published:
+            continue
+        for verdict in decide_published(model, derive_closed_forms(model)):
+            what = verdict.quantity.replace("_", " ") or "equations"
+            proven = {None: "", True: "proven", False: "not proven"}[verdict.corrected_proven]
+            lines.append(f"| {verdict.equation} | {name} | {what} | {verdict.verdict} | {proven} |")
+    return "\n".join(lines) + "\n"
+
+
+def measured() -> str:
+    """Cold starts on this machine."""
+    runs = (
+        ("front_car", ("--outputs", "all")),
+        ("front_car", ("--no-verify",)),
+        ("front_car", ("--no-verify", "--only", "c")),
+        ("rapkm_2rrr_rr", ("--outputs", "inverse_dynamics,forward_dynamics,multipliers")),
+        ("rapkm_2rrr_rr", ("--outputs", "all")),
+        ("rapkm_2rrr_rr", ("--no-verify",)),
+        ("rapkm_2rrr_rr", ("--no-verify", "--only", "c")),
+    )
+    lines = ["| `symgen models/…` | cold start to written files |", "|---|---|"]
+    for name, options in runs:
+        with tempfile.TemporaryDirectory() as folder:
+            start = time.perf_counter()
+            symgen(f"models/{name}.yaml", *options, "--quiet", "--out", folder)
+            seconds = time.perf_counter() - start
+        lines.append(f"| `{name}.yaml {' '.join(options)}` | {seconds:.1f} s |")
+    return "\n".join(lines) + "\n"
+
+
+def quantities() -> str:
+    """docs/quantities.md."""
+    lines = [
+        "# Quantities",
+        "",
+        "Names in `outputs:`, C and Python, with the symbols and equation numbers of the paper.",
+        "τ = G q̈ + C q̇ + Q − Q_a. Matrices are row-major.",
+        "",
+        "| name | symbol | equation | what | arguments |",
+        "|---|---|---|---|---|",
+    ]
+    for q in QUANTITIES:
+        lines.append(f"| `{q.name}` | {q.symbol} | {q.equation} | {q.description} | {', '.join(q.arguments)} |")
+    return "\n".join(lines) + "\n"
+
+
+def picture() -> str:
+    """docs/rapkm_determinants.svg: Fig. 6 of the paper."""
+    from symgen.paths.charts import charts
+    from symgen.paths.figures import figure_data
+
+    model = load_model(ROOT / "models/rapkm_2rrr_rr.yaml")
+    return charts(model, figure_data(model, model.paths[0]))["determinants"]
+
+
+DETERMINISTIC: dict[str, Callable[[], str]] = {
+    "model": example_model,
+    "explain": explained,
+    "mistakes": mistakes,
+    "paper": paper,
+}
+MEASURED: dict[str, Callable[[], str]] = {"output": example_output, "measured": measured}
+
+
+def filled(text: str, blocks: dict[str, Callable[[], str]]) -> str:
+    """README.md with the given blocks made anew."""
+
+    def replace(match: re.Match[str]) -> str:
+        make = blocks.get(match[2])
+        return match[0] if make is None else match[1] + make() + match[3]
+
+    return BLOCK.sub(replace, text)
+
+
+def main() -> int:
+    """Rewrites, or with --check compares."""
+    readme = ROOT / "README.md"
+    text = readme.read_text(encoding="utf-8")
+    if "--check" in sys.argv[1:]:
+        stale = []
+        if filled(text, DETERMINISTIC) != text:
+            stale.append("README.md")
+        if (ROOT / "docs/quantities.md").read_text(encoding="utf-8") != quantities():
+            stale.append("docs/quantities.md")
+        print(*(f"{name} is stale: run make docs" for name in stale), sep="\n", end="\n" if stale else "")
+        return 1 if stale else 0
+    readme.write_text(filled(text, DETERMINISTIC | MEASURED), encoding="utf-8")
+    (ROOT / "docs/quantities.md").write_text(quantities(), encoding="utf-8")
+    (ROOT / "docs/rapkm_determinants.svg").write_text(picture(), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
