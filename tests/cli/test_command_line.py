@@ -210,3 +210,15 @@ def test_out_is_a_file(asked: list[Options], tmp_path: Path, capsys: pytest.Capt
     assert code(SKATE) == 2
     assert "Traceback" not in capsys.readouterr().err
     assert len(asked) == 1
+
+
+def test_explain_one_quantity(capsys: pytest.CaptureFixture[str]) -> None:
+    assert code("explain", SKATE, "nullspace_projector") == 0
+    assert "sin" in capsys.readouterr().out
+    assert code("explain", SKATE, "nonsense") == 2
+    assert "unknown quantity 'nonsense'" in capsys.readouterr().err
+
+
+def test_unknown_output_is_wrong_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert code(SKATE, "--out", str(tmp_path), "--outputs", "nonsense", "--no-verify", "--quiet") == 2
+    assert "unknown quantity 'nonsense'" in capsys.readouterr().err
