@@ -33,6 +33,11 @@ def text_of(node: Node | None) -> str | None:
     return None
 
 
+def one_line(node: Node | None) -> str:
+    """A text with single spaces for breaks and runs of white space; nothing where there is none."""
+    return " ".join((text_of(node) or "").split())
+
+
 def description_of(node: Node | None) -> str:
-    """The text under `description` on one line, or nothing."""
-    return " ".join((text_of(member(node, "description")) or "").split())
+    """The text under `description`, on one line."""
+    return one_line(member(node, "description"))

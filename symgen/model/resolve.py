@@ -26,7 +26,7 @@ from symgen.model.names import did_you_mean, name_mistake
 from symgen.model.paths import read_paths
 from symgen.model.published import read_published
 from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
-from symgen.model.reading import entries, items, member, text_of
+from symgen.model.reading import entries, items, member, one_line, text_of
 from symgen.model.scope import CONFIGURATION, STATE, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 
@@ -57,8 +57,8 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     paths = read_paths(scope, tree, names)
     model = Model(
         name=_model_name(scope, tree),
-        description=text_of(tree.get("description")) or "",
-        source=text_of(tree.get("source")) or "",
+        description=one_line(tree.get("description")),
+        source=one_line(tree.get("source")),
         coordinates=coordinates,
         parameters=parameters,
         definitions=definitions,

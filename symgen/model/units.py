@@ -65,7 +65,6 @@ _PREFIXABLE: dict[str, Unit] = {
     "A": _unit(ampere=1),
     "K": _base(4),
     "mol": _base(5),
-    "cd": _base(6),
     "Hz": _unit(s=-1),
     "N": _unit(1, 1, -2),
     "Pa": _unit(1, -1, -2),
@@ -88,6 +87,7 @@ UNITS: dict[str, Unit] = {
         for name, unit in _PREFIXABLE.items()
     },
     **_PREFIXABLE,
+    "cd": _base(6),
     "rad": NUMBER,
     "sr": NUMBER,
 }

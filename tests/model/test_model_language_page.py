@@ -1,0 +1,47 @@
+"""The page docs/model-language.md is true: its examples load, its table of quantities is the table."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from symgen.model.expression import FUNCTION_ARITY
+from symgen.model.load import load_text
+from symgen.model.quantities import QUANTITIES
+from symgen.model.schema import MODEL
+
+PAGE = (Path(__file__).parents[2] / "docs" / "model-language.md").read_text(encoding="utf-8")
+EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.mark.parametrize("text", EXAMPLES, ids=lambda text: text.split("\n")[0][7:30])
+def test_examples_load(text: str) -> None:
+    load_text(text, "example.yaml")
+
+
+def test_there_are_examples() -> None:
+    assert len(EXAMPLES) >= 4
+
+
+def test_every_block_is_described() -> None:
+    for field in MODEL.fields:
+        assert f"`{field.key}`" in PAGE, field.key
+    for key in MODEL.later:
+        assert key in PAGE
+
+
+def test_every_function_is_listed() -> None:
+    assert f"`{' '.join(FUNCTION_ARITY)}`" in PAGE
+
+
+def test_the_table_of_quantities_is_the_table() -> None:
+    rows = [
+        f"| `{q.name}` | {q.symbol} | {q.equation or '–'} | {q.description} | {', '.join(q.arguments)} |"
+        for q in QUANTITIES
+    ]
+    assert "\n".join(rows) in PAGE
+    assert PAGE.count("\n| `") - sum(
+        line.startswith("| `") for line in PAGE.split("## Expressions")[0].split("\n")
+    ) == len(rows)

@@ -1,0 +1,112 @@
+"""The float checks of the loader against NumPy, difference quotients and cases with known answers."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+from symgen.diagnostics import Mistake, Span
+from symgen.model.algebra import BEYOND, Expansion, NotPolynomialError, is_zero
+from symgen.model.dense import is_positive, null_space, rank, solve_definite
+from symgen.model.expression import Expression
+from symgen.model.gradient import Gradients
+from symgen.model.parser import parse_expression
+from symgen.model.source import ScalarNode
+from symgen.model.walk import evaluate
+
+VALUES = {"x": 0.6, "y": 0.3, "m": 1.7}
+
+
+def tree(text: str) -> Expression:
+    """The tree of a good expression."""
+    parsed = parse_expression(ScalarNode(text, Span(1, 1, 2), text, False))
+    assert not isinstance(parsed, Mistake)
+    return parsed
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x*y - m*x/y",
+        "sin(x)*cos(y) + tan(x*y)",
+        "asin(x*y) + acos(x) + atan(y/m)",
+        "atan2(y, x*m) - atan2(m, y)",
+        "sqrt(x + y) + exp(x*y) + log(x/m)",
+        "sinh(x) + cosh(y) + tanh(x*m)",
+        "x**3 - y**-2 + (x*y)**(1/2)",
+        "-(x - d)**2 + d*m",
+    ],
+)
+def test_gradients(text: str) -> None:
+    definitions = {"d": tree("x*y + 2*m")}
+    value, gradient = Gradients(VALUES, {"x": 0, "y": 1}, definitions).of(tree(text))
+    step = 1e-6
+    for index, name in enumerate(("x", "y")):
+
+        def at(shift: float, name: str = name) -> float:
+            moved = {**VALUES, name: VALUES[name] + shift}
+            return evaluate(tree(text), {**moved, "d": evaluate(definitions["d"], moved)})
+
+        assert value == pytest.approx(at(0.0))
+        assert gradient.get(index, 0.0) == pytest.approx((at(step) - at(-step)) / (2 * step), rel=1e-7, abs=1e-7)
+
+
+def test_expansion_in_the_rates() -> None:
+    expansion = Expansion(VALUES, frozenset({"x_dot", "y_dot"}), {"v": tree("x_dot + x*y_dot")})
+    polynomial = expansion.of(tree("m/2*v**2 - m*x*x_dot*y_dot + 3*y_dot - y_dot*3 + x_dot**4"))
+    kept = {monomial: value for monomial, (value, size) in polynomial.items() if not is_zero((value, size))}
+    assert kept == {
+        ("x_dot", "x_dot"): pytest.approx(0.85),
+        ("y_dot", "y_dot"): pytest.approx(0.85 * 0.36),
+        BEYOND: pytest.approx(1.0),
+    }
+
+
+@pytest.mark.parametrize("text", ["1/x_dot", "sin(x_dot)", "x_dot**(1/2)", "x_dot**-1", "atan2(x, v)"])
+def test_no_polynomials(text: str) -> None:
+    with pytest.raises(NotPolynomialError):
+        Expansion(VALUES, frozenset({"x_dot"}), {"v": tree("2*x_dot")}).of(tree(text))
+
+
+@pytest.mark.parametrize("true_rank", [0, 1, 3, 4])
+def test_rank_and_null_space(true_rank: int) -> None:
+    generator = np.random.default_rng(7 + true_rank)
+    matrix = generator.normal(size=(4, true_rank)) @ generator.normal(size=(true_rank, 6))
+    rows = [[float(value) * 10 ** (3 * i) for value in row] for i, row in enumerate(matrix)]
+    assert rank(rows) == true_rank
+    basis = np.array(null_space(rows, 6))
+    assert basis.shape == (6 - true_rank, 6)
+    assert np.allclose(basis @ basis.T, np.eye(6 - true_rank))
+    assert np.allclose(matrix @ basis.T, 0)
+
+
+def test_solve_definite() -> None:
+    generator = random.Random(3)
+    root = np.array([[generator.gauss(0, 1) for _ in range(5)] for _ in range(5)])
+    matrix = root @ root.T + np.eye(5)
+    right = [1.0, -2.0, 0.5, 3.0, 0.0]
+    solution = solve_definite(matrix.tolist(), right)
+    assert solution is not None
+    assert np.allclose(solution, np.linalg.solve(matrix, right))
+    assert solve_definite([[1.0, 2.0], [2.0, 1.0]], [1.0, 1.0]) is None
+
+
+@pytest.mark.parametrize(
+    ("matrix", "expected"),
+    [
+        ([[2.0, 1.0], [1.0, 2.0]], (True, True)),
+        ([[1.0, 1.0], [1.0, 1.0]], (True, False)),
+        ([[1.0, 2.0], [2.0, 1.0]], (False, False)),
+        ([[1.0, 0.0], [0.0, 0.0]], (True, False)),
+        ([[0.0, 1e-3], [1e-3, 1.0]], (False, False)),
+        ([[-1.0]], (False, False)),
+        ([[1e-8, 0.0], [0.0, 1e8]], (True, True)),
+        ([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 3.0]], (True, False)),
+        ([[1.0, 0.9, 0.9], [0.9, 1.0, -0.9], [0.9, -0.9, 1.0]], (False, False)),
+        ([], (True, True)),
+    ],
+)
+def test_is_positive(matrix: list[list[float]], expected: tuple[bool, bool]) -> None:
+    assert is_positive(matrix) == expected
