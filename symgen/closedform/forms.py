@@ -75,7 +75,7 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     """
     translator = make_translator(model, published_expressions(model))
     mechanics = derive_mechanics(model, translator)
-    points = generic_points(model, mechanics, 3)
+    points = generic_points(model, mechanics, 3) or generic_points(model, mechanics, 3, on_constraints=False)
     structure = derive_structure(model, mechanics, points)
     exact = Exact(model, mechanics, structure)
     speller = Speller(exact.ring, dynamic_names(model))

@@ -102,10 +102,10 @@ def parameter_values(model: Model) -> dict[str, mpf]:
     return values
 
 
-def generic_points(model: Model, mechanics: Mechanics, count: int) -> list[Point]:
-    """Points on V at the default parameters, random (but the same every time) in everything else.
+def generic_points(model: Model, mechanics: Mechanics, count: int, on_constraints: bool = True) -> list[Point]:
+    """Points at the default parameters, random (but the same every time) in everything else; on V by default.
 
-    Fewer than `count` when Newton's method does not reach V.
+    Fewer than `count` when Newton's method does not reach V or expressions have no real value.
     """
     mp.dps = DIGITS + 10
     source = random.Random(1)
@@ -123,7 +123,7 @@ def generic_points(model: Model, mechanics: Mechanics, count: int) -> list[Point
         for name in mechanics.ring.variables:
             values.setdefault(name, mpf(source.uniform(-2, 2)))
         try:
-            point = _onto_constraints(model, mechanics, values)
+            point = _onto_constraints(model, mechanics, values) if on_constraints else Point(mechanics, values)
         except (ValueError, ZeroDivisionError):
             continue
         if point is not None:

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from mpmath import mpf, nstr
 from sympy import ImmutableDenseMatrix
+from sympy.polys.rings import PolyElement
 
 from symgen.closedform.exact import Exact, TooLargeError
 from symgen.closedform.forms import ClosedForms, dynamic_names
@@ -84,14 +86,16 @@ class _Judge:
         self.ring = exact.ring
         self.speller = Speller(exact.ring, dynamic_names(model))
         self.manifold = Manifold(model, exact)
-        self._points: list[Point] | None = None
 
-    @property
+    @cached_property
     def points(self) -> list[Point]:
         """Points on V at 40 digits."""
-        if self._points is None:
-            self._points = generic_points(self.model, self.exact.mechanics, 3)
-        return self._points
+        return generic_points(self.model, self.exact.mechanics, 3)
+
+    @cached_property
+    def free_points(self) -> list[Point]:
+        """Points anywhere at 40 digits."""
+        return generic_points(self.model, self.exact.mechanics, 3, on_constraints=False)
 
     def verdict(self, position: int, item: Published) -> Verdict:
         """The verdict on the print, and on the corrected form where the print is wrong."""
@@ -190,7 +194,7 @@ class _Judge:
         rest = [value for value in values if value]
         if not rest:
             return _Finding(IDENTICAL, "")
-        if not self.ring.is_complete and all(self._vanishes(value, self.points) for value in rest):
+        if not self.ring.is_complete and all(self._vanishes(value, self.free_points) for value in rest):
             return _Finding(CHECKED, "; it contains what the ring does not hold and vanishes at 40 digits")
         projected = [value for value in (self.manifold.restrict(value) for value in rest) if value]
         if not projected:
@@ -285,8 +289,8 @@ class _Judge:
         if derived is None:
             return _Finding(UNDECIDED, f"no closed form of {item.quantity}")
         bottom = common_denominator(self.ring, [entry for row in derived for entry in row])
-        own = set(essential_factors(self.ring, bottom))
-        printed = set(essential_factors(self.ring, self.translator.value(where_zero).numerator))
+        own = self._zero_sets(bottom)
+        printed = self._zero_sets(self.translator.value(where_zero).numerator)
         if own == printed:
             zeros = self._list(own)
             return _Finding(IDENTICAL, f"the denominator vanishes with {zeros}" if own else "it vanishes nowhere")
@@ -297,7 +301,17 @@ class _Judge:
             parts.append(f"it does not exist where {self._list(own - printed)} vanishes")
         return _Finding(MISPRINTED, "; ".join(parts))
 
-    def _list(self, factors: set[object]) -> str:
+    def _zero_sets(self, p: PolyElement) -> set[PolyElement]:
+        """The factors that can vanish; on V a factor that is the same everywhere cannot."""
+        return {factor for factor in essential_factors(self.ring, p) if not self._constant_on_constraints(factor)}
+
+    def _constant_on_constraints(self, factor: PolyElement) -> bool:
+        if not self.exact.mechanics.residual or len(self.points) < 2:
+            return False
+        first, *others = (point.polynomial(factor) for point in self.points)
+        return bool(abs(first) > ZERO_AT_40_DIGITS) and all(abs(x - first) < ZERO_AT_40_DIGITS for x in others)
+
+    def _list(self, factors: set[PolyElement]) -> str:
         return " or ".join(sorted(str(self.speller.polynomial(self.ring.normal(f))) for f in factors))
 
 
@@ -309,7 +323,7 @@ def _shown(name: str) -> str:
     return name
 
 
-def _single(value: Quotient, monomial: tuple[int, ...]) -> object:
+def _single(value: Quotient, monomial: tuple[int, ...]) -> PolyElement:
     term = value.ring.polys.zero.copy()
     term[monomial] = value.numerator[monomial]
     return term
