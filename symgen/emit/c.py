@@ -9,7 +9,7 @@ from symgen.emit.about import STATUS_MEANING, count_lines, renaming_lines, shape
 from symgen.emit.comments import c_comment, c_comment_lines, indent_of
 from symgen.emit.defaults import default_values
 from symgen.emit.literals import c_literal
-from symgen.emit.locals import Names, all_statements, names_of, used_locals
+from symgen.emit.locals import Names, all_statements, array_arguments, names_of, used_locals
 from symgen.emit.quantities import meaning
 from symgen.emit.render import render
 from symgen.emit.statements import CStatements, c_type
@@ -142,7 +142,7 @@ def _kernel(
 ) -> FunctionView:
     scalar, output = c_type(program.scalar), names.outputs[kernel.name]
     size = len(kernel.outputs)
-    arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in kernel.arguments]
+    arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
     prototype = f"{model.name}_status {model.name}_{kernel.name}{_suffix(program)}({', '.join(arguments)})"
     comment = c_comment_lines(f"{meaning(kernel.name)}; {shape_text(kernel)}")
@@ -156,7 +156,7 @@ def _body(model: Model, program: Program, kernel: Kernel, names: Names, sincos: 
     loads = [load for load in kernel.loads if load.local in used]
     loaded = {load.argument for load in loads}
     scalar, output = c_type(program.scalar), names.outputs[kernel.name]
-    lines = [f"(void){name};" for name in (*(a.name for a in kernel.arguments), "p") if name not in loaded]
+    lines = [f"(void){name};" for name in (*(a.name for a in array_arguments(kernel)), "p") if name not in loaded]
     for load in loads:
         place = f"p->{names.members[load.member]}" if load.argument == "p" else f"{load.argument}[{load.index}]"
         lines.append(f"const {scalar} {names.locals[load.local]} = {place};")

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from symgen.emit.quantities import output_argument
-from symgen.ir.kernel import Block, Kernel, Local, Operand, Program, Statement
+from symgen.ir.kernel import Argument, Block, Kernel, Local, Operand, Program, Statement
 from symgen.model.model import Model
 from symgen.naming import c_identifiers
 
@@ -37,7 +37,7 @@ def names_of(model: Model, program: Program, own_names: Iterable[str] = ()) -> N
     outputs: dict[str, str] = {}
     for kernel in program.kernels:
         wanted = output_argument(kernel.name)
-        clash = wanted in users or wanted in {argument.name for argument in kernel.arguments}
+        clash = wanted in users or wanted in {argument.name for argument in array_arguments(kernel)}
         outputs[kernel.name] = f"{wanted}_out" if clash else wanted
     taken = own | KERNEL_NAMES | set(outputs.values())
     names = [*users, *(name for kernel in program.kernels for name in kernel_locals(kernel))]
@@ -49,6 +49,11 @@ def user_names(model: Model) -> tuple[str, ...]:
     coordinates = [name for c in model.coordinates for name in (c.name, c.rate, c.acceleration)]
     others = [item.name for group in (model.parameters, model.definitions, model.inputs) for item in group]
     return tuple(coordinates + others)
+
+
+def array_arguments(kernel: Kernel) -> tuple[Argument, ...]:
+    """The arguments of a signature: arrays of length 0 are left out."""
+    return tuple(argument for argument in kernel.arguments if argument.length)
 
 
 def all_statements(kernel: Kernel) -> Iterator[Statement]:

@@ -8,7 +8,7 @@ from symgen.emit.about import STATUS_MEANING, count_lines, symbol_lines, unit_te
 from symgen.emit.comments import docstring_lines, indent_of, one_line
 from symgen.emit.defaults import default_values
 from symgen.emit.literals import decimal_text
-from symgen.emit.locals import Names, all_statements, names_of, used_locals
+from symgen.emit.locals import Names, all_statements, array_arguments, names_of, used_locals
 from symgen.emit.quantities import meaning
 from symgen.emit.render import render
 from symgen.emit.statements import NumpyStatements
@@ -113,7 +113,7 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> FunctionView:
             place = f"np.float64(p.{load.member})" if load.argument == "p" else f"{load.argument}[..., {load.index}]"
             body.append(f"{names.locals[load.local]} = {place}")
     body += [line for block in kernel.blocks for line in printer.block(block)]
-    arguments = tuple((argument.name, argument.length) for argument in kernel.arguments)
+    arguments = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
     given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
     result = ", ".join(str(extent) for extent in kernel.shape)
     about = f"{meaning(kernel.name)[:1].upper()}{meaning(kernel.name)[1:]}: {given} -> (..., {result})."

@@ -18,6 +18,7 @@ import shipped
 
 from symgen.emit.defaults import default_values
 from symgen.emit.literals import round_to
+from symgen.emit.locals import array_arguments
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Scalar, Status
 
@@ -70,7 +71,7 @@ def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar
     for kernel in shipped.programs(name)[scalar].kernels:
         function = getattr(loaded, f"{name}_{kernel.name}{suffix}")
         for state, (status, wanted) in zip(states(name, scalar), expected(name, kernel.name, scalar), strict=True):
-            arrays = [(C_NUMBER[scalar] * a.length)(*state[a.name]) for a in kernel.arguments]
+            arrays = [(C_NUMBER[scalar] * a.length)(*state[a.name]) for a in array_arguments(kernel)]
             output = (C_NUMBER[scalar] * len(kernel.outputs))(*[7.0] * len(kernel.outputs))
             assert function(*arrays, ctypes.byref(p), output) == status, (kernel.name, state)
             wanted = wanted if status is Status.OK else [7.0] * len(kernel.outputs)
@@ -83,7 +84,7 @@ def test_python(tmp_path: Path, name: str) -> None:
     module = load(tmp_path / f"python/{name}.py")
     drawn = states(name, "float64")
     for kernel in shipped.programs(name)["float64"].kernels:
-        batch = getattr(module, kernel.name)(*(np.array([s[a.name] for s in drawn]) for a in kernel.arguments))
+        batch = getattr(module, kernel.name)(*(np.array([s[a.name] for s in drawn]) for a in array_arguments(kernel)))
         assert batch.shape == (len(drawn), *kernel.shape)
         for state, row, (status, wanted) in zip(drawn, batch, expected(name, kernel.name, "float64"), strict=True):
             if status is Status.OK:
@@ -91,7 +92,7 @@ def test_python(tmp_path: Path, name: str) -> None:
                 continue
             assert np.isnan(row).all(), (kernel.name, state)
             with pytest.raises(module.StateError) as caught:
-                getattr(module, kernel.name)(*(state[a.name] for a in kernel.arguments))
+                getattr(module, kernel.name)(*(state[a.name] for a in array_arguments(kernel)))
             assert caught.value.status == status, (kernel.name, state)
 
 
