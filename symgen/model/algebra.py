@@ -64,8 +64,8 @@ class Expansion:
                     return _constant(power(_value(polynomial), exponent))
                 if exponent.denominator != 1 or exponent < 0:
                     raise NotPolynomialError(f"has a rate to the power {exponent}", expression.span)
-                result = _constant(1.0)
-                for _ in range(min(int(exponent), HIGHEST_DEGREE + 1)):
+                result = polynomial if exponent > 0 else _constant(1.0)
+                for _ in range(min(int(exponent), HIGHEST_DEGREE + 1) - 1):
                     result = _product(result, polynomial)
                 return result
             case Call(function=function, arguments=arguments):

@@ -9,7 +9,7 @@ from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
 from symgen.model.names import counted
 
-SAMPLES = 4
+SAMPLES = 3
 
 # A configuration whose rank depends on which of these is taken for zero is too close to a singularity to tell.
 THRESHOLDS = (1e-9, 1e-5)
@@ -75,7 +75,8 @@ def _check_masses(
             )
             return
         basis = null_space(jacobian, len(q))
-        reduced = [[_form(mass, a, b) for b in basis] for a in basis]
+        images = [[sum(a * b for a, b in zip(row, vector, strict=True)) for row in mass] for vector in basis]
+        reduced = [[sum(a * b for a, b in zip(image, vector, strict=True)) for vector in basis] for image in images]
         definite_somewhere |= is_positive(reduced)[1]
     if not definite_somewhere:
         yield Mistake(
@@ -107,7 +108,3 @@ def _check_independent(
             "choose other `independent_velocities`",
             span,
         )
-
-
-def _form(matrix: Rows, left: list[float], right: list[float]) -> float:
-    return sum(a * value * b for a, row in zip(left, matrix, strict=True) for value, b in zip(row, right, strict=True))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 
-from symgen.model.algebra import Expansion
+from symgen.model.algebra import Expansion, Polynomial
 from symgen.model.dense import Rows, solve_definite
 from symgen.model.expression import Expression
 from symgen.model.gradient import Gradients
@@ -15,6 +15,8 @@ from symgen.model.walk import evaluate
 SEED = 20140211
 STARTS = 40
 STEPS = 80
+POINTS = 2
+ATTEMPTS = 30
 RESIDUAL = 1e-11
 
 
@@ -35,11 +37,30 @@ class Mechanics:
         self._index = {coordinate.name: index for index, coordinate in enumerate(coordinates)}
         self._rates = frozenset(coordinate.rate for coordinate in coordinates)
         self._parameters = parameters
+        self._expanded: dict[int, tuple[Expression, list[Polynomial]]] = {}
         self.defaults = default_values(parameters)
 
     def expansion(self, q: list[float], parameters: dict[str, float]) -> Expansion:
         """Polynomials in the rates at a configuration."""
         return Expansion({**parameters, **self._named(q)}, self._rates, self._definitions)
+
+    def polynomials(self, expression: Expression) -> list[Polynomial]:
+        """The expression in the rates at a few random points of its domain; NotPolynomialError where it is none."""
+        # Keyed by identity: the trees of a model live as long as this object, and comparing them costs a walk.
+        if id(expression) not in self._expanded:
+            self._expanded[id(expression)] = (expression, list(self._expansions(expression)))
+        return self._expanded[id(expression)][1]
+
+    def _expansions(self, expression: Expression) -> Iterator[Polynomial]:
+        found = 0
+        for q, parameters in self.anywhere(ATTEMPTS):
+            try:
+                yield self.expansion(q, parameters).of(expression)
+            except (ArithmeticError, ValueError):
+                continue
+            found += 1
+            if found == POINTS:
+                return
 
     def mass_matrix(self, q: list[float]) -> Rows:
         """G, n x n."""

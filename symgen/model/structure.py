@@ -7,11 +7,8 @@ from collections.abc import Iterable, Iterator
 from symgen.diagnostics import Mistake, Notice
 from symgen.model.algebra import BEYOND, RELATIVE_ZERO, Monomial, NotPolynomialError, Polynomial, is_zero
 from symgen.model.expression import Binary, Expression, Negation
-from symgen.model.mechanics import Mechanics
+from symgen.model.mechanics import ATTEMPTS, POINTS, Mechanics
 from symgen.model.model import ConstraintRow
-
-POINTS = 3
-ATTEMPTS = 30
 
 
 def check_kinetic_energy(mechanics: Mechanics, kinetic: Expression) -> Iterator[Mistake]:
@@ -19,7 +16,7 @@ def check_kinetic_energy(mechanics: Mechanics, kinetic: Expression) -> Iterator[
     remedy = "write T as a sum of products of two rates with coefficients of coordinates and parameters"
     mistakes = list(_check_degree(mechanics, kinetic, 2, "the kinetic energy is not quadratic in the rates", remedy))
     yield from mistakes
-    if not mistakes and _is_zero(_polynomials(mechanics, kinetic)):
+    if not mistakes and _is_zero(mechanics.polynomials(kinetic)):
         yield Mistake("the kinetic energy is zero", "write the kinetic energy of the masses", kinetic.span)
 
 
@@ -31,7 +28,7 @@ def check_nonholonomic(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mis
     )
     mistakes = list(_check_degree(mechanics, row.expression, 1, message, remedy))
     yield from mistakes
-    if not mistakes and _is_zero(_polynomials(mechanics, row.expression)):
+    if not mistakes and _is_zero(mechanics.polynomials(row.expression)):
         yield Notice(f"the constraint `{row.name}` is zero for all motions and says nothing", row.span)
 
 
@@ -57,7 +54,7 @@ def check_geometric(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mistak
 def check_domain(mechanics: Mechanics, expression: Expression, what: str) -> Iterator[Mistake]:
     """The expression must have a value somewhere in the ranges of coordinates and parameters."""
     try:
-        exists = next(_polynomials(mechanics, expression), None) is not None
+        exists = bool(mechanics.polynomials(expression))
     except NotPolynomialError:
         return
     if not exists:
@@ -87,7 +84,7 @@ def _check_degree(
 
 
 def _wrong_term(mechanics: Mechanics, expression: Expression, degree: int) -> Monomial | None:
-    found = (_wrong_monomial(polynomial, degree) for polynomial in _polynomials(mechanics, expression))
+    found = (_wrong_monomial(polynomial, degree) for polynomial in mechanics.polynomials(expression))
     return next((monomial for monomial in found if monomial is not None), None)
 
 
@@ -111,19 +108,6 @@ def _summands(expression: Expression) -> Iterable[Expression]:
             yield from _summands(operand)
         case _:
             yield expression
-
-
-def _polynomials(mechanics: Mechanics, expression: Expression) -> Iterator[Polynomial]:
-    """The expansion at a few random points of its domain."""
-    found = 0
-    for q, parameters in mechanics.anywhere(ATTEMPTS):
-        try:
-            yield mechanics.expansion(q, parameters).of(expression)
-        except (ArithmeticError, ValueError):
-            continue
-        found += 1
-        if found == POINTS:
-            return
 
 
 def _values(
