@@ -34,7 +34,7 @@ ALL_THREE = {
     "projected_control_pseudoinverse",
     "inverse_dynamics",
 }
-STATES = 3
+STATES = 2
 TOLERANCE = 1e-9
 REGULAR = 1e-3  # of both measures of `singularity`: rounding is not what these tests are about
 State = dict[str, NDArray[np.float64]]
