@@ -110,6 +110,10 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
     """
     if not p or p.is_ground:
         return p, ()
+    if len(p) == 1:
+        ((monomial, coefficient),) = p.items()
+        single = [(ring.generator(i), e) for i, e in enumerate(monomial) if e]
+        return ring.polys.ground_new(coefficient), tuple(sorted(single, key=lambda item: _order(item[0])))
     content = common_factor(ring, [p])
     rest = divide(ring, p, content)
     constant = ring.one
