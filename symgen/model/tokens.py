@@ -14,6 +14,7 @@ _TOKEN = re.compile(
     r"|(?P<operator>\*\*|//|[-+*/(),.])|(?P<end>$))",
     re.ASCII,
 )
+_SPACE = re.compile(r"\s*", re.ASCII)
 _LOOKALIKES = {
     "−": "-", "–": "-", "—": "-", "‐": "-", "·": "*", "×": "*", "∙": "*", "⋅": "*", "÷": "/", "∕": "/", "²": "**2",
     "³": "**3", "½": "1/2", "π": "pi", "（": "(", "）": ")", "，": ",", "∗": "*", "√": "sqrt( )",
@@ -57,9 +58,8 @@ def tokenize(text: str) -> list[Token]:
     while True:
         match = _TOKEN.match(text, position)
         if match is None:
-            while text[position].isspace():
-                position += 1
-            raise _foreign(text, position)
+            start = _SPACE.match(text, position)
+            raise _foreign(text, start.end() if start is not None else position)
         kind = match.lastgroup
         assert kind is not None
         offset = match.start(kind)
