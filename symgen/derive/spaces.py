@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Protocol
 
 from symgen.derive.exterior import ActuationForms, RowForms
-from symgen.derive.guards import Guard, magnitude
+from symgen.derive.guards import Guard
 from symgen.graph.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
@@ -31,6 +31,10 @@ class NullSpace(Protocol):
     @property
     def guards(self) -> tuple[Guard, ...]:
         """The denominators that vanish where the rank of B drops."""
+
+    @property
+    def size(self) -> Scalar:
+        """What det(B B^T) is measured by: the product of the squared lengths of the rows (Hadamard's bound)."""
 
     @property
     def projector(self) -> Matrix:
@@ -79,7 +83,12 @@ class MinorSpace:
     def guards(self) -> tuple[Guard, ...]:
         if self.rank == 0:
             return ()
-        return (Guard(Status.CONSTRAINT_RANK, self.forms.square, 2),)
+        return (Guard(Status.CONSTRAINT_RANK, self.forms.square, 2, scale=self.size),)
+
+    @cached_property
+    def size(self) -> Scalar:
+        squares = [dot(self.graph, row, row) for row in self.rows]
+        return self.graph.sum(self.graph.product(squares[k] for k in subset) for subset in self.forms.subsets)
 
     @cached_property
     def projector(self) -> Matrix:
@@ -160,14 +169,18 @@ class HouseholderSpace:
 
     @cached_property
     def guards(self) -> tuple[Guard, ...]:
-        # reflections keep lengths: the product of the pivots is det(B B^T) <= the product of the rows' squared lengths
+        # the product of the pivots is det(B B^T)
         graph, pivots = self.graph, self.reflections.pivots
-        lengths = magnitude(graph, [dot(graph, row, row) for row in self.rows])
         if self.rank > LONGEST_PRODUCT:
             # quotients stay in the range of a float32 however many rows there are
+            lengths = [dot(graph, row, row) for row in self.rows]
             quotients = [pivot / length for pivot, length in zip(pivots, lengths, strict=True)]
             return (Guard(Status.CONSTRAINT_RANK, graph.product(quotients), 2, scale=graph.one),)
-        return (Guard(Status.CONSTRAINT_RANK, graph.product(pivots), 2, scale=graph.product(lengths)),)
+        return (Guard(Status.CONSTRAINT_RANK, graph.product(pivots), 2, scale=self.size),)
+
+    @cached_property
+    def size(self) -> Scalar:
+        return self.graph.product(dot(self.graph, row, row) for row in self.rows)
 
     @cached_property
     def basis(self) -> Matrix:

@@ -6,7 +6,7 @@ Statements come depth first, operands just before the operation that needs them,
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from symgen.derive.catalogue import Derived
@@ -102,7 +102,11 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, scalar: Sca
     # outputs come last so that a denominator's statements stand before its test
     statements = writer.write(regular[len(outputs) :]) + writer.write(outputs)
     late, late_checks = writer.late_angles(regular, scalar)
-    checks = (*late_checks, *(writer.check(test, image) for test in tests))
+    rank_checks = tuple(writer.check(test, image) for test in tests)
+    if rank_checks:
+        # an angle that comes out of a singular step is no angle: the drop of rank is the cause
+        late_checks = tuple(replace(check, first=Block((), rank_checks)) for check in late_checks)
+    checks = (*late_checks, *rank_checks)
     sizes = {"q": mechanics.n, "qd": mechanics.n, "qdd": mechanics.n, "u": mechanics.m}
     return Kernel(
         name=derived.name,
