@@ -1,4 +1,4 @@
-"""Breaks long formulas into lines: at relations first, then between terms, then between factors, last inside parentheses.
+"""Breaks long formulas into lines: at relations first, then between terms, then factors, last inside parentheses.
 
 Widths are estimates, in em for pages and in characters for the terminal; a line is never planned wider than its room,
 except where a single letter or number is.
@@ -81,7 +81,7 @@ def _fitting(pieces: list[Piece], measure: Measure, space: float) -> int:
 
 
 def _pieces(node: Layout, first: int, level: int, measure: Measure, room: float) -> list[Piece]:
-    """The node taken apart as far as its width asks for: the first piece has depth `first`, the others `level` or more."""
+    """The node taken apart as far as needed: the first piece has depth `first`, the others `level` or more."""
     if level and measure(node) <= WHOLE * room:
         return [Piece(node, first)]
     match node:

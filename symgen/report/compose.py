@@ -5,7 +5,7 @@ from __future__ import annotations
 from symgen.report.content import ReportInput
 from symgen.report.context import Context, sentence, text_of
 from symgen.report.document import Document, Section, Text
-from symgen.report.prose import delta_diff, equals, number, say, small_m, small_n, small_r
+from symgen.report.prose import say
 from symgen.report.section_bookkeeping import omissions, operations
 from symgen.report.section_equations import equations_of_motion
 from symgen.report.section_freedom import freedom
@@ -38,7 +38,8 @@ def compose(report_input: ReportInput) -> Document:
         subtitle=f"Inverse dynamics of the model {model.name}",
         summary=_summary(context),
         sections=tuple(sections),
-        colophon=f"Derived by symgen {report_input.version}. Numbers with the word paper refer to A. Müller, Motion equations in redundant "
+        colophon=f"Derived by symgen {report_input.version}. Numbers with the word paper refer to A. Müller, "
+        "Motion equations in redundant "
         "coordinates with application to inverse dynamics of constrained mechanical systems.",
     )
 
@@ -47,11 +48,19 @@ def _summary(context: Context) -> Text:
     model = context.model
     source = f" Source: {sentence(text_of(model.source))}" if model.source else ""
     return say(
-        "The motion equations of this system are derived in redundant coordinates, without Lagrange multipliers and without a choice of "
-        "independent coordinates, and solved for the inputs: {} coordinates, {} constraints, {} independent velocities, {} inputs.{}",
-        equals(small_n, number(model.n)),
-        equals(small_r, number(model.r)),
-        equals(delta_diff, number(context.structure.differential_freedom)),
-        equals(small_m, number(model.m)),
+        "The motion equations of this system are derived in redundant coordinates, without Lagrange multipliers and "
+        "without a choice of "
+        "independent coordinates, {}: {}, {}, {}, {}.{}",
+        "and solved for the inputs" if model.m else "in closed form where that is short",
+        _counted(model.n, "coordinate"),
+        _counted(model.r, "constraint"),
+        _counted(context.structure.differential_freedom, "independent velocity"),
+        _counted(model.m, "input"),
         source,
     )
+
+
+def _counted(count: int, noun: str) -> str:
+    """1 input, 2 inputs, no inputs."""
+    plural = noun.removesuffix("y") + "ies" if noun.endswith("y") else noun + "s"
+    return f"{count or 'no'} {noun if count == 1 else plural}"

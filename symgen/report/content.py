@@ -22,7 +22,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class ErrorRow:
-    """Errors of one kernel of one target over all states, in units of d + eps |y*|; `relative` is the largest over |y*|."""
+    """Errors of one kernel on one target, in units of d + eps |y*|; `relative` is the largest over |y*|."""
 
     quantity: str
     target: str

@@ -5,15 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from symgen.model.model import Model
 from symgen.closedform.forms import ClosedForm
+from symgen.model.model import Model
 from symgen.report.content import ReportInput
 from symgen.report.document import Block, Formula, Paragraph, Reference, Text
-from symgen.report.from_sympy import ACCELERATION, COORDINATE, PARAMETER, RATE, SympyLayout
-from symgen.report.layout import Layout, equation
+from symgen.report.from_sympy import (
+    ACCELERATION,
+    COORDINATE,
+    PARAMETER,
+    RATE,
+    SympyLayout,
+)
+from symgen.report.layout import Layout, equation, size
 from symgen.report.matrices import Denominators, matrix_blocks, packed
 from symgen.report.names import name_layout
 from symgen.report.prose import SYMBOLS, paragraph, say
+
+SHORT = 120
+"""Nodes up to which a matrix is printed in a short report."""
 
 
 def name_order(model: Model) -> Mapping[str, tuple[int, int]]:
@@ -63,6 +72,8 @@ class Context:
         if form is None:
             return ()
         shown = SYMBOLS[quantity] if symbol is None else symbol
+        if not self.full and form.matrix is not None and not self._short(form):
+            return (paragraph("{} is long and left out of this short report.", shown),)
         blocks: list[Block] = []
         if form.intermediates:
             blocks += self._intermediates(form, f"with_{quantity}")
@@ -72,14 +83,20 @@ class Context:
             blocks.append(_remark(shown, form.note, form.matrix is not None))
         return tuple(blocks)
 
+    def _short(self, form: ClosedForm) -> bool:
+        """Whether a form is printed in a short report."""
+        return not form.intermediates and size(self.layout.matrix(form.matrix)) <= SHORT
+
     def _intermediates(self, form: ClosedForm, label: str) -> list[Block]:
         """The definitions of the names a form uses, those of earlier forms by reference."""
         new = [(symbol, value) for symbol, value in form.intermediates if symbol.name not in self._defined]
-        earlier = sorted({self._defined[symbol.name] for symbol, _ in form.intermediates if symbol.name in self._defined})
+        earlier = sorted(
+            {self._defined[symbol.name] for symbol, _ in form.intermediates if symbol.name in self._defined}
+        )
         self._defined |= {symbol.name: label for symbol, _ in new}
         known = say(" and".join([" {}"] * len(earlier)), *map(Reference, earlier))
         if not new:
-            return [Paragraph((*say("In the intermediate expressions"), *known, "."))]
+            return [Paragraph((*say("With the intermediate expressions of"), *known))]
         opening = "With the intermediate expressions" if not earlier else "With the intermediate expressions of"
         text: Text = (opening, *known, " and") if earlier else (opening,)
         equations = (equation(name_layout(s.name), self.layout.expression(value)) for s, value in new)
@@ -90,9 +107,12 @@ def _remark(symbol: Layout, note: str, printed: bool) -> Block:
     """Why a form is given in named parts or not at all; the formula after the semicolon stands in the text already."""
     reason = note.split(";")[0].strip()
     if printed:
-        return paragraph("Written out without names it would be too long ({}).", reason.removeprefix("not written out: "))
-    if reason.startswith("not written out: "):
-        return paragraph("{} is evaluated by this formula and not written out: {}.", symbol, reason.removeprefix("not written out: "))
+        return paragraph(
+            "Written out without names it would be too long ({}).", reason.removeprefix("not written out: ")
+        )
+    if reason.startswith("not written out"):
+        why = reason.removeprefix("not written out").lstrip(":, ")
+        return paragraph(f"{{}} is not written out{f' ({why})' if why and 'N_B' not in why else ''}.", symbol)
     return paragraph("{}", sentence(note))
 
 

@@ -2,8 +2,28 @@
 
 from __future__ import annotations
 
-from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
-from symgen.report.layout import Layout, Letter, Numeral, Root, Sum, minus, signed, total
+from fractions import Fraction
+
+from symgen.model.expression import (
+    Binary,
+    Call,
+    Expression,
+    Name,
+    Negation,
+    Number,
+    Pi,
+    Power,
+)
+from symgen.report.layout import (
+    Layout,
+    Letter,
+    Numeral,
+    Root,
+    Sum,
+    minus,
+    signed,
+    total,
+)
 from symgen.report.names import name_layout
 from symgen.report.numerals import rational_layout
 from symgen.report.setting import call, power, product, quotient
@@ -22,12 +42,11 @@ def expression_layout(expression: Expression) -> Layout:
             return minus(expression_layout(operand))
         case Power(base=base, exponent=exponent):
             inside = expression_layout(base)
-            if exponent.denominator == 2 and exponent.numerator == 1:
+            if exponent == Fraction(1, 2):
                 return Root(inside)
             if exponent < 0:
-                over = inside if exponent == -1 else power(inside, rational_layout(-exponent))
-                return quotient(Numeral("1"), over)
-            return power(inside, rational_layout(exponent))
+                return quotient(Numeral("1"), inside if exponent == -1 else power(inside, Numeral(str(-exponent))))
+            return power(inside, Numeral(str(exponent)))
         case Call(function=function, arguments=arguments):
             return call(function, tuple(expression_layout(argument) for argument in arguments))
         case Binary(operator="+"):

@@ -14,7 +14,17 @@ import sympy
 from sympy.core.function import AppliedUndef
 
 from symgen.diagnostics import SymgenBug
-from symgen.report.layout import Array, Fraction, Layout, Letter, Numeral, Root, Sum, minus, signed
+from symgen.report.layout import (
+    Array,
+    Fraction,
+    Layout,
+    Letter,
+    Numeral,
+    Root,
+    Sum,
+    minus,
+    signed,
+)
 from symgen.report.names import name_layout
 from symgen.report.numerals import rational_layout
 from symgen.report.setting import call, power, product
@@ -90,10 +100,9 @@ class SympyLayout:
         inside = self.expression(base)
         if exponent == 1:
             return inside
-        if exponent.is_Rational and exponent.q == 2:
-            root = Root(inside)
-            return root if exponent.p == 1 else power(root, Numeral(str(exponent.p)))
-        return power(inside, self.expression(exponent))
+        if exponent == sympy.S.Half:
+            return Root(inside)
+        return power(inside, Numeral(str(exponent)) if exponent.is_Rational else self.expression(exponent))
 
     def _factor_key(self, pair: tuple[Any, Any]) -> Key:
         base, exponent = pair

@@ -52,9 +52,7 @@ class _HtmlView:
         self.summary = self._text(document.summary)
         self.colophon = plain(document.colophon)
         numbered = list(zip(document.section_numbers(), document.sections, strict=True))
-        self.contents = [
-            (number, self._text(section.title)) for number, section in numbered if section.level == 1
-        ]
+        self.contents = [(number, self._text(section.title)) for number, section in numbered if section.level == 1]
         self.sections = [self._section(number, section) for number, section in numbered]
 
     def _section(self, number: str, section: Section) -> str:
@@ -100,7 +98,9 @@ class _HtmlView:
         for node in equations:
             for position, line in enumerate(break_lines(node, page_width, ROOM)):
                 more = " more" if position else ""
-                lines.append(f'<div class="line{more}"><math display="inline" displaystyle="true">{mathml(line)}</math></div>')
+                lines.append(
+                    f'<div class="line{more}"><math display="inline" displaystyle="true">{mathml(line)}</math></div>'
+                )
         number = "" if label is None else f'<span class="number">({self._numbers[label]})</span>'
         anchor = "" if label is None else f' id="e{self._numbers[label]}"'
         return f'<div class="formula"{anchor}><div class="lines">\n' + "\n".join(lines) + f"\n</div>{number}</div>"

@@ -125,8 +125,9 @@ class _LatexView:
         rows = "\n".join(" & ".join(self._text(cell) for cell in row) + r" \\" for row in table.rows)
         caption = f"\\noindent {self._text(table.caption)}\n\n" if table.caption else ""
         return (
-            f"{caption}\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n\\hline\n{head} \\\\\n\\hline\n\\endhead\n"
-            f"{rows}\n\\hline\n\\end{{longtable}}"
+            f"{caption}{{\\small\n\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n\\hline\n{head} "
+            f"\\\\\n\\hline\n\\endhead\n"
+            f"{rows}\n\\hline\n\\end{{longtable}}}}"
         )
 
 
@@ -138,7 +139,8 @@ def _columns(table: Table) -> list[str]:
     shares = sum(table.widths)
     left = max(LINE - taken - COLUMN_GAP * sum(share > 0 for share in table.widths), 12.0)
     return [
-        rf">{{\raggedright\arraybackslash}}p{{{left * share / shares:.1f}em}}" if share else "l" for share in table.widths
+        rf">{{\raggedright\arraybackslash}}p{{{left * share / shares:.1f}em}}" if share else "l"
+        for share in table.widths
     ]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from symgen.report.layout import (
     CLOSING,
     Accent,
@@ -34,9 +36,19 @@ GREEK: dict[str, str] = {
     "Ξ": r"\Xi", "Π": r"\Pi", "Σ": r"\Sigma", "Υ": r"\Upsilon", "Φ": r"\Phi", "Ψ": r"\Psi", "Ω": r"\Omega",
     "∂": r"\partial",
 }  # fmt: skip
-RELATIONS = {"=": "=", "≠": r"\neq", "≡": r"\equiv", "≤": r"\leq", "≥": r"\geq", "<": "<", ">": ">", "∈": r"\in", ":=": ":="}
+RELATIONS = {
+    "=": "=",
+    "≠": r"\neq",
+    "≡": r"\equiv",
+    "≤": r"\leq",
+    "≥": r"\geq",
+    "<": "<",
+    ">": ">",
+    "∈": r"\in",
+    ":=": ":=",
+}
 FUNCTIONS = frozenset(
-    "sin cos tan arcsin arccos arctan sinh cosh tanh ln exp det dim ker".split()
+    ["sin", "cos", "tan", "arcsin", "arccos", "arctan", "sinh", "cosh", "tanh", "ln", "exp", "det", "dim", "ker"]
 )
 MARKS = {"dot": r"\dot", "ddot": r"\ddot", "bar": r"\bar", "tilde": r"\tilde"}
 SEPARATORS = {"": " ", "thin": r"\,", "point": r" \cdot "}
@@ -81,16 +93,20 @@ def latex_math(node: Layout) -> str:
             return f"{latex_math(function)} {latex_math(argument)}"
         case Product(factors=factors):
             parts = [latex_math(factors[0])]
-            for left, right in zip(factors, factors[1:], strict=False):
-                parts += (SEPARATORS[separator(left, right)], latex_math(right))
+            for left, right in pairwise(factors):
+                kind = separator(left, right)
+                parts += (
+                    " " if kind == "thin" and isinstance(right, Application) else SEPARATORS[kind],
+                    latex_math(right),
+                )
             return "".join(parts)
         case Sum(terms=terms):
             return " ".join(_term(*term, first=k == 0) for k, term in enumerate(terms))
         case Row(pieces=pieces):
             return "".join(latex_math(piece) for piece in pieces)
         case Array(rows=rows):
-            body = r" \\ ".join(" & ".join(latex_math(entry) for entry in row) for row in rows)
-            return rf"\begin{{pmatrix}} {body} \end{{pmatrix}}"
+            lines = r" \\ ".join(" & ".join(latex_math(entry) for entry in row) for row in rows)
+            return rf"\begin{{pmatrix}} {lines} \end{{pmatrix}}"
 
 
 def _letter(letter: Letter) -> str:

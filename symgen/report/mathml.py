@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html import escape
+from itertools import pairwise
 
 from symgen.report.layout import (
     CLOSING,
@@ -81,7 +82,7 @@ def mathml(node: Layout) -> str:
             return f"<mrow>{mathml(function)}<mo>\u2061</mo>{air}{mathml(argument)}</mrow>"
         case Product(factors=factors):
             parts = [mathml(factors[0])]
-            for left, right in zip(factors, factors[1:], strict=False):
+            for left, right in pairwise(factors):
                 parts += (SEPARATORS[separator(left, right)], mathml(right))
             return f"<mrow>{''.join(parts)}</mrow>"
         case Sum(terms=terms):

@@ -10,7 +10,22 @@ import sympy
 
 from symgen.report.document import Block, Formula
 from symgen.report.from_sympy import SympyLayout
-from symgen.report.layout import Accent, Array, Fenced, Fraction, Gap, Layout, Letter, Numeral, Product, Punctuation, Row, Scripts, equation, size
+from symgen.report.layout import (
+    Accent,
+    Array,
+    Fenced,
+    Fraction,
+    Gap,
+    Layout,
+    Letter,
+    Numeral,
+    Product,
+    Punctuation,
+    Row,
+    Scripts,
+    equation,
+    size,
+)
 from symgen.report.measure import page_width
 from symgen.report.names import name_layout
 from symgen.report.prose import paragraph

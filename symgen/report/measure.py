@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from symgen.report.layout import (
     Accent,
     Application,
@@ -65,7 +67,7 @@ def page_width(node: Layout) -> float:
         case Application(function=function, argument=argument):
             return page_width(function) + page_width(argument) + (0.05 if isinstance(argument, Fenced) else 0.2)
         case Product(factors=factors):
-            gaps = sum(SEPARATION[separator(a, b)] for a, b in zip(factors, factors[1:], strict=False))
+            gaps = sum(SEPARATION[separator(a, b)] for a, b in pairwise(factors))
             return sum(page_width(factor) for factor in factors) + gaps
         case Sum(terms=terms):
             signs = OPERATOR * (len(terms) - 1) + (0.8 if terms[0][0] == "-" else 0.0)

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from functools import cache
 from typing import Literal
 
-from symgen.report.layout import Accent, Layout, Letter, Numeral, Punctuation, Row, Scripts
+from symgen.report.layout import (
+    Accent,
+    Layout,
+    Letter,
+    Numeral,
+    Punctuation,
+    Row,
+    Scripts,
+)
 
 GREEK: dict[str, str] = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ",
@@ -28,7 +36,7 @@ def _word(text: str) -> Layout:
     return Letter(text, "italic" if len(text) == 1 else "upright")
 
 
-@lru_cache(maxsize=None)
+@cache
 def name_layout(name: str) -> Layout:
     """A declared name as it is set: dots for rates and accelerations, parts after underscores as indices."""
     for suffix, mark in RATE_MARKS:

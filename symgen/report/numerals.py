@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction as Rational
 
-from symgen.report.layout import Fraction, Layout, Numeral, minus
+from symgen.report.layout import Fraction, Layout, Numeral, Product, Scripts, minus
 
 LARGEST_FRACTION_DENOMINATOR = 12
 DECIMAL_PLACES = 9
@@ -22,8 +22,9 @@ def decimal_text(value: Rational) -> str | None:
 
 
 def rational_text(value: Rational) -> str:
-    """A rational number on one line of plain text."""
-    return decimal_text(value) or str(value)
+    """A rational number on one line of plain text; decimals in scientific notation where that is exact and shorter."""
+    scientific = f"{float(value):.15g}"
+    return decimal_text(value) or (scientific if Rational(scientific) == value else str(value))
 
 
 def rational_layout(value: Rational, prefer_decimal: bool = False) -> Layout:
@@ -35,4 +36,8 @@ def rational_layout(value: Rational, prefer_decimal: bool = False) -> Layout:
     text = decimal_text(value)
     if text is not None and (prefer_decimal or value.denominator > LARGEST_FRACTION_DENOMINATOR):
         return Numeral(text)
+    mantissa, _, exponent = f"{float(value):.15g}".partition("e")
+    if exponent and Rational(f"{mantissa}e{exponent}") == value:
+        power = Scripts(Numeral("10"), None, minus(Numeral(str(-int(exponent)))))
+        return power if mantissa == "1" else Product((Numeral(mantissa), power))
     return Fraction(Numeral(str(value.numerator)), Numeral(str(value.denominator)))

@@ -21,7 +21,7 @@ from symgen.report.document import (
     Text,
 )
 from symgen.report.html import svg_element
-from symgen.report.layout import Layout
+from symgen.report.layout import Layout, tall
 from symgen.report.measure import page_width
 from symgen.report.typst_math import quoted, typst_math
 
@@ -102,9 +102,14 @@ class _TypstView:
             return f"#formula(none, {', '.join(lines)})"
         return f"#formula({quoted(self._numbers[label])}, {', '.join(lines)})"
 
+    def _cell(self, cell: Text) -> str:
+        """A cell of a table, with more room where it holds a fraction."""
+        high = any(isinstance(part, InlineMath) and tall(part.node) for part in cell)
+        return f"table.cell(inset: (x: 0pt, y: 6pt))[{self._text(cell)}]" if high else f"[{self._text(cell)}]"
+
     def _table(self, table: Table) -> str:
         columns = ", ".join(f"{width}fr" if width else "auto" for width in table.widths)
         head = ", ".join(f"[{self._text(heading)}]" for heading in table.headings)
-        rows = ",\n  ".join(", ".join(f"[{self._text(cell)}]" for cell in row) for row in table.rows)
+        rows = ",\n  ".join(", ".join(self._cell(cell) for cell in row) for row in table.rows)
         caption = f"{self._text(table.caption)}\n" if table.caption else ""
         return f"{caption}#listing(({columns},), ({head},),\n  {rows})"

@@ -4,8 +4,29 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-from symgen.report.document import Emphasis, Inline, InlineCode, InlineMath, Paragraph, Reference, Text
-from symgen.report.layout import Accent, Fenced, Fraction, Layout, Letter, Numeral, Product, Punctuation, Relation, Row, Scripts, Sum
+from symgen.report.document import (
+    Emphasis,
+    Inline,
+    InlineCode,
+    InlineMath,
+    Paragraph,
+    Reference,
+    Text,
+)
+from symgen.report.layout import (
+    Accent,
+    Fenced,
+    Fraction,
+    Layout,
+    Letter,
+    Numeral,
+    Product,
+    Punctuation,
+    Relation,
+    Row,
+    Scripts,
+    Sum,
+)
 
 Slot: TypeAlias = str | Layout | InlineCode | Emphasis | Reference
 

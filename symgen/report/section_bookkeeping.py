@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from symgen.model.quantities import QUANTITIES
 from symgen.report.context import Context, sentence
-from symgen.report.document import Block, InlineCode, InlineMath, Items, Section, Table, Text
+from symgen.report.document import (
+    Block,
+    InlineCode,
+    InlineMath,
+    Items,
+    Section,
+    Table,
+    Text,
+)
 from symgen.report.prose import SYMBOLS, paragraph, say
 
 KINDS = {"add": "+ −", "mul": "×", "div": "÷", "sqrt": "√", "sincos": "sincos", "other": "other"}
@@ -41,7 +49,8 @@ def operations(context: Context) -> Section:
     )
     headings = (say("Symbol"), say("Kernel"), *(say("{}", KINDS[kind]) for kind in kinds), say("Total"))
     intro = (
-        "Operations of the generated straight-line code, counted one by one; the sine and cosine of an angle count as one "
+        "Operations of the generated straight-line code, counted one by one; the sine and cosine of an angle count "
+        "as one "
         "operation. Each kernel is complete in itself: it evaluates whatever it needs from its arguments."
     )
     return Section(say("Operation counts"), (paragraph(intro), Table(headings, rows, (1, 0, *(0 for _ in kinds), 0))))

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from symgen.report.context import Context
 from symgen.report.document import Block, Formula, Reference, Section
-from symgen.report.layout import Accent, Fenced, Fraction, Layout, Letter, Product, Row, Scripts, Sum, equation
+from symgen.report.layout import (
+    Accent,
+    Fenced,
+    Fraction,
+    Layout,
+    Letter,
+    Product,
+    Row,
+    Scripts,
+    Sum,
+    equation,
+)
 from symgen.report.prose import (
     HALF,
     TWO,
@@ -42,7 +53,7 @@ def equations_of_motion(context: Context) -> Section:
     names: list[Slot] = [G, C, Q]
     pattern = "Here {} is the mass matrix, {} the Coriolis matrix and {} the vector of potential forces."
     if context.model.applied_forces:
-        pattern = "Here {} is the mass matrix, {} the Coriolis matrix, {} the vector of potential forces and {} that of the applied forces."
+        pattern = "Here {} is the mass matrix, {} the Coriolis matrix, {} are the potential and {} the applied forces."
         names.append(Qa)
     blocks: list[Block] = [
         paragraph("Lagrange's equations of the first kind, paper (2), read in matrix form, paper (3),"),
@@ -87,7 +98,10 @@ def _coriolis(context: Context) -> list[Block]:
     if context.vanishes("coriolis_matrix"):
         return [paragraph("The mass matrix is constant; therefore {}.", equals(C, ZERO))]
     a, b, c = Letter("a"), Letter("b"), Letter("c")
-    derivatives = [_partial(Scripts(G, listed(pair)), Scripts(Letter("q"), None, by)) for pair, by in (((a, b), c), ((a, c), b), ((b, c), a))]
+    derivatives = [
+        _partial(Scripts(G, listed(pair)), Scripts(Letter("q"), None, by))
+        for pair, by in (((a, b), c), ((a, c), b), ((b, c), a))
+    ]
     bracket = Sum((("+", derivatives[0]), ("+", derivatives[1]), ("-", derivatives[2])))
     rate = Scripts(Accent(Letter("q"), "dot"), None, c)
     christoffel = equation(Scripts(C, listed((a, b))), Product((HALF, Fenced(bracket), rate)))
@@ -124,11 +138,15 @@ def _jacobian(context: Context) -> list[Block]:
     }[frozenset(kinds)]
     blocks: list[Block] = [paragraph(pattern, *references, velocity), *context.quantity("constraint_jacobian", "B")]
     if context.vanishes("constraint_jacobian_dot"):
-        blocks.append(paragraph("{} is constant, so that accelerations satisfy {}.", B, equals(juxtaposed(B, qdd), ZERO)))
+        blocks.append(
+            paragraph("{} is constant, so that accelerations satisfy {}.", B, equals(juxtaposed(B, qdd), ZERO))
+        )
     else:
         acceleration = equals(plus(juxtaposed(B, qdd), juxtaposed(B_dot, qd)), ZERO)
         blocks += [paragraph("A further derivative, {}, restricts the accelerations, with", acceleration)]
         blocks += context.quantity("constraint_jacobian_dot", "Bdot")
     if "geometric" in kinds:
-        blocks.append(paragraph("The left-hand sides of {} are collected in {}.", Reference("constraints_geometric"), g))
+        blocks.append(
+            paragraph("The left-hand sides of {} are collected in {}.", Reference("constraints_geometric"), g)
+        )
     return blocks

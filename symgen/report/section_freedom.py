@@ -21,8 +21,10 @@ from symgen.report.prose import (
 
 ACTUATION = {
     "non-redundantly full-actuated": "every motion the constraints admit is produced by exactly one set of inputs.",
-    "redundantly full-actuated": "every motion the constraints admit is produced by many sets of inputs; the smallest one is taken.",
-    "non-redundantly under-actuated": "some motions the constraints admit cannot be produced; the inputs come as near as possible.",
+    "redundantly full-actuated": "every motion the constraints admit is produced by many sets of inputs; the "
+    "smallest one is taken.",
+    "non-redundantly under-actuated": "some motions the constraints admit cannot be produced; the inputs come as "
+    "near as possible.",
     "redundantly under-actuated": "some motions cannot be produced although inputs compete for others.",
 }
 
@@ -44,8 +46,10 @@ def freedom(context: Context) -> Section:
         if structure.constraint_rank < model.r:
             blocks.append(
                 paragraph(
-                    "The {} rows of {} have the generic rank {}: the constraints depend on each other (Remark 7 of the paper). "
-                    "None is dropped, since at some configurations each of them is needed; the multipliers are not unique, and the "
+                    "The {} rows of {} have the generic rank {}: the constraints depend on each other (Remark 7 of "
+                    "the paper). "
+                    "None is dropped, since at some configurations each of them is needed; the multipliers are not "
+                    "unique, and the "
                     "smallest ones are computed.",
                     equals(small_r, number(model.r)),
                     B,
@@ -68,27 +72,29 @@ def _counted(context: Context, geometric: int) -> Block:
     differential = _difference(structure.differential_freedom, n, structure.constraint_rank)
     if geometric == 0:
         return paragraph(
-            "There are no geometric constraints, so that {} finite motions are free; the constraints leave {} independent "
-            "velocities, paper (5).",
+            "There are no geometric constraints: the local degree of freedom is {}. The constraints of the "
+            "velocities lower the "
+            "differential degree of freedom to {}, paper (5).",
             Row((delta_loc, *local)),
             Row((delta_diff, *differential)),
         )
     if geometric == context.model.r:
         return paragraph(
-            "All constraints are geometric: the system has {} degrees of freedom, and as many independent velocities, {}, "
-            "paper (4) and (5).",
+            "All constraints are geometric: the degree of freedom is {}, and {} has the same value, paper (4) and (5).",
             Row((delta_loc, *local)),
             delta_diff,
         )
     return paragraph(
-        "The geometric constraints leave {} finite motions, paper (4); all constraints together leave {} independent "
-        "velocities, paper (5).",
+        "The geometric constraints leave the local degree of freedom {}, paper (4); all constraints together lower the "
+        "differential degree of freedom to {}, paper (5).",
         Row((delta_loc, *local)),
         Row((delta_diff, *differential)),
     )
 
 
-def _difference(result: int, n: int, rank: int) -> tuple[Relation, Sum | Numeral, Relation, Numeral] | tuple[Relation, Numeral]:
+def _difference(
+    result: int, n: int, rank: int
+) -> tuple[Relation, Sum | Numeral, Relation, Numeral] | tuple[Relation, Numeral]:
     """= n − rank = result."""
     if rank == 0:
         return Relation("="), number(result)
@@ -99,7 +105,7 @@ def _actuation(context: Context) -> Block:
     structure, m = context.structure, context.model.m
     meaning = ACTUATION.get(structure.actuation, "")
     return paragraph(
-        f"With {{}} inputs the generic degree of actuation, paper (26), is {{}}. The system is {structure.actuation}"
+        f"For {{}} the generic degree of actuation, paper (26), is {{}}. The system is {structure.actuation}"
         + (f": {meaning}" if meaning else "."),
         equals(small_m, number(m)),
         equals(alpha, number(structure.degree_of_actuation)),

@@ -11,6 +11,7 @@ from symgen.report.prose import (
     G,
     M,
     Mt,
+    Qa,
     W,
     delta_diff,
     equals,
@@ -29,7 +30,6 @@ from symgen.report.prose import (
 )
 from symgen.report.prose import C as CORIOLIS
 from symgen.report.prose import Q as POTENTIAL
-from symgen.report.prose import Qa as APPLIED
 
 
 def inverse_dynamics(context: Context) -> Section:
@@ -39,27 +39,7 @@ def inverse_dynamics(context: Context) -> Section:
     structure, m = context.structure, context.model.m
     full = structure.degree_of_actuation == structure.differential_freedom
     blocks: list[Block] = [*_projected_control(context)]
-    if full and m == structure.differential_freedom:
-        text = (
-            "There are as many inputs as independent velocities, {}. Where {} has full rank, its pseudoinverse {} is the left inverse; "
-            "with any basis {} of the null space of {} it is {}, because {}."
-        )
-        blocks.append(
-            paragraph(text, equals(small_m, delta_diff), Mt, pseudoinverse(Mt), W, B, _by_basis(), equals(juxtaposed(pseudoinverse(Mt), NB), pseudoinverse(Mt)))
-        )
-    elif full:
-        text = (
-            "There are more inputs than independent velocities. The Moore–Penrose inverse {} selects the smallest inputs. The paper splits {} "
-            "into columns, (28), and must switch between splittings; with any basis {} of the null space of {} the same matrix is {}, "
-            "without a choice."
-        )
-        blocks.append(paragraph(text, pseudoinverse(Mt), Mt, W, B, _by_basis()))
-    else:
-        text = (
-            "The degree of actuation is smaller than the number of independent velocities. {} is the Moore–Penrose inverse at this rank; "
-            "the inputs then come as near as possible to the demanded motion, and the residual tells what they cannot supply."
-        )
-        blocks.append(paragraph(text, pseudoinverse(Mt)))
+    blocks.append(_pseudoinverse(context, full))
     blocks += context.quantity("projected_control_pseudoinverse", "Mplus")
     blocks += [
         paragraph("The inputs that produce a motion are, paper (27),"),
@@ -79,7 +59,8 @@ def inverse_dynamics(context: Context) -> Section:
         wt = transposed(W)
         blocks.append(
             paragraph(
-                "Since {} is a basis of the admissible velocities with {}, the numbers {} are velocities along the inputs and "
+                "Since {} is a basis of the admissible velocities with {}, the numbers {} are velocities along the "
+                "inputs and "
                 "{} is the mass seen by them (Remark 10 of the paper).",
                 equals(W, transposed(Fenced(pseudoinverse(Mt)))),
                 equals(qd, juxtaposed(W, nu)),
@@ -90,6 +71,48 @@ def inverse_dynamics(context: Context) -> Section:
     return Section(say("Inverse dynamics"), tuple(blocks))
 
 
+def _pseudoinverse(context: Context, full: bool) -> Block:
+    """What M̃⁺ is in this case of actuation."""
+    if not full:
+        return paragraph(
+            "The degree of actuation is smaller than the number of independent velocities. {} is the "
+            "Moore–Penrose inverse "
+            "at this rank; the inputs then come as near as possible to the demanded motion, and the residual "
+            "tells what "
+            "they cannot supply.",
+            pseudoinverse(Mt),
+        )
+    if context.model.m > context.structure.differential_freedom:
+        return paragraph(
+            "There are more inputs than independent velocities. The Moore–Penrose inverse {} selects the "
+            "smallest inputs. "
+            "The paper splits {} into columns, (28), and must switch between splittings; with any basis {} of "
+            "the null "
+            "space of {} the same matrix is {}, without a choice.",
+            pseudoinverse(Mt),
+            Mt,
+            W,
+            B,
+            _by_basis(),
+        )
+    if not context.model.r:
+        return paragraph(
+            "There are as many inputs as coordinates. Where {} is regular, its pseudoinverse is the inverse.", Mt
+        )
+    return paragraph(
+        "There are as many inputs as independent velocities, {}. Where {} has full rank, its pseudoinverse {} "
+        "is the left "
+        "inverse; with any basis {} of the null space of {} it is {}, because {}.",
+        equals(small_m, delta_diff),
+        Mt,
+        pseudoinverse(Mt),
+        W,
+        B,
+        _by_basis(),
+        equals(juxtaposed(pseudoinverse(Mt), NB), pseudoinverse(Mt)),
+    )
+
+
 def _by_basis() -> Layout:
     wt = transposed(W)
     return juxtaposed(pseudoinverse(Fenced(juxtaposed(wt, M))), wt)
@@ -97,7 +120,7 @@ def _by_basis() -> Layout:
 
 def _balance(context: Context) -> Layout:
     return minus_sum(
-        (juxtaposed(G, qdd), juxtaposed(CORIOLIS, qd), POTENTIAL), (APPLIED,) if context.model.applied_forces else ()
+        (juxtaposed(G, qdd), juxtaposed(CORIOLIS, qd), POTENTIAL), (Qa,) if context.model.applied_forces else ()
     )
 
 
@@ -108,7 +131,9 @@ def _projected_control(context: Context) -> list[Block]:
     if control is not None and projected is not None and control == projected:
         return [
             paragraph(
-                "The columns of {} are admissible velocities already; the projected control matrix is {}.", M, equals(Mt, juxtaposed(NB, M), M)
+                "The columns of {} are admissible velocities already; the projected control matrix is {}.",
+                M,
+                equals(Mt, juxtaposed(NB, M), M),
             )
         ]
     blocks: list[Block] = [paragraph("The projected control matrix, paper (21), is {}.", equals(Mt, juxtaposed(NB, M)))]
@@ -119,5 +144,12 @@ def _projected_control(context: Context) -> list[Block]:
 
 def _inputs_written_out(context: Context) -> list[Block]:
     if context.matrix("inverse_dynamics") is None or not context.full:
-        return [paragraph("The generated code evaluates {} without forming {} or any inverse.", Reference("u"), NB)] if context.model.r else []
-    return [paragraph("With everything inserted, the inputs are explicit functions of the motion."), *context.quantity("inverse_dynamics", "uout")]
+        return (
+            [paragraph("The generated code evaluates {} without forming {} or any inverse.", Reference("u"), NB)]
+            if context.model.r
+            else []
+        )
+    return [
+        paragraph("With everything inserted, the inputs are explicit functions of the motion."),
+        *context.quantity("inverse_dynamics", "uout"),
+    ]

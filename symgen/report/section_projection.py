@@ -1,4 +1,4 @@
-"""The section on the null space of B and the projected equations, paper (21) and Remark 9, and minimal coordinates, (8)."""
+"""The section on the null space of B and the projected equations, paper (21), Remark 9, and (8)."""
 
 from __future__ import annotations
 
@@ -23,17 +23,20 @@ from symgen.report.prose import (
     Qa,
     Slot,
     bold,
+    delta_diff,
     equals,
     inverse,
     juxtaposed,
     lam,
     listed,
+    number,
     paragraph,
     plus,
     pseudoinverse,
     qd,
     qdd,
     say,
+    small_n,
     transposed,
     u,
 )
@@ -50,7 +53,8 @@ def projection(context: Context) -> Section:
     definition = equals(NB, Sum((("+", IDENTITY), ("-", juxtaposed(pseudoinverse(B), B)))))
     body: list[Block] = [
         paragraph(
-            "The orthogonal projector onto the admissible velocities, the null space of {}, is {}; it is symmetric and idempotent, and {}.",
+            "The orthogonal projector onto the admissible velocities, the null space of {}, is {}; it is symmetric "
+            "and idempotent, and {}.",
             B,
             definition,
             equals(juxtaposed(B, NB), ZERO),
@@ -89,7 +93,9 @@ def _projector(context: Context) -> list[Block]:
     if form is None:
         return []
     if form.intermediates:
-        opening = paragraph("In the signed minors of {}, named below, it is a quotient of polynomials without any matrix inverse.", B)
+        opening = paragraph(
+            "In the signed minors of {}, named below, it is a quotient of polynomials without any matrix inverse.", B
+        )
     else:
         opening = paragraph(
             "In closed form, derived from the minors of {} in exact arithmetic without a matrix inverse,", B
@@ -102,7 +108,9 @@ def _derivative(context: Context) -> list[Block]:
         return [paragraph("The projector is constant, {}.", equals(NB_dot, ZERO))]
     formula = equals(NB_dot, Sum((("-", X), ("-", transposed(X)))))
     where = equals(X, juxtaposed(pseudoinverse(B), B_dot, NB))
-    blocks: list[Block] = [paragraph("Its time derivative is symmetric, {} with {} (Remark 9 of the paper).", formula, where)]
+    blocks: list[Block] = [
+        paragraph("Its time derivative is symmetric, {} with {} (Remark 9 of the paper).", formula, where)
+    ]
     if context.full and context.form("nullspace_projector_dot") is not None:
         blocks += context.quantity("nullspace_projector_dot", "NBdot")
     return blocks
@@ -111,18 +119,20 @@ def _derivative(context: Context) -> list[Block]:
 def _projected(context: Context) -> list[Block]:
     left = juxtaposed(NB, Fenced(_balance(context)))
     right: Layout = juxtaposed(Mt, u) if context.model.m else ZERO
-    delta = str(context.structure.differential_freedom)
+    rank = equals(delta_diff, number(context.structure.differential_freedom))
     pattern = (
-        "Multiplying the equations of motion by {} removes the multipliers {}, since {}. What remains, paper (21), is valid wherever "
+        "Multiplying the equations of motion by {} removes the multipliers {}, since {}. What remains, paper (21), "
+        "is valid wherever "
         "the rank of {} is that of its neighbourhood:"
     )
     zero = equals(juxtaposed(NB, transposed(B)), ZERO)
     return [
         paragraph(pattern, NB, lam, zero, B),
         Formula((equals(left, right),), "projected"),
-        paragraph("Of these {} equations {} are independent.", str(context.model.n), delta),
+        paragraph("Their number is {}, their rank {}.", equals(small_n, number(context.model.n)), rank),
         paragraph(
-            "Measured velocities and accelerations need not satisfy the constraints; they are projected first, {} and {} (Remark 9).",
+            "Measured velocities and accelerations need not satisfy the constraints; they are projected first, {} "
+            "and {} (Remark 9).",
             equals(qd, juxtaposed(NB, _measured(qd))),
             equals(qdd, plus(juxtaposed(NB, _measured(qdd)), juxtaposed(NB_dot, _measured(qd)))),
         ),
@@ -139,19 +149,21 @@ def _complement(context: Context) -> list[Block]:
     second = Scripts(qd, TWO)
     return [
         paragraph(
-            "For comparison, the minimal formulation chooses the velocities {} as independent; then {} with, paper (7) and (8),",
+            "For comparison, the minimal formulation chooses the velocities {} as independent; then {} with, paper "
+            "(7) and (8),",
             equals(second, Fenced(velocities)),
             equals(qd, juxtaposed(F, second)),
         ),
         *context.quantity("orthogonal_complement", "F"),
         paragraph(
-            "It exists only where these velocities are independent. The reduced matrices, paper (9), follow as {}, {}, {} and {}.",
-            *_reduced(context),
+            "It exists only where these velocities are independent. The reduced matrices, paper (9), follow as {}, "
+            "{}, {} and {}.",
+            *_reduced(),
         ),
     ]
 
 
-def _reduced(context: Context) -> list[Slot]:
+def _reduced() -> list[Slot]:
     ft = transposed(F)
     inner = plus(juxtaposed(C, F), juxtaposed(G, Accent(F, "dot")))
     return [

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from symgen.model.expression import Expression
-from symgen.model.model import Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
+from symgen.model.model import (
+    Published,
+    PublishedEquations,
+    PublishedMatrix,
+    PublishedSingularSet,
+)
 from symgen.report.content import Verdict
 from symgen.report.context import Context, sentence
 from symgen.report.document import Block, Formula, InlineMath, Section, Table, Text
@@ -21,18 +26,24 @@ def published(context: Context) -> tuple[Section, ...]:
     if not items or not verdicts:
         return ()
     rows = tuple(
-        (say("{}", item.equation), _subject(item), say("{}", verdicts[k].verdict), say("{}", sentence(verdicts[k].proof)))
+        (
+            say("{}", item.equation),
+            _subject(item),
+            say("{}", verdicts[k].verdict),
+            say("{}", sentence(verdicts[k].proof)),
+        )
         for k, item in items
         if k in verdicts
     )
     table = Table((say("Printed"), say("Subject"), say("Verdict"), say("Why")), rows, (0, 0, 2, 5))
     intro = (
-        "The formulas the source prints for this system are decided by computation: they are identical with what is derived here, "
+        "The formulas the source prints for this system are decided by computation: they are identical with what is "
+        "derived here, "
         "equal to it on the constraint manifold only, or misprinted."
     )
     details: list[Block] = []
     for k, item in items:
-        if k in verdicts and verdicts[k].verdict != "identical":
+        if k in verdicts and not verdicts[k].verdict.startswith("identical"):
             details += _detail(item, verdicts[k])
     return (Section(say("Published equations"), (paragraph(intro), table, *details)),)
 
@@ -54,9 +65,12 @@ def _symbol(quantity: str) -> Layout:
 def _detail(item: Published, verdict: Verdict) -> list[Block]:
     """The printed form, and the corrected one where it is wrong."""
     label = item.equation
+    blocks: list[Block]
     match item:
         case PublishedMatrix():
-            blocks = [paragraph(f"Equation {{}} prints{_chosen(item.independent)}", label, *_velocities(item.independent))]
+            blocks = [
+                paragraph(f"Equation {{}} prints{_chosen(item.independent)}", label, *_velocities(item.independent))
+            ]
             blocks += _matrix(item.quantity, item.value)
             blocks += _where(item.where)
             if item.corrected is not None and verdict.verdict == "misprinted":
@@ -67,7 +81,12 @@ def _detail(item: Published, verdict: Verdict) -> list[Block]:
                 blocks += [paragraph("Correct is"), _equations(item.corrected)]
         case PublishedSingularSet():
             blocks = [
-                paragraph(f"After equation {{}} the singular set of {{}}{_chosen(item.independent)} is given as", label, _symbol(item.quantity), *_velocities(item.independent)),
+                paragraph(
+                    f"After equation {{}} the singular set of {{}}{_chosen(item.independent)} is given as",
+                    label,
+                    _symbol(item.quantity),
+                    *_velocities(item.independent),
+                ),
                 Formula((_vanishing(item.where_zero),)),
             ]
             if item.corrected is not None and verdict.verdict == "misprinted":
@@ -91,7 +110,10 @@ def _matrix(quantity: str, rows: tuple[tuple[Expression, ...], ...]) -> tuple[Bl
 def _where(where: tuple[tuple[str, Expression], ...]) -> tuple[Block, ...]:
     if not where:
         return ()
-    return (paragraph("where"), Formula(tuple(equation(name_layout(name), expression_layout(value)) for name, value in where)))
+    return (
+        paragraph("where"),
+        Formula(tuple(equation(name_layout(name), expression_layout(value)) for name, value in where)),
+    )
 
 
 def _equations(pairs: tuple[tuple[Expression, Expression], ...]) -> Formula:

@@ -12,7 +12,8 @@ from symgen.report.prose import SYMBOLS, ZERO, Slot, paragraph, say
 OPENING = {
     "constraint": "At constraint singularities the rank of {} drops and {} does not exist",
     "input": "At input singularities the degree of actuation drops and {} is not continuous",
-    "parameter": "Where the chosen velocities depend on each other {} does not exist, a singularity of the parametrization alone",
+    "parameter": "Where the chosen velocities depend on each other {} does not exist, a singularity of the "
+    "parametrization alone",
 }
 LARGEST = 1500
 
@@ -37,9 +38,11 @@ def _one(context: Context, found: SingularSet) -> list[Block]:
         return [paragraph(OPENING[found.kind] + "; this happens where", *_slots(found)), Formula(equations)]
     nodes = sum(size(line) for line in equations)
     if nodes > LARGEST:
-        many = f"; this happens at the common zeros of {len(equations)} expressions with about {nodes} symbols, not printed here."
+        many = f"; these are the common zeros of {len(equations)} expressions with {nodes} symbols, not printed."
         return [paragraph(OPENING[found.kind] + many, *_slots(found))]
-    opening = paragraph(OPENING[found.kind] + "; this happens where all of these expressions vanish at once:", *_slots(found))
+    opening = paragraph(
+        OPENING[found.kind] + "; this happens where all of these expressions vanish at once:", *_slots(found)
+    )
     return [opening, Formula(tuple(packed(equations)))]
 
 

@@ -5,9 +5,26 @@ from __future__ import annotations
 from symgen.model.expression import Expression, Number
 from symgen.model.model import Input, Range
 from symgen.report.context import Context, text_of
-from symgen.report.document import Block, Formula, InlineCode, InlineMath, Section, Table, Text
+from symgen.report.document import (
+    Block,
+    Formula,
+    InlineCode,
+    InlineMath,
+    Section,
+    Table,
+    Text,
+)
 from symgen.report.from_expression import expression_layout
-from symgen.report.layout import Layout, Letter, Punctuation, Row, Scripts, Sum, equation, signed
+from symgen.report.layout import (
+    Layout,
+    Letter,
+    Punctuation,
+    Row,
+    Scripts,
+    Sum,
+    equation,
+    signed,
+)
 from symgen.report.names import name_layout
 from symgen.report.numerals import rational_text
 from symgen.report.prose import (
@@ -39,15 +56,17 @@ def system(context: Context) -> Section:
     model = context.model
     blocks: list[Block] = [
         paragraph(
-            "The configuration is described by {} coordinates, the entries of {} in this order. A dot denotes the time "
-            "derivative; states for verification are drawn from the ranges.",
+            "The coordinates, {}, are the entries of {} in this order. A dot denotes the time derivative; states for "
+            "verification are drawn from the ranges.",
             equals(small_n, number(model.n)),
             q,
         ),
         _coordinates(context),
     ]
     if model.parameters:
-        blocks.append(paragraph("The parameters are run-time arguments of the generated code; the values are their defaults."))
+        blocks.append(
+            paragraph("The parameters are run-time arguments of the generated code; the values are their defaults.")
+        )
         blocks.append(_parameters(context))
     else:
         blocks.append(paragraph("The model has no parameters."))
@@ -162,10 +181,11 @@ def _inputs(context: Context) -> list[Block]:
     )
     return [
         paragraph(
-            "The {} inputs {} are given by their virtual power: the coefficient of a rate is the generalized force per "
+            "The inputs {}, {}, are given by their virtual power: the coefficient of a rate is the generalized "
+            "force per "
             "unit of the input.",
-            equals(small_m, number(model.m)),
             u,
+            equals(small_m, number(model.m)),
         ),
         Table((say("Symbol"), say("Name"), say("Unit"), say("Meaning"), say("Power per unit")), rows, (0, 0, 0, 1, 0)),
     ]
@@ -185,8 +205,7 @@ def _applied_forces(context: Context) -> list[Block]:
     if not forces:
         return []
     equations = tuple(
-        equation(_component(name_layout(force.coordinate)), expression_layout(force.expression))
-        for force in forces
+        equation(_component(name_layout(force.coordinate)), expression_layout(force.expression)) for force in forces
     )
     return [
         paragraph("Further generalized forces {}, damping for example, stand on the right-hand side:", Qa),

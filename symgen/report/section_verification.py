@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from symgen.report.context import Context, sentence
 from symgen.report.content import Verification
+from symgen.report.context import Context, sentence
 from symgen.report.document import Block, Figure, InlineCode, Section, Table, Text
 from symgen.report.prose import paragraph, say
 
@@ -14,9 +14,12 @@ def verification(context: Context) -> tuple[Section, ...]:
     if measured is None:
         return ()
     intro = (
-        f"The generated code was run at {measured.states} admissible states and compared with a reference that shares no code with "
-        "the derivation: it differentiates the energies and constraints as they stand in the file, with 50 digits. Errors are in "
-        "units of the change that rounding the arguments, parameters and literals causes, plus one rounding of the result; they must "
+        f"The generated code was run at {measured.states} admissible states and compared with a reference that "
+        f"shares no code with "
+        "the derivation: it differentiates the energies and constraints as they stand in the file, with 50 digits. "
+        "Errors are in "
+        "units of the change that rounding the arguments, parameters and literals causes, plus one rounding of the "
+        "result; they must "
         "not exceed 16. The last column is the largest relative error."
     )
     blocks: list[Block] = [paragraph("{}", intro), _errors(measured)]

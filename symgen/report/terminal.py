@@ -8,16 +8,16 @@ from symgen.model.model import Model
 from symgen.report.context import name_order
 from symgen.report.from_sympy import SympyLayout
 from symgen.report.layout import Layout, equation
-from symgen.report.prose import SYMBOLS
 from symgen.report.names import name_layout
+from symgen.report.prose import SYMBOLS
 from symgen.report.text_math import text_lines
 
 
 def render_text_math(value: Any, model: Model | None = None, symbol: str | None = None, width: int = 100) -> str:
     """A SymPy expression or matrix as text of at most `width` columns.
 
-    `symbol` is the name of a quantity (its usual symbol stands before the equals sign) or any other name; `model` gives the
-    order of factors and terms.
+    `symbol` is the name of a quantity (its usual symbol stands before the equals sign) or any other name;
+    `model` gives the order of factors and terms.
     """
     layout = SympyLayout({} if model is None else name_order(model))
     right: Layout = layout.matrix(value) if hasattr(value, "shape") else layout.expression(value)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from symgen.report.breaking import break_lines
 from symgen.report.layout import (
     CLOSING,
@@ -64,7 +66,7 @@ def text_math(node: Layout) -> str:
             return f"{text_math(function)}{'' if isinstance(argument, Fenced) else ' '}{text_math(argument)}"
         case Product(factors=factors):
             parts = [text_math(factors[0])]
-            for left, right in zip(factors, factors[1:], strict=False):
+            for left, right in pairwise(factors):
                 parts += (_gap(left, right), text_math(right))
             return "".join(parts)
         case Sum(terms=terms):
@@ -133,9 +135,10 @@ def _gap(left: Layout, right: Layout) -> str:
 
 def _raised(node: Layout) -> str:
     """A superscript: small digits where they exist, otherwise ^(…)."""
-    text = text_math(node).replace("−", "-")
-    if all(character in "0123456789-" for character in text):
-        return text.translate(UPPER)
+    text = text_math(node)
+    digits = text.replace("−", "-")
+    if all(character in "0123456789-" for character in digits):
+        return digits.translate(UPPER)
     if text in ("T", "+"):
         return {"T": "ᵀ", "+": "⁺"}[text]
     return f"^{text}" if len(text) == 1 else f"^({text})"

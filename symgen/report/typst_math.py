@@ -1,6 +1,8 @@
-"""Layout as Typst mathematics, written with function calls and symbol names so that nothing depends on juxtaposition."""
+"""Layout as Typst mathematics, in function calls and symbol names: nothing depends on juxtaposition."""
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 from symgen.report.layout import (
     Accent,
@@ -33,7 +35,9 @@ SIGNS = {"+": "plus", "-": "minus", "·": "dot.op"}
 
 def quoted(text: str) -> str:
     """A Typst string literal: any text whatsoever, shown as it is."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\r", "\\r").replace("\t", "\\t")
+    escaped = (
+        text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\r", "\\r").replace("\t", "\\t")
+    )
     return f'"{escaped}"'
 
 
@@ -77,7 +81,7 @@ def typst_math(node: Layout) -> str:
             return f"{typst_math(function)} thin {typst_math(argument)}"
         case Product(factors=factors):
             parts = [typst_math(factors[0])]
-            for left, right in zip(factors, factors[1:], strict=False):
+            for left, right in pairwise(factors):
                 parts += (SEPARATORS[separator(left, right)], typst_math(right))
             return "".join(parts)
         case Sum(terms=terms):
@@ -85,8 +89,8 @@ def typst_math(node: Layout) -> str:
         case Row(pieces=pieces):
             return " ".join(typst_math(piece) for piece in pieces)
         case Array(rows=rows):
-            body = "; ".join(", ".join(typst_math(entry) for entry in row) for row in rows)
-            return f"mat({body})"
+            lines = "; ".join(", ".join(typst_math(entry) for entry in row) for row in rows)
+            return f"mat({lines})"
 
 
 def _term(sign: str, term: Layout, first: bool) -> str:

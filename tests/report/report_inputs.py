@@ -1,0 +1,54 @@
+"""Report inputs made from shipped and hostile models, derived once per test run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from symgen.closedform.forms import derive_closed_forms
+from symgen.model.load import load_model
+from symgen.report.compose import compose
+from symgen.report.content import Chart, ErrorRow, ReportInput, Verdict, Verification
+from symgen.report.document import Document
+
+HERE = Path(__file__).parent
+MODELS = HERE.parent.parent / "models"
+CHART = '<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><path d="M0 0L9 9"/></svg>'
+
+
+@cache
+def report_input(name: str) -> ReportInput:
+    """The deterministic part of the input of a model's report."""
+    path = HERE / "hostile.yaml" if name == "hostile" else MODELS / f"{name}.yaml"
+    model = load_model(path)
+    forms = derive_closed_forms(model)
+    return ReportInput(
+        model=model,
+        version="1.2.3",
+        forms=forms.forms,
+        structure=forms.structure,
+        integrability=forms.integrability,
+        singular_sets=forms.singular_sets,
+        skipped=(("potential forces", "the potential energy is constant"), ("constraint_residual", "empty")),
+        operation_counts={"mass_matrix": {"add": 2, "mul": 5, "div": 0, "sqrt": 0, "sincos": 1, "other": 0}},
+        verdicts=tuple(
+            Verdict(k, ("identical", "misprinted")[k % 2], "a < b & c") for k in range(len(model.published))
+        ),
+        notices=("a notice with <angle> brackets & $dollars$",),
+    )
+
+
+@cache
+def document(name: str) -> Document:
+    """The deterministic report."""
+    return compose(report_input(name))
+
+
+@cache
+def measured_document(name: str) -> Document:
+    """The report with measurements and a chart, as the PDF shows it."""
+    row = ErrorRow("inverse_dynamics", "C float64", 0.2, 0.9, 1.7, 2.3e-16)
+    verification = Verification(64, (row,), (("N² = N", "0.1"),), (("gcc", "12.2.0"),))
+    measured = replace(report_input(name), verification=verification, charts=(Chart("a path", CHART),))
+    return compose(measured)

@@ -1,0 +1,192 @@
+"""Whole reports: complete, deterministic, self-contained, well-formed, whatever the user wrote."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from report_inputs import HERE, document, measured_document, report_input
+
+from symgen.report.breaking import break_lines
+from symgen.report.compose import compose
+from symgen.report.document import InlineMath, Items, Paragraph, Table
+from symgen.report.html import ROOM, render_html
+from symgen.report.latex import latex_text, render_latex
+from symgen.report.measure import page_width
+from symgen.report.pdf import render_pdf, render_typst
+from symgen.report.prose import say
+
+NAMES = ("skate", "front_car", "double_pendulum", "slider_crank", "hostile")
+HTML = "{http://www.w3.org/1999/xhtml}"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_html_is_well_formed_and_refers_to_nothing_outside(name: str) -> None:
+    page = render_html(measured_document(name))
+    root = ElementTree.fromstring(page.removeprefix("<!DOCTYPE html>\n"))
+    for element in root.iter():
+        assert element.tag.removeprefix(HTML) not in {"script", "link", "img", "iframe", "object", "base"}
+        for attribute, value in element.attrib.items():
+            assert not attribute.startswith("on")
+            assert attribute not in {"src", "srcset", "data", "action"}
+            assert attribute != "href" or value.startswith("#")
+    assert "@import" not in page
+    assert "url(" not in page
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_links_inside_the_page_have_targets(name: str) -> None:
+    page = render_html(document(name))
+    targets = set(re.findall(r' id="([^"]+)"', page))
+    assert set(re.findall(r'href="#([^"]+)"', page)) <= targets
+
+
+def test_user_text_is_shown_as_it_is() -> None:
+    description = report_input("hostile").model.description
+    root = ElementTree.fromstring(render_html(document("hostile")).removeprefix("<!DOCTYPE html>\n"))
+    heading = root.find(f".//{HTML}h1")
+    assert heading is not None
+    assert heading.text == " ".join(description.split())
+
+
+def test_latex_escapes_every_special_character() -> None:
+    assert latex_text(r"\ { } $ & # % _ ~ ^") == (
+        r"\textbackslash{} \{ \} \$ \& \# \% \_ \textasciitilde{} \textasciicircum{}"
+    )
+    assert latex_text("日α ü") == r"\texttt{U+65E5}$\alpha$ ü"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_latex_has_balanced_braces_and_environments(name: str) -> None:
+    source = render_latex(measured_document(name))
+    bare = source.replace(r"\\", "").replace(r"\{", "").replace(r"\}", "")
+    depth = 0
+    for character in bare:
+        depth += {"{": 1, "}": -1}.get(character, 0)
+        assert depth >= 0
+    assert depth == 0
+    stack: list[str] = []
+    for kind, environment in re.findall(r"\\(begin|end)\{([a-z*]+)\}", source.replace(r"\textbackslash{}", "")):
+        if kind == "begin":
+            stack.append(environment)
+        else:
+            assert stack.pop() == environment
+    assert stack == []
+    assert source.count(r"\left") == source.count(r"\right")
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="pdflatex is not installed")
+@pytest.mark.parametrize("name", ["front_car", "hostile"])
+def test_latex_compiles(name: str, tmp_path: Path) -> None:
+    (tmp_path / "report.tex").write_text(render_latex(document(name)), encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
+    assert run.returncode == 0, run.stdout[-2000:]
+    assert not re.search(r"Overfull \\hbox \((\d{2,})\.", run.stdout), run.stdout
+
+
+@pytest.mark.parametrize("name", ["front_car", "hostile"])
+def test_pdf_is_made_and_repeats(name: str) -> None:
+    first = render_pdf(measured_document(name))
+    assert first.startswith(b"%PDF")
+    assert first == render_pdf(measured_document(name))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_formula_is_wider_than_the_page(name: str) -> None:
+    for formula in document(name).formulas():
+        for node in formula.equations:
+            for line in break_lines(node, page_width, ROOM):
+                assert page_width(line) <= ROOM
+
+
+def test_measurements_stand_in_their_own_sections() -> None:
+    plain, measured = document("skate"), measured_document("skate")
+    assert measured.sections[: len(plain.sections)] == plain.sections
+    assert len(measured.sections) == len(plain.sections) + 2
+    assert "64 admissible states" in render_typst(measured)
+    assert "admissible states" not in render_html(plain)
+
+
+def test_report_names_what_there_is_not() -> None:
+    page = render_html(document("double_pendulum"))
+    assert "There are no constraints" in page
+    assert "the projector is the identity" in page
+    assert "The mass matrix is constant" in render_html(document("skate"))
+    assert "There is no potential energy" in render_html(document("skate"))
+
+
+def test_report_says_all_about_the_front_car() -> None:
+    source = " ".join(render_latex(document("front_car")).split())
+    for text in (
+        r"a = L^{2} + (L^{2} - 1) \cos 2 \varphi + 1",
+        r"L^{2} \sin 2 \theta \cos^{2} \varphi",
+        r"\cos \theta \cos \varphi & \sin \theta \cos \varphi & \frac{\sin \varphi }{L} & 0",
+        r"\texttt{rear\_axle} is not integrable",
+        "non-redundantly full-actuated",
+        "distance of the axles",
+    ):
+        assert text in source, text
+
+
+def test_verdicts_that_are_not_identical_show_the_printed_form() -> None:
+    source = render_latex(document("front_car"))
+    assert "misprinted" in source
+    assert r"Equation (40) prints" in source
+    assert r"Equation (42) prints" not in source
+
+
+def test_short_report_leaves_long_matrices_out() -> None:
+    full = report_input("front_car")
+    short = compose(replace(full, model=replace(full.model, report="short")))
+    assert "left out of this short report" in render_latex(short)
+    assert len(render_latex(short)) < 0.9 * len(render_latex(compose(full)))
+
+
+def test_slots_must_match_places() -> None:
+    with pytest.raises(ValueError, match="1 slots for 2 places"):
+        say("{} and {}", "one")
+    assert say("{}!", "{}") == ("{}", "!")
+
+
+def test_inline_formulas_are_short() -> None:
+    """Sentences cannot break inside a formula, so none of it may be long."""
+    for section in document("front_car").sections:
+        for block in section.blocks:
+            texts = {
+                Paragraph: lambda b: (b.text,),
+                Items: lambda b: b.items,
+                Table: lambda b: (cell for row in b.rows for cell in row),
+            }.get(type(block), lambda _: ())(block)
+            for text in texts:
+                assert all(page_width(part.node) < 20 for part in text if isinstance(part, InlineMath))
+
+
+SCRIPT = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from report_inputs import document
+from symgen.report.html import render_html
+from symgen.report.latex import render_latex
+sys.stdout.reconfigure(encoding="utf-8")
+print(render_html(document("front_car")), render_latex(document("front_car")))
+"""
+
+
+@pytest.mark.slow
+def test_text_does_not_depend_on_the_hash_seed() -> None:
+    texts = []
+    for seed in ("1", "2"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(HERE.parent.parent)}
+        command = [sys.executable, "-c", SCRIPT, str(HERE)]
+        texts.append(subprocess.run(command, env=environment, capture_output=True, check=True).stdout)
+    assert len(texts[0]) > 10000
+    assert texts[0] == texts[1]
