@@ -8,7 +8,6 @@ SymPy symbols carry the model's names and no assumptions.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from fractions import Fraction
 from typing import Any
 
 import sympy
@@ -227,8 +226,9 @@ def fourier_series(ring: TrigRing, p: PolyElement) -> dict[tuple[int, ...], tupl
         rest = list(monomial)
         for position in ring.angle_positions:
             rest[position] = 0
+        degree = sum(monomial[position] for position in ring.angle_positions)
         scale = ring.polys.zero.copy()
-        scale[tuple(rest)] = coefficient
+        scale[tuple(rest)] = coefficient / 2**degree
         for frequencies, (real, imaginary) in _wave_product(ring, monomial).items():
             leading = next((k for k in frequencies if k), 0)
             key = tuple(-k for k in frequencies) if leading < 0 else frequencies
@@ -236,8 +236,8 @@ def fourier_series(ring: TrigRing, p: PolyElement) -> dict[tuple[int, ...], tupl
                 imaginary = -imaginary
             cosine, sine = waves.get(key, (ring.zero, ring.zero))
             waves[key] = (
-                cosine + scale.mul_ground(QQ(real.numerator, real.denominator)),
-                sine - scale.mul_ground(QQ(imaginary.numerator, imaginary.denominator)),
+                cosine + scale.mul_ground(QQ(real)) if real else cosine,
+                sine - scale.mul_ground(QQ(imaginary)) if imaginary else sine,
             )
     constant = (0,) * len(ring.sine)
     if constant in waves:
@@ -245,20 +245,22 @@ def fourier_series(ring: TrigRing, p: PolyElement) -> dict[tuple[int, ...], tupl
     return {key: value for key, value in sorted(waves.items()) if value[0] or value[1]}
 
 
-def _wave_product(ring: TrigRing, monomial: tuple[int, ...]) -> dict[tuple[int, ...], tuple[Fraction, Fraction]]:
-    """A monomial in sines and cosines as a sum of complex exponentials, coefficients (real, imaginary)."""
-    waves: dict[tuple[int, ...], tuple[Fraction, Fraction]] = {(): (Fraction(1), Fraction(0))}
-    half = Fraction(1, 2)
+def _wave_product(ring: TrigRing, monomial: tuple[int, ...]) -> dict[tuple[int, ...], tuple[int, int]]:
+    """2^degree times the sines and cosines of a monomial as complex exponentials, coefficients (real, imaginary)."""
+    waves: dict[tuple[int, ...], tuple[int, int]] = {(): (1, 0)}
     for s, c in zip(ring.sine, ring.cosine, strict=True):
-        single: dict[int, tuple[Fraction, Fraction]] = {0: (Fraction(1), Fraction(0))}
+        if not monomial[s] and not monomial[c]:
+            waves = {(*frequencies, 0): value for frequencies, value in waves.items()}
+            continue
+        single: dict[int, tuple[int, int]] = {0: (1, 0)}
         for kind, power in ((0, monomial[s]), (1, monomial[c])):
             for _ in range(power):
-                step: dict[int, tuple[Fraction, Fraction]] = {}
+                step: dict[int, tuple[int, int]] = {}
                 for k, (x, y) in single.items():
                     for shift in (1, -1):
-                        # cos = (e + 1/e)/2, sin = -i (e - 1/e)/2
-                        add = (x * half, y * half) if kind else (y * half * shift, -x * half * shift)
-                        old = step.get(k + shift, (Fraction(0), Fraction(0)))
+                        # 2 cos = e + 1/e, 2 sin = -i (e - 1/e)
+                        add = (x, y) if kind else (y * shift, -x * shift)
+                        old = step.get(k + shift, (0, 0))
                         step[k + shift] = (old[0] + add[0], old[1] + add[1])
                 single = step
         waves = {
