@@ -14,7 +14,7 @@ pytestmark = pytest.mark.toolchain
 STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror"]
 DOUBLE = re.compile(r"\b(v?cvtss2sd|v?cvtsd2ss|v?(?:add|sub|mul|div|sqrt|mov|ucomi|comi)sd|fcvt)\b")
 COMPILERS = {
-    "gcc": ["-std=c99", "-O1"],
+    "gcc": ["-std=c99"],
     "g++": ["-xc++", "-std=c++11", "-fsyntax-only"],
     "clang": ["-std=c99", "-fsyntax-only"],
     "clang++": ["-xc++", "-std=c++11", "-fsyntax-only"],
@@ -27,6 +27,8 @@ def test_no_warning(tool: Callable[[str], str], tmp_path: Path, name: str, compi
     shipped.write_sources(name, tmp_path)
     for source in sorted((tmp_path / "c").glob("*.c")):
         flags = [*STRICT, *COMPILERS[compiler]]
+        if compiler == "gcc":  # the float32 object is looked into below
+            flags += ["-O1"] if source.stem.endswith("_f") else ["-fsyntax-only"]
         if source.stem.endswith("_f"):
             flags += ["-Wfloat-conversion"] + (["-Wunsuffixed-float-constants"] if compiler == "gcc" else [])
         command = [tool(compiler), *flags, "-c", str(source), "-o", str(tmp_path / f"{source.stem}.o")]
