@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from math import isfinite
 from typing import Any
 
 from symgen.verify.tolerance import FACTOR, PERTURBATIONS
@@ -80,7 +81,7 @@ class Certificate:
         return max((record for record in self.errors if record.target == target), key=lambda record: record.largest)
 
     def to_json(self) -> dict[str, Any]:
-        """A JSON-able form, in a fixed order."""
+        """A JSON-able form, in a fixed order; an infinite error is null."""
         return {
             "model": self.model,
             "passed": self.passed,
@@ -91,7 +92,11 @@ class Certificate:
             "ranks": dict(self.ranks),
             "versions": dict(self.versions),
             "hashes": dict(self.hashes),
-            "conditions": [asdict(record) for record in self.conditions],
-            "invariants": [asdict(record) for record in self.invariants],
-            "errors": [asdict(record) for record in self.errors],
+            "conditions": [_finite(asdict(record)) for record in self.conditions],
+            "invariants": [_finite(asdict(record)) for record in self.invariants],
+            "errors": [_finite(asdict(record)) for record in self.errors],
         }
+
+
+def _finite(record: dict[str, Any]) -> dict[str, Any]:
+    return {key: None if isinstance(value, float) and not isfinite(value) else value for key, value in record.items()}

@@ -34,7 +34,7 @@ from symgen.verify.conditions import condition_numbers
 from symgen.verify.python_module import PythonModule
 from symgen.verify.reference import Reference, ReferenceValueError
 from symgen.verify.states import (
-    FEWEST_STATES,
+    USUAL_STATES,
     Sample,
     VerificationError,
     affordable_states,
@@ -53,13 +53,14 @@ def verify(
     kernels: Sequence[Kernel],
     c_sources: Mapping[Scalar, CSource],
     python_source: str | None,
-    states: int | None = None,
+    states: int = USUAL_STATES,
     progress: Progress = lambda _: None,
 ) -> Certificate:
     """Run what was generated and compare it with the reference.
 
     `kernels` name the emitted quantities with their arguments and shapes (those of one program serve for all targets);
-    `states` None takes 64, or fewer (8 at least) where a count of operations predicts more than 20 s.
+    Up to 64 `states` become fewer (8 at least) where a count of operations predicts more than 20 s; more are taken as
+    asked.
     Raises VerificationError when fewer than 8 admissible states are found.
     """
     names = tuple(kernel.name for kernel in kernels)
@@ -67,7 +68,7 @@ def verify(
     with _compilations(compiler, c_sources) as compilations:
         progress("verifying: looking for states")
         reference = _reference(model)
-        count = affordable_states(reference) if states is None else max(states, FEWEST_STATES)
+        count = states if states > USUAL_STATES else affordable_states(reference, states)
         doubles = sample_states(reference, names, count)
         scalars: dict[Scalar, tuple[Sample, ...]] = {scalar: _rounded(doubles, scalar) for scalar in c_sources}
         if python_source is not None:

@@ -36,7 +36,7 @@ class Sample:
     measures: tuple[float, float]
 
 
-def affordable_states(reference: Reference, wanted: int = USUAL_STATES) -> int:
+def affordable_states(reference: Reference, wanted: int) -> int:
     """How many of `wanted` states fit in 20 s, by a count of operations (never by a clock), but 8 at least."""
     system, ranks = reference.system, reference.ranks
     subsets = comb(system.r, ranks.constraints)
