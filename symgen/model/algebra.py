@@ -35,7 +35,7 @@ class Expansion:
 
     def __init__(self, values: Mapping[str, float], rates: frozenset[str], definitions: Mapping[str, Expression]):
         self._values, self._rates, self._definitions = values, rates, definitions
-        self._expanded: dict[str, Polynomial] = {}
+        self._expanded: dict[str, Polynomial | Exception] = {}
 
     def of(self, expression: Expression) -> Polynomial:
         """The polynomial; NotPolynomialError, or ArithmeticError and ValueError outside the domain."""
@@ -75,11 +75,22 @@ class Expansion:
     def _name(self, name: str) -> Polynomial:
         if name in self._rates:
             return {(name,): (1.0, 1.0)}
-        if name in self._definitions:
-            if name not in self._expanded:
-                self._expanded[name] = self.of(self._definitions[name])
-            return self._expanded[name]
-        return _constant(self._values[name])
+        if name not in self._definitions:
+            return _constant(self._values[name])
+        if not self._expanded:
+            self._expand_definitions()
+        expanded = self._expanded[name]
+        if isinstance(expanded, Exception):
+            raise expanded
+        return expanded
+
+    def _expand_definitions(self) -> None:
+        """All of them in the order of use, so that a long chain does not become a deep recursion."""
+        for name, definition in self._definitions.items():
+            try:
+                self._expanded[name] = self.of(definition)
+            except (NotPolynomialError, ArithmeticError, ValueError) as error:
+                self._expanded[name] = error
 
     def _number(self, expression: Expression, otherwise: str) -> float:
         polynomial = self.of(expression)

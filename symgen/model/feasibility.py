@@ -9,7 +9,7 @@ from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
 from symgen.model.names import counted
 
-SAMPLES = 3
+SAMPLES = 5
 
 # A configuration whose rank depends on which of these is taken for zero is too close to a singularity to tell.
 THRESHOLDS = (1e-9, 1e-5)

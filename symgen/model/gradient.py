@@ -32,7 +32,7 @@ class Gradients:
 
     def __init__(self, values: Mapping[str, float], index: Mapping[str, int], definitions: Mapping[str, Expression]):
         self._values, self._index, self._definitions = values, index, definitions
-        self._known: dict[str, Dual] = {}
+        self._known: dict[str, Dual | Exception] = {}
 
     def of(self, expression: Expression) -> Dual:
         """Value and gradient; ArithmeticError or ValueError outside the domain."""
@@ -62,14 +62,25 @@ class Gradients:
                 return FUNCTIONS[function](value), _scaled(gradient, _DERIVATIVES[function](value)) if gradient else {}
 
     def _name(self, name: str) -> Dual:
-        if name not in self._known:
-            if name in self._definitions:
-                self._known[name] = self.of(self._definitions[name])
-            elif name in self._index:
-                self._known[name] = (self._values[name], {self._index[name]: 1.0})
-            else:
-                self._known[name] = (self._values[name], {})
-        return self._known[name]
+        if name in self._index:
+            return self._values[name], {self._index[name]: 1.0}
+        if name not in self._definitions:
+            return self._values[name], {}
+        if not self._known:
+            self._evaluate_definitions()
+        known = self._known[name]
+        if isinstance(known, Exception):
+            raise known
+        return known
+
+    def _evaluate_definitions(self) -> None:
+        """All of them in the order of use, so that a long chain does not become a deep recursion."""
+        for name, definition in self._definitions.items():
+            try:
+                self._known[name] = self.of(definition)
+            except (ArithmeticError, ValueError, KeyError) as error:
+                # Definitions of rates have no place here; nothing that is evaluated here uses them.
+                self._known[name] = error
 
 
 def _binary(operator: str, left: Dual, right: Dual) -> Dual:

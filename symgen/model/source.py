@@ -84,13 +84,16 @@ def read_tree(text: str) -> tuple[MappingNode | None, tuple[Mistake, ...]]:
     if len(text) > MAXIMUM_CHARACTERS:
         message = f"the file has {len(text)} characters, at most {MAXIMUM_CHARACTERS} are read"
         return None, (Mistake(message, "split the model, or remove what does not belong to it", START),)
-    mistakes: list[Mistake] = []
     try:
-        root = _build(text, yaml.parse(text, Loader=_EventLoader), mistakes)
+        try:
+            root, mistakes = _build(text, yaml.parse(text, Loader=_EventLoader))
+        except yaml.YAMLError:
+            # PyYAML's own parser decides, and words the error: libyaml's differs in details, and may not be there.
+            root, mistakes = _build(text, yaml.parse(text, Loader=yaml.SafeLoader))
     except _RefusedError as refused:
         return None, (refused.mistake,)
-    except yaml.YAMLError:
-        return None, (_syntax_mistake(text),)
+    except yaml.YAMLError as error:
+        return None, (_syntax_mistake(text, error),)
     if root is None:
         return None, (
             Mistake(
@@ -108,7 +111,8 @@ class _RefusedError(Exception):
         self.mistake = Mistake(message, remedy, span)
 
 
-def _build(text: str, events: Iterator[yaml.Event], mistakes: list[Mistake]) -> Node | None:
+def _build(text: str, events: Iterator[yaml.Event]) -> tuple[Node | None, list[Mistake]]:
+    mistakes: list[Mistake] = []
     open_collections: list[_Open] = []
     root: Node | None = None
     nodes = 0
@@ -139,7 +143,7 @@ def _build(text: str, events: Iterator[yaml.Event], mistakes: list[Mistake]) -> 
             _append(open_collections[-1], node)
         elif node is not None:
             root = node
-    return None if isinstance(root, ScalarNode) and not root.raw else root
+    return (None if isinstance(root, ScalarNode) and not root.raw else root), mistakes
 
 
 def _append(collection: _Open, node: Node) -> None:
@@ -207,23 +211,19 @@ def _raw_offset(raw: str, value: str, offset: int) -> int:
     return max(0, len(raw) - 1)
 
 
-def _syntax_mistake(text: str) -> Mistake:
-    """The error in the words of PyYAML's own parser, which are the same whether or not libyaml is there."""
-    try:
-        for _ in yaml.parse(text, Loader=yaml.SafeLoader):
-            pass
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        span = Span(mark.line + 1, mark.column + 1, mark.column + 2) if mark else None
-        problem = " ".join(str(part) for part in (error.problem, error.context) if part)
-        return Mistake(f"this is not YAML: {problem}", _syntax_remedy(problem), span)
-    except yaml.reader.ReaderError as error:
+def _syntax_mistake(text: str, error: yaml.YAMLError) -> Mistake:
+    if isinstance(error, yaml.reader.ReaderError):
         return _character_mistake(text, error.position)
-    return Mistake("this is not YAML", "check brackets, quotes and indentation")
+    if not isinstance(error, yaml.MarkedYAMLError):
+        return Mistake("this is not YAML", "check brackets, quotes and indentation", START)
+    mark = error.problem_mark or error.context_mark
+    span = Span(mark.line + 1, mark.column + 1, mark.column + 2) if mark else START
+    problem = " ".join(str(part) for part in (error.problem, error.context) if part)
+    return Mistake(f"this is not YAML: {problem}", _syntax_remedy(problem), span)
 
 
 def _syntax_remedy(problem: str) -> str:
-    if "\\t" in problem or "'\\t'" in problem:
+    if "'\\t'" in problem:
         return "indent with spaces, not with tabs"
     return "check indentation, brackets and quotes; quote a text that has a comma, colon, bracket or #"
 

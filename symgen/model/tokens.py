@@ -89,6 +89,8 @@ def _foreign(text: str, position: int) -> ExpressionError:
             position,
         )  # fmt: skip
     name = unicodedata.name(character, f"code {ord(character):#x}").lower()
+    if character.isspace():
+        return ExpressionError(f"the character {character!r} ({name}) is not read", "write a plain space", position)
     return ExpressionError(
         f"the character {character!r} ({name}) is not read", "spell names with the letters a-z, A-Z, digits and _",
         position,
