@@ -1,4 +1,4 @@
-"""What goes wrong, as data: a user's mistakes (with place, excerpt, remedy) and notices; our own bugs are another type."""
+"""What goes wrong, as data: a user's mistakes (place, excerpt, remedy) and notices; our own bugs are another type."""
 
 from __future__ import annotations
 
