@@ -8,7 +8,7 @@ from typing import Any
 from symgen.closedform.forms import ClosedForm
 from symgen.model.model import Model
 from symgen.report.content import ReportInput
-from symgen.report.document import Block, Formula, Paragraph, Reference, Text
+from symgen.report.document import Block, Paragraph, Reference, Text, displayed
 from symgen.report.from_sympy import (
     ACCELERATION,
     COORDINATE,
@@ -100,7 +100,7 @@ class Context:
         opening = "With the intermediate expressions" if not earlier else "With the intermediate expressions of"
         text: Text = (opening, *known, " and") if earlier else (opening,)
         equations = (equation(name_layout(s.name), self.layout.expression(value)) for s, value in new)
-        return [Paragraph(text), Formula(tuple(packed(equations)), label)]
+        return [Paragraph(text), displayed(tuple(packed(equations)), label)]
 
 
 def _remark(symbol: Layout, note: str, printed: bool) -> Block:

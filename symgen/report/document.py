@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from symgen.report.layout import Layout
+from symgen.report.breaking import break_lines
+from symgen.report.layout import Layout, Row
+from symgen.report.measure import page_width
+
+ROOM = 40.0
+"""Width of a displayed formula in em, beside its number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +55,9 @@ class Paragraph:
 
 @dataclass(frozen=True, slots=True)
 class Formula:
-    """Displayed equations, one below the other; numbered where they have a label."""
+    """Displayed equations one below the other, each on its lines; numbered where they have a label."""
 
-    equations: tuple[Layout, ...]
+    equations: tuple[tuple[Row, ...], ...]
     label: str | None = None
 
 
@@ -86,6 +91,11 @@ class CodeLine:
     """One line in fixed pitch on a line of its own."""
 
     text: str
+
+
+def displayed(equations: Iterable[Layout], label: str | None = None) -> Formula:
+    """A formula of these equations, long ones broken into lines of at most ROOM."""
+    return Formula(tuple(break_lines(node, page_width, ROOM) for node in equations), label)
 
 
 Block: TypeAlias = Paragraph | Formula | Items | Table | Figure | CodeLine

@@ -6,7 +6,6 @@ import re
 from html import escape
 
 from symgen.emit.render import render
-from symgen.report.breaking import break_lines
 from symgen.report.document import (
     Block,
     CodeLine,
@@ -23,12 +22,9 @@ from symgen.report.document import (
     Table,
     Text,
 )
-from symgen.report.layout import Layout
+from symgen.report.layout import Row
 from symgen.report.mathml import mathml
-from symgen.report.measure import page_width
 
-ROOM = 42.0
-"""Width of a displayed formula in em, beside its number."""
 CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
 
 
@@ -93,10 +89,10 @@ class _HtmlView:
             case Table():
                 return self._table(block)
 
-    def _formula(self, equations: tuple[Layout, ...], label: str | None) -> str:
+    def _formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
         lines = []
-        for node in equations:
-            for position, line in enumerate(break_lines(node, page_width, ROOM)):
+        for rows in equations:
+            for position, line in enumerate(rows):
                 more = " more" if position else ""
                 lines.append(
                     f'<div class="line{more}"><math display="inline" displaystyle="true">{mathml(line)}</math></div>'

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from symgen.emit.render import render
-from symgen.report.breaking import break_lines
 from symgen.report.document import (
     Block,
     CodeLine,
@@ -21,13 +20,12 @@ from symgen.report.document import (
     Text,
 )
 from symgen.report.latex_math import GREEK, RELATIONS, latex_math
-from symgen.report.layout import Layout
+from symgen.report.layout import Row
 from symgen.report.measure import page_width
 
-ROOM = 40.0
 LINE = 44.0
 COLUMN_GAP = 1.3
-"""Widths in em of displayed formulas, of a line of text, and of the space between the columns of a table."""
+"""Widths in em of a line of text, and of the space between the columns of a table."""
 SPECIAL: dict[str, str] = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
     "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}",
@@ -108,10 +106,10 @@ class _LatexView:
             case Table():
                 return self._table(block)
 
-    def _formula(self, equations: tuple[Layout, ...], label: str | None) -> str:
+    def _formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
         lines = []
-        for node in equations:
-            for position, line in enumerate(break_lines(node, page_width, ROOM)):
+        for rows in equations:
+            for position, line in enumerate(rows):
                 indent = r"\quad " if position else ""
                 lines.append(f"& {indent}{latex_math(line).strip()}")
         if label is not None:

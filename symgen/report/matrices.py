@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy
 
-from symgen.report.document import Block, Formula
+from symgen.report.document import ROOM, Block, displayed
 from symgen.report.from_sympy import SympyLayout
 from symgen.report.layout import (
     Accent,
@@ -31,7 +31,6 @@ from symgen.report.names import name_layout
 from symgen.report.prose import paragraph
 from symgen.report.setting import power
 
-ROOM = 40.0
 LARGEST = 3000
 """Nodes above which a matrix is described, not printed."""
 DENOMINATOR_NAMES = ("a", "d", "h", "w")
@@ -42,7 +41,7 @@ def array_blocks(symbol: Layout, array: Array, label: str | None) -> tuple[Block
     """symbol = array in one formula, or one equation per entry that is not zero."""
     whole = equation(symbol, array)
     if page_width(whole) <= ROOM:
-        return (Formula((whole,), label),)
+        return (displayed((whole,), label),)
     rows = array.rows
     column = len(rows[0]) == 1
     symmetric = len(rows) == len(rows[0]) and all(rows[i][j] == rows[j][i] for i in range(len(rows)) for j in range(i))
@@ -52,14 +51,14 @@ def array_blocks(symbol: Layout, array: Array, label: str | None) -> tuple[Block
         for j, entry in enumerate(row)
         if entry != ZERO and not (symmetric and j < i)
     )
-    what = "components" if column else "entries on and above the diagonal" if symmetric else "entries"
-    kind = "is symmetric; its " if symmetric and not column else "has the "
-    complete = all(entry != ZERO for row in rows for entry in row)
+    what = "components" if column else "entries"
+    if any(entry == ZERO for row in rows for entry in row):
+        what = f"non-zero {what}"
     if symmetric and not column:
-        words = f"{{}} {kind}{what}{'' if complete else ' that are not zero'} are"
+        opening = paragraph(f"the symmetric matrix {{}} with, on and above the diagonal, the {what}", symbol)
     else:
-        words = f"{{}} {kind}{'' if complete else 'non-zero '}{what}"
-    return (paragraph(words, symbol), Formula(tuple(packed(entries)), label))
+        opening = paragraph(f"{{}} with the {what}", symbol)
+    return (opening, displayed(tuple(packed(entries)), label))
 
 
 def packed(equations: Iterable[Layout]) -> Iterator[Layout]:
@@ -135,11 +134,11 @@ def matrix_blocks(
     whole = equation(symbol, Product((Fraction(Numeral("1"), scale), array)))
     if page_width(whole) <= ROOM:
         if not new:
-            return (Formula((whole,), label),)
-        return (Formula((whole,), label), paragraph("with"), Formula((where,), f"denominator_{name}"))
+            return (displayed((whole,), label),)
+        return (displayed((whole,), label), paragraph("with"), displayed((where,), f"denominator_{name}"))
     opening: tuple[Block, ...] = ()
     if new:
-        opening = (paragraph("With the common denominator"), Formula((where,), f"denominator_{name}"))
+        opening = (paragraph("With the common denominator"), displayed((where,), f"denominator_{name}"))
     return (*opening, *array_blocks(Product((scale, symbol)), array, label))
 
 

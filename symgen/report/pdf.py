@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from symgen.emit.render import render
-from symgen.report.breaking import break_lines
 from symgen.report.document import (
     Block,
     CodeLine,
@@ -21,11 +20,8 @@ from symgen.report.document import (
     Text,
 )
 from symgen.report.html import svg_element
-from symgen.report.layout import Layout, tall
-from symgen.report.measure import page_width
+from symgen.report.layout import Row, tall
 from symgen.report.typst_math import quoted, typst_math
-
-ROOM = 42.0
 
 
 def render_pdf(document: Document) -> bytes:
@@ -92,10 +88,10 @@ class _TypstView:
             case Table():
                 return self._table(block)
 
-    def _formula(self, equations: tuple[Layout, ...], label: str | None) -> str:
+    def _formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
         lines = []
-        for node in equations:
-            for position, line in enumerate(break_lines(node, page_width, ROOM)):
+        for rows in equations:
+            for position, line in enumerate(rows):
                 body = f"$ {typst_math(line)} $"
                 lines.append(f"pad(left: 2em, {body})" if position else body)
         if label is None:

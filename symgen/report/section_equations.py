@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.report.context import Context
-from symgen.report.document import Block, Formula, Reference, Section
+from symgen.report.document import Block, Reference, Section, displayed
 from symgen.report.layout import (
     Accent,
     Fenced,
@@ -57,7 +57,7 @@ def equations_of_motion(context: Context) -> Section:
         names.append(Qa)
     blocks: list[Block] = [
         paragraph("Lagrange's equations of the first kind, paper (2), read in matrix form, paper (3),"),
-        Formula((_motion(context),), "motion"),
+        displayed((_motion(context),), "motion"),
         paragraph(pattern, *names),
         *_mass(context),
         *_coriolis(context),
@@ -108,7 +108,7 @@ def _coriolis(context: Context) -> list[Block]:
     skew = Sum((("+", Accent(G, "dot")), ("-", Product((TWO, C)))))
     return [
         paragraph("The Coriolis matrix consists of Christoffel symbols (sum over {}),", c),
-        Formula((christoffel,)),
+        displayed((christoffel,)),
         paragraph("the choice that makes {} skew-symmetric. It is", skew),
         *context.quantity("coriolis_matrix", "C"),
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.report.context import Context
-from symgen.report.document import Block, Formula, Reference, Section
+from symgen.report.document import Block, Reference, Section, displayed
 from symgen.report.layout import Fenced, Layout
 from symgen.report.prose import (
     NB,
@@ -43,7 +43,7 @@ def inverse_dynamics(context: Context) -> Section:
     blocks += context.quantity("projected_control_pseudoinverse", "Mplus")
     blocks += [
         paragraph("The inputs that produce a motion are, paper (27),"),
-        Formula((equals(u, juxtaposed(pseudoinverse(Mt), tau)), equals(tau, _balance(context))), "u"),
+        displayed((equals(u, juxtaposed(pseudoinverse(Mt), tau)), equals(tau, _balance(context))), "u"),
     ]
     if context.model.r:
         blocks.append(
@@ -150,6 +150,6 @@ def _inputs_written_out(context: Context) -> list[Block]:
             else []
         )
     return [
-        paragraph("With everything inserted, the inputs are explicit functions of the motion."),
+        paragraph("With everything inserted, the inputs are explicit functions of the motion:"),
         *context.quantity("inverse_dynamics", "uout"),
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.report.context import Context
-from symgen.report.document import Block, Formula, Section
+from symgen.report.document import Block, Section, displayed
 from symgen.report.layout import Accent, Fenced, Layout, Scripts, Sum
 from symgen.report.names import name_layout
 from symgen.report.prose import (
@@ -128,7 +128,7 @@ def _projected(context: Context) -> list[Block]:
     zero = equals(juxtaposed(NB, transposed(B)), ZERO)
     return [
         paragraph(pattern, NB, lam, zero, B),
-        Formula((equals(left, right),), "projected"),
+        displayed((equals(left, right),), "projected"),
         paragraph("Their number is {}, their rank {}.", equals(small_n, number(context.model.n)), rank),
         paragraph(
             "Measured velocities and accelerations need not satisfy the constraints; they are projected first, {} "

@@ -11,7 +11,7 @@ from symgen.model.model import (
 )
 from symgen.report.content import Verdict
 from symgen.report.context import Context, sentence
-from symgen.report.document import Block, Formula, InlineMath, Section, Table, Text
+from symgen.report.document import Block, Formula, InlineMath, Section, Table, Text, displayed
 from symgen.report.from_expression import expression_layout
 from symgen.report.layout import Array, Layout, Letter, Relation, Row, equation
 from symgen.report.matrices import array_blocks
@@ -87,10 +87,10 @@ def _detail(item: Published, verdict: Verdict) -> list[Block]:
                     _symbol(item.quantity),
                     *_velocities(item.independent),
                 ),
-                Formula((_vanishing(item.where_zero),)),
+                displayed((_vanishing(item.where_zero),)),
             ]
             if item.corrected is not None and verdict.verdict == "misprinted":
-                blocks += [paragraph("Correct is"), Formula((_vanishing(item.corrected),))]
+                blocks += [paragraph("Correct is"), displayed((_vanishing(item.corrected),))]
     return blocks
 
 
@@ -112,12 +112,12 @@ def _where(where: tuple[tuple[str, Expression], ...]) -> tuple[Block, ...]:
         return ()
     return (
         paragraph("where"),
-        Formula(tuple(equation(name_layout(name), expression_layout(value)) for name, value in where)),
+        displayed(tuple(equation(name_layout(name), expression_layout(value)) for name, value in where)),
     )
 
 
 def _equations(pairs: tuple[tuple[Expression, Expression], ...]) -> Formula:
-    return Formula(tuple(equation(expression_layout(left), expression_layout(right)) for left, right in pairs))
+    return displayed(tuple(equation(expression_layout(left), expression_layout(right)) for left, right in pairs))
 
 
 def _vanishing(expression: Expression) -> Row:

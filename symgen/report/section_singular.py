@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symgen.closedform.singular import SingularSet
 from symgen.report.context import Context
-from symgen.report.document import Block, Formula, Section
+from symgen.report.document import Block, Section, displayed
 from symgen.report.layout import Relation, Row, size
 from symgen.report.matrices import packed
 from symgen.report.prose import SYMBOLS, ZERO, Slot, paragraph, say
@@ -35,7 +35,7 @@ def _one(context: Context, found: SingularSet) -> list[Block]:
         return [paragraph(OPENING[found.kind] + "; {}.", *_slots(found), found.explanation.rstrip("."))]
     equations = tuple(Row((context.layout.expression(value), Relation("="), ZERO)) for value in found.vanishing)
     if found.decided:
-        return [paragraph(OPENING[found.kind] + "; this happens where", *_slots(found)), Formula(equations)]
+        return [paragraph(OPENING[found.kind] + "; this happens where", *_slots(found)), displayed(equations)]
     nodes = sum(size(line) for line in equations)
     if nodes > LARGEST:
         many = f"; these are the common zeros of {len(equations)} expressions with {nodes} symbols, not printed."
@@ -43,7 +43,7 @@ def _one(context: Context, found: SingularSet) -> list[Block]:
     opening = paragraph(
         OPENING[found.kind] + "; this happens where all of these expressions vanish at once:", *_slots(found)
     )
-    return [opening, Formula(tuple(packed(equations)))]
+    return [opening, displayed(tuple(packed(equations)))]
 
 
 def _slots(found: SingularSet) -> list[Slot]:

@@ -7,12 +7,12 @@ from symgen.model.model import Input, Range
 from symgen.report.context import Context, text_of
 from symgen.report.document import (
     Block,
-    Formula,
     InlineCode,
     InlineMath,
     Section,
     Table,
     Text,
+    displayed,
 )
 from symgen.report.from_expression import expression_layout
 from symgen.report.layout import (
@@ -25,6 +25,7 @@ from symgen.report.layout import (
     equation,
     signed,
 )
+from symgen.report.matrices import packed
 from symgen.report.names import name_layout
 from symgen.report.numerals import rational_text
 from symgen.report.prose import (
@@ -72,7 +73,7 @@ def system(context: Context) -> Section:
         blocks.append(paragraph("The model has no parameters."))
     if model.definitions:
         named = tuple(equation(name_layout(d.name), expression_layout(d.value)) for d in model.definitions)
-        blocks += [paragraph("These expressions have names of their own:"), Formula(named)]
+        blocks += [paragraph("These expressions have names of their own:"), displayed(tuple(packed(named)))]
     blocks += [*_energies(context), *_constraints(context), *_inputs(context), *_applied_forces(context)]
     return Section(say("The system"), tuple(blocks))
 
@@ -132,12 +133,12 @@ def _energies(context: Context) -> list[Block]:
     potential = expression_layout(context.model.potential_energy)
     blocks: list[Block] = [
         paragraph("The kinetic energy is quadratic in the rates:"),
-        Formula((equation(T, expression_layout(context.model.kinetic_energy)),), "T"),
+        displayed((equation(T, expression_layout(context.model.kinetic_energy)),), "T"),
     ]
     if potential == ZERO:
         blocks.append(paragraph("There is no potential energy, {}.", equals(U, ZERO)))
     else:
-        blocks += [paragraph("The potential energy is"), Formula((equation(U, potential),), "U")]
+        blocks += [paragraph("The potential energy is"), displayed((equation(U, potential),), "U")]
     return blocks
 
 
@@ -154,7 +155,7 @@ def _constraints(context: Context) -> list[Block]:
         rows = [row for row in model.constraints if row.kind == kind]
         if rows:
             equations = tuple(equation(expression_layout(row.expression), ZERO) for row in rows)
-            blocks += [paragraph(intro), Formula(equations, f"constraints_{kind}")]
+            blocks += [paragraph(intro), displayed(equations, f"constraints_{kind}")]
     names: list[InlineCode | str] = []
     for row in model.constraints:
         names += [", ", InlineCode(row.name)] if names else [InlineCode(row.name)]
@@ -209,7 +210,7 @@ def _applied_forces(context: Context) -> list[Block]:
     )
     return [
         paragraph("Further generalized forces {}, damping for example, stand on the right-hand side:", Qa),
-        Formula(equations),
+        displayed(equations),
     ]
 
 
