@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from symgen.ir.kernel import Kernel, Scalar, Status
+from symgen.ir.kernel import Argument, Kernel, Scalar, Status
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
 LONGEST_COMPILATION = 600.0
@@ -89,6 +89,11 @@ class Compilation:
             self._process.wait()
 
 
+def signature(kernel: Kernel) -> tuple[Argument, ...]:
+    """The array arguments of generated functions: those of length 0 are left out."""
+    return tuple(argument for argument in kernel.arguments if argument.length)
+
+
 class CFunction:
     """One kernel of a library: arrays, then the parameter struct, then the result."""
 
@@ -96,7 +101,7 @@ class CFunction:
         self._function = library[f"{model}_{kernel.name}{SUFFIXES[scalar]}"]
         self._function.restype = ctypes.c_int
         self._scalar = C_TYPES[scalar]
-        self._arguments = tuple(argument.name for argument in kernel.arguments)
+        self._arguments = tuple(argument.name for argument in signature(kernel))
         self._result = self._scalar * max(1, math.prod(kernel.shape))
 
     def __call__(self, arrays: dict[str, Any], parameters: Any) -> Outcome:

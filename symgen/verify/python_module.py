@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from symgen.ir.kernel import Kernel, Status
-from symgen.verify.compile import Outcome
+from symgen.verify.compile import Outcome, signature
 from symgen.verify.reference import State
 
 MODULE_NAME = "symgen_verified_module"
@@ -30,15 +30,15 @@ class PythonModule:
         """All states in one vectorised call; a state without result has NaN entries and no status of its own."""
         import numpy as np
 
-        arrays = [np.array([getattr(s, a.name) for s in states], dtype=np.float64) for a in kernel.arguments]
-        columns = np.array([s.parameters for s in states], dtype=np.float64).reshape(len(states), -1).T
+        arrays = [np.array([getattr(s, a.name) for s in states], dtype=np.float64) for a in signature(kernel)]
+        columns = [np.array(column) for column in zip(*(s.parameters for s in states), strict=True)]
         result = getattr(self.module, kernel.name)(*arrays, p=self.module.Parameters(*columns))
         rows: list[list[float]] = result.reshape(len(states), -1).tolist()
         return [Outcome(self._status(row), tuple(row)) for row in rows]
 
     def run_single(self, kernel: Kernel, state: State) -> Outcome:
         """One state without leading axes."""
-        arrays: list[Any] = [list(getattr(state, argument.name)) for argument in kernel.arguments]
+        arrays: list[Any] = [list(getattr(state, argument.name)) for argument in signature(kernel)]
         try:
             result = getattr(self.module, kernel.name)(*arrays, p=self.module.Parameters(*state.parameters))
         except self.module.StateError as refusal:

@@ -11,6 +11,10 @@ import pytest
 import shipped
 from mechanisms import build
 
+from symgen.derive.select import derive_quantities
+from symgen.emit.c import emit_c
+from symgen.emit.python import emit_python
+from symgen.ir.schedule import schedule
 from symgen.verify import run
 from symgen.verify.certificate import Certificate
 from symgen.verify.compile import find_compiler
@@ -126,3 +130,17 @@ def test_constraints_that_nothing_satisfies_are_said_so() -> None:
     model = build("nowhere", "x y", "x_dot**2/2 + y_dot**2/2", geometric=("x**2 + y**2 + 1",))
     with pytest.raises(VerificationError, match=r"no configuration .* was found; give a start under `configuration`"):
         verify(model, [], {}, None)
+
+
+@pytest.mark.toolchain
+def test_a_model_without_inputs_parameters_and_constraints_passes(tool: Callable[[str], str]) -> None:
+    tool("cc")
+    model = build("bare", "x y", "x_dot**2 + (2 + cos(x))*y_dot**2", "x*y")
+    derivations = derive_quantities(model, ("all",))
+    programs = {scalar: schedule(derivations.mechanics, derivations.quantities, scalar) for scalar in shipped.SCALARS}
+    files = emit_python(model, programs["float64"])
+    for program in programs.values():
+        files |= emit_c(model, program)
+    found = verify(model, programs["float64"].kernels, *generated_sources(model, files), STATES)
+    assert found.failures == ()
+    assert {"forward_dynamics", "energy"} <= {record.quantity for record in found.errors}
