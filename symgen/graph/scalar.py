@@ -322,7 +322,7 @@ class Graph:
         elif a.op in ("mul", "div"):
             sign = 1 if a.op == "mul" else -1
             (k1, left), (k2, right) = self.monomial(a.args[0]), self.monomial(a.args[1])
-            if len(left) + len(right) > MOST_FACTORS:
+            if len(left) + len(right) > MOST_FACTORS or (sign < 0 and k2 == 0):
                 result = (Fraction(1), {a: 1})
             else:
                 powers = dict(left)
