@@ -9,6 +9,7 @@ from itertools import combinations
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.homogeneous import common_factor, divide
+from symgen.closedform.limits import WORK_LIMIT, TooLargeError
 from symgen.closedform.matrices import add, determinant, identity, multiply, transpose, zero
 from symgen.closedform.mechanics import Mechanics, load, time_derivative
 from symgen.closedform.minors import (
@@ -28,13 +29,6 @@ from symgen.closedform.quotient import Matrix, Quotient, polynomial, quotient
 from symgen.closedform.ring import TrigRing
 from symgen.closedform.structure import Structure
 from symgen.model.model import Model
-
-WORK_LIMIT = 300_000
-"""Products of terms, about two seconds of work; what needs more is not attempted."""
-
-
-class TooLargeError(Exception):
-    """An estimate made before building says that a closed form is not worth it; the text is the reason."""
 
 
 class Exact:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from sympy import Expr, ImmutableDenseMatrix, Symbol
 
 from symgen.closedform.display import latex_name
-from symgen.closedform.exact import Exact, TooLargeError
-from symgen.closedform.mechanics import derive_mechanics, make_translator
+from symgen.closedform.exact import Exact
+from symgen.closedform.limits import TooLargeError
+from symgen.closedform.mechanics import Mechanics, make_translator
 from symgen.closedform.points import generic_points
 from symgen.closedform.quotient import Matrix
 from symgen.closedform.singular import SingularSet, derive_singular_sets
@@ -71,10 +72,10 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
 
     `straight_line_operations` are the operation counts of the generated kernels: a closed form that is estimated at
     more than ten times that is given in named intermediates or not at all.  Raises ArithmeticError for a model that
-    divides by something identically zero.
+    divides by something identically zero, TooLargeError when already B or M is too long to write out.
     """
     translator = make_translator(model, published_expressions(model))
-    mechanics = derive_mechanics(model, translator)
+    mechanics = Mechanics(model, translator)
     points = generic_points(model, mechanics, 3) or generic_points(model, mechanics, 3, on_constraints=False)
     structure = derive_structure(model, mechanics, points)
     exact = Exact(model, mechanics, structure)
@@ -227,7 +228,8 @@ class _Writer:
         try:
             reason = self._estimate(quantity, work)
             if not reason:
-                matrix = build()
+                with self.exact.ring.work.limited(quantity.replace("_", " ")):
+                    matrix = build()
                 terms = sum(len(e.numerator) + len(e.denominator) - 1 for row in matrix for e in row)
                 if terms <= (LONG_MATRIX if structured else LONGEST_MATRIX):
                     printed = ImmutableDenseMatrix([[self.speller.quotient(e) for e in row] for row in matrix])

@@ -134,11 +134,6 @@ def _order(p: PolyElement) -> tuple[int, Sequence[tuple[int, ...]], Sequence[str
     return (len(terms), [tuple(-e for e in m) for m, _ in terms], [str(c) for _, c in terms])
 
 
-def squarefree_factors(ring: TrigRing, p: PolyElement) -> frozenset[PolyElement]:
-    """The distinct irreducible factors that contain a generator."""
-    return frozenset(factor for factor, _ in factorise(ring, p)[1])
-
-
 def never_zero(ring: TrigRing, factor: PolyElement) -> bool:
     """Whether a homogeneous factor is certainly free of real zeros, for parameters other than zero.
 

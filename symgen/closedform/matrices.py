@@ -44,11 +44,6 @@ def add(left: Matrix, right: Matrix) -> Matrix:
     return tuple(tuple(a + b for a, b in zip(u, v, strict=True)) for u, v in zip(left, right, strict=True))
 
 
-def negate(matrix: Matrix) -> Matrix:
-    """The matrix times -1."""
-    return tuple(tuple(-a for a in row) for row in matrix)
-
-
 def identity(ring: TrigRing, size: int) -> Matrix:
     """The unit matrix."""
     return tuple(tuple(one(ring) if i == j else zero(ring) for j in range(size)) for i in range(size))

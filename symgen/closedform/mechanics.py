@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 from symgen.closedform.matrices import add, column, multiply, zero
 from symgen.closedform.quotient import Matrix, Quotient, polynomial
@@ -14,25 +14,92 @@ from symgen.model.expression import Expression
 from symgen.model.model import Model
 
 
-@dataclass(frozen=True, slots=True)
 class Mechanics:
-    """The pieces of the motion equations (3); vectors are matrices with one column."""
+    """The pieces of the motion equations (3), derived when asked for; vectors are matrices with one column.
 
-    translator: Translator
-    mass: Matrix
-    coriolis: Matrix
-    coriolis_force: Matrix
-    potential_force: Matrix
-    applied_force: Matrix
-    residual: Matrix
-    jacobian: Matrix
-    jacobian_dot: Matrix
-    control: Matrix
+    Raises TooLargeError where the expanded expressions need too much work.
+    """
+
+    def __init__(self, model: Model, translator: Translator) -> None:
+        self.model = model
+        self.translator = translator
+        self._names = [c.name for c in model.coordinates]
+        self._rates = [c.rate for c in model.coordinates]
 
     @property
     def ring(self) -> TrigRing:
         """The ring all entries live in."""
         return self.translator.ring
+
+    @cached_property
+    def mass(self) -> Matrix:
+        """G (3), the second derivatives of T."""
+        with self.ring.work.limited("the mass matrix"):
+            kinetic = self.translator.value(self.model.kinetic_energy)
+            return _mass_matrix(self.translator, kinetic, self._rates)
+
+    @cached_property
+    def coriolis(self) -> Matrix:
+        """C (3), Christoffel's."""
+        mass = self.mass
+        with self.ring.work.limited("the Coriolis matrix"):
+            return _christoffel(self.translator, mass, self._names, self._rates)
+
+    @cached_property
+    def coriolis_force(self) -> Matrix:
+        """C qd."""
+        return multiply(self.ring, self.coriolis, tuple((self.translator.name(rate),) for rate in self._rates))
+
+    @cached_property
+    def potential_force(self) -> Matrix:
+        """Q, the gradient of U."""
+        with self.ring.work.limited("the potential forces"):
+            potential = self.translator.value(self.model.potential_energy)
+            return column([self.translator.derivative(potential, name) for name in self._names])
+
+    @cached_property
+    def applied_force(self) -> Matrix:
+        """Q_a."""
+        applied = {name: zero(self.ring) for name in self._names}
+        with self.ring.work.limited("the applied forces"):
+            for force in self.model.applied_forces:
+                applied[force.coordinate] = applied[force.coordinate] + self.translator.value(force.expression)
+        return column([applied[name] for name in self._names])
+
+    @cached_property
+    def residual(self) -> Matrix:
+        """g of the geometric constraints."""
+        rows = [row for row in self.model.constraints if row.kind == "geometric"]
+        with self.ring.work.limited("the geometric constraints"):
+            return column([self.translator.value(row.expression) for row in rows])
+
+    @cached_property
+    def jacobian(self) -> Matrix:
+        """B (1): derivatives of geometric constraints by q, of non-holonomic ones by qd."""
+        rows = []
+        with self.ring.work.limited("B"):
+            for row in self.model.constraints:
+                value = self.translator.value(row.expression)
+                names = self._names if row.kind == "geometric" else self._rates
+                rows.append(tuple(self.translator.derivative(value, name) for name in names))
+        return tuple(rows)
+
+    @cached_property
+    def jacobian_dot(self) -> Matrix:
+        """The time derivative of B."""
+        jacobian = self.jacobian
+        with self.ring.work.limited("the time derivative of B"):
+            return tuple(tuple(time_derivative(self.translator, e, self.model) for e in row) for row in jacobian)
+
+    @cached_property
+    def control(self) -> Matrix:
+        """M (3)."""
+        with self.ring.work.limited("the control matrix"):
+            columns = [
+                {name: self.translator.value(factor) for name, factor in control.acts_on}
+                for control in self.model.inputs
+            ]
+        return tuple(tuple(entries.get(name, zero(self.ring)) for entries in columns) for name in self._names)
 
 
 def make_translator(model: Model, further: Iterable[Expression] = ()) -> Translator:
@@ -51,41 +118,6 @@ def make_translator(model: Model, further: Iterable[Expression] = ()) -> Transla
     others += [factor for control in model.inputs for _, factor in control.acts_on]
     others += [force.expression for force in model.applied_forces]
     return Translator(variables, [c.name for c in model.coordinates], definitions, preferred, [*others, *further])
-
-
-def derive_mechanics(model: Model, translator: Translator) -> Mechanics:
-    """Differentiate the energies and constraints of the model."""
-    ring = translator.ring
-    names = [c.name for c in model.coordinates]
-    rates = [c.rate for c in model.coordinates]
-    mass = _mass_matrix(translator, translator.value(model.kinetic_energy), rates)
-    coriolis = _christoffel(translator, mass, names, rates)
-    velocity = tuple((translator.name(rate),) for rate in rates)
-    potential = translator.value(model.potential_energy)
-    applied = {name: zero(ring) for name in names}
-    for force in model.applied_forces:
-        applied[force.coordinate] = applied[force.coordinate] + translator.value(force.expression)
-    rows: list[tuple[Quotient, ...]] = []
-    residual: list[Quotient] = []
-    for row in model.constraints:
-        value = translator.value(row.expression)
-        if row.kind == "geometric":
-            residual.append(value)
-        rows.append(tuple(translator.derivative(value, name) for name in (names if row.kind == "geometric" else rates)))
-    jacobian = tuple(rows)
-    controls = [{name: translator.value(factor) for name, factor in control.acts_on} for control in model.inputs]
-    return Mechanics(
-        translator=translator,
-        mass=mass,
-        coriolis=coriolis,
-        coriolis_force=multiply(ring, coriolis, velocity),
-        potential_force=column([translator.derivative(potential, name) for name in names]),
-        applied_force=column([applied[name] for name in names]),
-        residual=column(residual),
-        jacobian=jacobian,
-        jacobian_dot=tuple(tuple(time_derivative(translator, entry, model) for entry in row) for row in jacobian),
-        control=tuple(tuple(entries.get(name, zero(ring)) for entries in controls) for name in names),
-    )
 
 
 def time_derivative(translator: Translator, value: Quotient, model: Model) -> Quotient:

@@ -15,8 +15,9 @@ from mpmath import mpf, nstr
 from sympy import ImmutableDenseMatrix
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.exact import Exact, TooLargeError
+from symgen.closedform.exact import Exact
 from symgen.closedform.forms import ClosedForms, dynamic_names
+from symgen.closedform.limits import TooLargeError
 from symgen.closedform.manifold import Manifold
 from symgen.closedform.matrices import dot, multiply, solve, transpose
 from symgen.closedform.minors import common_denominator
@@ -101,11 +102,13 @@ class _Judge:
         """The verdict on the print, and on the corrected form where the print is wrong."""
         quantity, decide, corrected = self._reading(item)
         try:
-            finding = decide(False)
+            with self.ring.work.limited(f"the decision of {item.equation}"):
+                finding = decide(False)
             proven: bool | None = None
             text = finding.text
             if finding.verdict == MISPRINTED and corrected:
-                right = decide(True)
+                with self.ring.work.limited(f"the decision of {item.equation}"):
+                    right = decide(True)
                 proven = right.verdict in (IDENTICAL, CHECKED, ON_MANIFOLD)
                 text += f"; corrected form: {right.verdict}, {right.text}"
         except TooLargeError as large:

@@ -38,6 +38,7 @@ class Quotient:
             return other
         if not other:
             return self
+        self.ring.work.spend(len(self.numerator) + len(other.numerator))
         if self.denominator == other.denominator:
             total = self.numerator + other.numerator
             return polynomial(self.ring, total) if self.is_polynomial else quotient(self.ring, total, self.denominator)
@@ -69,6 +70,9 @@ class Quotient:
         return bool(left == self.ring.product(other.numerator, self.denominator))
 
 
+COST_OF_GCD = 20
+"""Products of terms that a common factor costs per term of its arguments."""
+
 Matrix: TypeAlias = tuple[tuple[Quotient, ...], ...]
 
 
@@ -82,6 +86,7 @@ def quotient(ring: TrigRing, numerator: PolyElement, denominator: PolyElement) -
     if not numerator:
         return polynomial(ring, ring.zero)
     if not denominator.is_ground:
+        ring.work.spend(COST_OF_GCD * (len(numerator) + len(denominator)))
         shared = common_factor(ring, [denominator, numerator])
         numerator, denominator = divide(ring, numerator, shared), divide(ring, denominator, shared)
         numerator, denominator = cancel_plain(ring, numerator, denominator)

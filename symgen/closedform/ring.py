@@ -16,6 +16,7 @@ from sympy import QQ
 from sympy.polys.rings import PolyElement, PolyRing
 
 from symgen.closedform.angles import AngleBasis
+from symgen.closedform.limits import WorkCounter
 from symgen.model.expression import Expression, Name
 
 
@@ -34,6 +35,7 @@ class TrigRing:
     def __init__(
         self, variables: Sequence[str], configuration: Sequence[str], basis: AngleBasis, opaque: Sequence[Opaque]
     ) -> None:
+        self.work = WorkCounter()
         self.variables = tuple(variables)
         self.configuration = frozenset(configuration)
         self.basis = basis
@@ -90,6 +92,7 @@ class TrigRing:
 
     def product(self, p: PolyElement, q: PolyElement) -> PolyElement:
         """The product in normal form."""
+        self.work.spend(len(p) * len(q))
         return self.normal(p * q)
 
     def shape(self, p: PolyElement) -> tuple[int, ...]:

@@ -8,8 +8,9 @@ from typing import Literal
 from sympy import Expr, Integer
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.exact import Exact, TooLargeError
+from symgen.closedform.exact import Exact
 from symgen.closedform.homogeneous import common_factor, divide, factorise, homogeneous, never_zero, parity_classes
+from symgen.closedform.limits import TooLargeError
 from symgen.closedform.minors import common_denominator
 from symgen.closedform.ring import TrigRing
 from symgen.closedform.spelling import Speller
@@ -41,31 +42,34 @@ def derive_singular_sets(model: Model, exact: Exact, speller: Speller) -> tuple[
     """Constraint singularities, input singularities, and those of the chosen independent velocities."""
     found: list[SingularSet] = []
     try:
-        if model.constraints:
-            minors = [v for one in exact.minor_sets for v in one.values.values()]
-            contents = [one.content for one in exact.minor_sets]
-            content = contents[0] if len(contents) == 1 else exact.ring.one
-            found.append(
-                _common_zeros(
-                    exact, speller, "constraint", "constraint_jacobian", minors, content, "the rank of B drops"
-                )
-            )
-        if model.inputs and exact.structure.degree_of_actuation == exact.delta:
-            deltas = [v for one in exact.actuations for v in one.determinants.values()]
-            text = "the degree of actuation drops"
-            quantity = "projected_control_pseudoinverse"
-            found.append(_common_zeros(exact, speller, "input", quantity, deltas, exact.ring.one, text))
-        if model.independent_velocities:
-            complement = exact.complement(model.independent_velocities)
-            if complement is not None:
-                bottom = common_denominator(exact.ring, [e for row in complement for e in row])
-                text = "the chosen velocities become dependent (a property of the choice, not of the mechanism)"
-                found.append(
-                    _common_zeros(exact, speller, "parameter", "orthogonal_complement", [bottom], exact.ring.one, text)
-                )
+        with exact.ring.work.limited("the singular configurations"):
+            _collect(model, exact, speller, found)
     except TooLargeError as large:
         found.append(SingularSet("constraint", "constraint_jacobian", (), False, f"not worked out: {large}"))
     return tuple(found)
+
+
+def _collect(model: Model, exact: Exact, speller: Speller, found: list[SingularSet]) -> None:
+    if model.constraints:
+        minors = [v for one in exact.minor_sets for v in one.values.values()]
+        contents = [one.content for one in exact.minor_sets]
+        content = contents[0] if len(contents) == 1 else exact.ring.one
+        found.append(
+            _common_zeros(exact, speller, "constraint", "constraint_jacobian", minors, content, "the rank of B drops")
+        )
+    if model.inputs and exact.structure.degree_of_actuation == exact.delta:
+        deltas = [v for one in exact.actuations for v in one.determinants.values()]
+        text = "the degree of actuation drops"
+        quantity = "projected_control_pseudoinverse"
+        found.append(_common_zeros(exact, speller, "input", quantity, deltas, exact.ring.one, text))
+    if model.independent_velocities:
+        complement = exact.complement(model.independent_velocities)
+        if complement is not None:
+            bottom = common_denominator(exact.ring, [e for row in complement for e in row])
+            text = "the chosen velocities become dependent (a property of the choice, not of the mechanism)"
+            found.append(
+                _common_zeros(exact, speller, "parameter", "orthogonal_complement", [bottom], exact.ring.one, text)
+            )
 
 
 def essential_factors(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, ...]:

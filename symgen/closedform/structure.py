@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal
 
+from symgen.closedform.limits import TooLargeError
 from symgen.closedform.matrices import dot, multiply, null_space, transpose
 from symgen.closedform.mechanics import Mechanics
 from symgen.closedform.points import Point, rank
 from symgen.closedform.quotient import Matrix, Quotient
 from symgen.model.model import Model
-
-INTEGRABILITY_TERMS = 400
-"""Jacobians with more terms than this are not tested for integrability."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,17 +75,20 @@ def derive_integrability(model: Model, mechanics: Mechanics) -> tuple[Integrabil
     rows = [(i, row.name) for i, row in enumerate(model.constraints) if row.kind == "nonholonomic"]
     if not rows:
         return ()
-    size = sum(len(e.numerator) + len(e.denominator) - 1 for row in mechanics.jacobian for e in row)
-    if size > INTEGRABILITY_TERMS:
-        return tuple(Integrability(name, "not decided", f"the constraints have {size} terms") for _, name in rows)
+    try:
+        with mechanics.ring.work.limited("the test of integrability"):
+            return _integrable_part(model, mechanics, rows)
+    except TooLargeError as large:
+        return tuple(Integrability(name, "not decided", str(large)) for _, name in rows)
+
+
+def _integrable_part(model: Model, mechanics: Mechanics, rows: list[tuple[int, str]]) -> tuple[Integrability, ...]:
     system = mechanics.jacobian
-    steps = 0
     while system:
         smaller = _derived_system(model, mechanics, system)
         if len(smaller) == len(system):
             break
         system = smaller
-        steps += 1
     basis = null_space(mechanics.ring, system, model.n)
     result = []
     for i, name in rows:

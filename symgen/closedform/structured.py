@@ -9,10 +9,14 @@ from itertools import combinations
 from sympy import Expr, ImmutableDenseMatrix, Integer, Symbol
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.exact import Exact, TooLargeError
+from symgen.closedform.exact import Exact
+from symgen.closedform.limits import TooLargeError
 from symgen.closedform.matrices import dot
-from symgen.closedform.minors import left_inverse_terms
+from symgen.closedform.minors import left_inverse_terms, permutation_sign
 from symgen.closedform.spelling import Speller
+
+LONGEST_LOAD = 600
+"""A load tau with more terms than this is not listed."""
 
 MOST_MINORS = 30
 """More named minors than this are not listed."""
@@ -86,8 +90,7 @@ def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) 
     def signed(phi: Mapping[tuple[int, ...], Expr], indices: tuple[int, ...]) -> Expr:
         if len(set(indices)) < len(indices):
             return Integer(0)
-        inversions = sum(a > b for a, b in combinations(indices, 2))
-        return phi[tuple(sorted(indices))] * (-1) ** inversions
+        return phi[tuple(sorted(indices))] * permutation_sign(indices)
 
     entries = [
         [
@@ -136,6 +139,9 @@ def structured_inverse_dynamics(exact: Exact, speller: Speller, left: Structured
     load = [symbol if entry else Integer(0) for symbol, (entry,) in zip(symbols, exact.load, strict=True)]
     matrix = left.matrix * ImmutableDenseMatrix(load)
     used = matrix.free_symbols
+    terms = sum(len(e.numerator) for symbol, (e,) in zip(symbols, exact.load, strict=True) if symbol in used)
+    if terms > LONGEST_LOAD:
+        raise TooLargeError(f"tau has {terms} terms")
     named = tuple(
         (symbol, speller.quotient(entry))
         for symbol, (entry,) in zip(symbols, exact.load, strict=True)

@@ -137,15 +137,17 @@ class Translator:
     def _polynomial_derivative(self, p: PolyElement, name: str) -> Quotient:
         ring = self.ring
         used = set(ring.shape(p))
+        ring.work.spend(len(p))
         position = ring.position[name]
-        total = polynomial(ring, p.diff(ring.generator(position)) if position in used else ring.zero)
+        total = polynomial(ring, p.diff(position) if position in used else ring.zero)
         for index, (s, c) in enumerate(zip(ring.sine, ring.cosine, strict=True)):
             if s not in used and c not in used:
                 continue
             rate = self._angle_slope(index, name)
             if rate:
+                ring.work.spend(4 * len(p))
                 x, y = ring.generator(s), ring.generator(c)
-                turn = ring.normal(y * p.diff(x) - x * p.diff(y))
+                turn = ring.normal(y * p.diff(s) - x * p.diff(c))
                 total = total + polynomial(ring, turn) * rate
         for index, position in enumerate(ring.opaque_position):
             if position in used:
@@ -154,7 +156,7 @@ class Translator:
                     inner = self.derivative(self.value(argument), name)
                     if inner:
                         slope = slope + self.value(outer) * inner
-                total = total + polynomial(ring, ring.normal(p.diff(ring.generator(position)))) * slope
+                total = total + polynomial(ring, ring.normal(p.diff(position))) * slope
         return total
 
     def _angle_slope(self, index: int, name: str) -> Quotient:

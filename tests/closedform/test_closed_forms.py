@@ -290,3 +290,62 @@ def test_symbols_are_named_as_in_the_model() -> None:
     _, forms = shipped("front_car")
     assert forms.symbol_table["theta_dot"] == r"\dot{\theta}"
     assert forms.symbol_table["m_1"] == "m_{1}"
+
+
+def test_an_expression_of_mixed_parity_keeps_its_zeros() -> None:
+    _, forms = derive(
+        """
+model: lever
+coordinates: {a: {unit: rad}}
+kinetic_energy: a_dot**2/2
+potential_energy: 0
+inputs: {f: {acts_on: {a: 1 + cos(a)}}}
+"""
+    )
+    (found,) = forms.singular_sets
+    assert found.vanishing == (cos(Symbol("a")) + 1,)
+    assert (
+        forms.forms["projected_control_pseudoinverse"].matrix == Matrix([[1 / (cos(Symbol("a")) + 1)]]).as_immutable()
+    )
+
+
+def chain(links: int) -> str:
+    """A chain of links in relative angles: T expands to more terms than anyone wants to read."""
+    size = range(1, links + 1)
+    definitions = []
+    for i in size:
+        angle = " + ".join(f"q_{k}" for k in range(1, i + 1))
+        rate = " + ".join(f"q_{k}_dot" for k in range(1, i + 1))
+        before = (f"vx_{i - 1}", f"vy_{i - 1}") if i > 1 else ("0", "0")
+        definitions += [f"w_{i}: {rate}", f"vx_{i}: {before[0]} - l_{i}*sin({angle})*w_{i}"]
+        definitions += [f"vy_{i}: {before[1]} + l_{i}*cos({angle})*w_{i}"]
+    energy = " + ".join(f"m_{i}/2*(vx_{i}**2 + vy_{i}**2)" for i in size)
+    return "\n".join(
+        [
+            "model: chain",
+            "coordinates: {" + ", ".join(f"q_{i}: {{unit: rad}}" for i in size) + "}",
+            "parameters: {" + ", ".join(f"l_{i}: 0.3, m_{i}: 1" for i in size) + "}",
+            "definitions:",
+            *(f"  {definition}" for definition in definitions),
+            f"kinetic_energy: {energy}",
+            "potential_energy: 0",
+            "inputs: {drive: {acts_on: {q_1: 1}}}",
+        ]
+    )
+
+
+def test_a_long_chain_is_refused_by_counting_not_by_waiting() -> None:
+    _, forms = derive(chain(9))
+    assert forms.forms["coriolis_matrix"].matrix is None
+    assert "products of terms" in forms.forms["coriolis_matrix"].note
+    assert forms.forms["inverse_dynamics"].matrix is None
+    assert forms.forms["projected_control_pseudoinverse"].matrix is not None
+    assert forms.structure.differential_freedom == 9
+
+
+def test_a_short_chain_is_written_in_absolute_angles() -> None:
+    _, forms = derive(chain(3))
+    matrix = forms.forms["mass_matrix"].matrix
+    assert matrix is not None
+    assert matrix[2, 2] == Symbol("l_3") ** 2 * Symbol("m_3")
+    assert matrix[2, 0].atoms(sin, cos) == {cos(Symbol("q_3")), cos(Symbol("q_2") + Symbol("q_3"))}
