@@ -51,14 +51,14 @@ def array_blocks(symbol: Layout, array: Array, label: str | None) -> tuple[Block
         for j, entry in enumerate(row)
         if entry != ZERO and not (symmetric and j < i)
     )
-    what = "components" if column else "entries"
-    if any(entry == ZERO for row in rows for entry in row):
-        what = f"non-zero {what}"
+    remarks = []
     if symmetric and not column:
-        opening = paragraph(f"the symmetric matrix {{}} with, on and above the diagonal, the {what}", symbol)
-    else:
-        opening = paragraph(f"{{}} with the {what}", symbol)
-    return (opening, displayed(tuple(packed(entries)), label))
+        remarks.append("those below the diagonal follow by symmetry")
+    if any(entry == ZERO for row in rows for entry in row):
+        remarks.append("those not listed are zero")
+    manner = "component by component" if column else "entry by entry"
+    opening = paragraph(f"{{}}, {'; '.join([manner, ' and '.join(remarks)] if remarks else [manner])}:", symbol)
+    return (opening, displayed(packed(entries), label))
 
 
 def packed(equations: Iterable[Layout]) -> Iterator[Layout]:

@@ -112,6 +112,8 @@ def _derivative(context: Context) -> list[Block]:
         paragraph("Its time derivative is symmetric, {} with {} (Remark 9 of the paper).", formula, where)
     ]
     if context.full and context.form("nullspace_projector_dot") is not None:
+        if context.matrix("nullspace_projector_dot") is not None:
+            blocks.append(paragraph("In closed form it is"))
         blocks += context.quantity("nullspace_projector_dot", "NBdot")
     return blocks
 
