@@ -106,7 +106,7 @@ def _derive(path: Path, options: Options, progress: Progress) -> _Derived:
     derivations = derive_quantities(model, outputs)
     structure = analyse(derivations.mechanics, derivations.generic)
     scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
-    programs = {s: schedule(derivations.mechanics, derivations.quantities, s) for s in scalars}
+    programs = schedule(derivations.mechanics, derivations.quantities, scalars)
     return _Derived(model, derivations, structure, programs)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 from symgen.derive.select import Derivations, derive_quantities
@@ -36,7 +36,7 @@ class System:
     def program(self, scalar: Scalar = "float64") -> Program:
         if scalar not in self._programs:
             mechanics, quantities = self.derivations.mechanics, self.derivations.quantities
-            self._programs[scalar] = schedule(mechanics, quantities, scalar)
+            self._programs[scalar] = schedule(mechanics, quantities, (scalar,))[scalar]
         return self._programs[scalar]
 
     def kernel(self, name: str, scalar: Scalar = "float64") -> Kernel:
@@ -95,7 +95,7 @@ def _float(value: float, scalar: Scalar) -> float:
     return float(value) if scalar == "float64" else round_float32(float(value))
 
 
-@lru_cache(maxsize=None)
+@cache
 def system(text: str, outputs: tuple[str, ...] = ("all",)) -> System:
     """A system shared by the tests of one process."""
     return System(text, outputs)

@@ -26,7 +26,7 @@ def model(name: str) -> Model:
 @cache
 def programs(name: str) -> dict[Scalar, Program]:
     derivations = derive_quantities(model(name), model(name).outputs)
-    return {scalar: schedule(derivations.mechanics, derivations.quantities, scalar) for scalar in SCALARS}
+    return schedule(derivations.mechanics, derivations.quantities, SCALARS)
 
 
 @cache

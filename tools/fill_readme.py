@@ -1,6 +1,6 @@
-"""Fills the marked blocks of README.md and the generated pages of docs/ from what symgen does now.
+"""Fills the marked blocks of README.md and the generated pages of docs/.
 
-`python tools/fill_readme.py` rewrites everything; `--check` only compares the deterministic blocks and lists what differs.
+`python tools/fill_readme.py` rewrites everything; `--check` compares the deterministic parts and lists what differs.
 """
 
 from __future__ import annotations

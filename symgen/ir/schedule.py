@@ -37,14 +37,23 @@ from symgen.model.quantities import QUANTITIES
 
 # The order in which statuses are reported (interface, section 4).
 ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
+# Stands for the range of the sine and cosine until the scalar type is known; no name of a model has a blank.
+ANGLE = "angle limit"
 ARGUMENTS = {quantity.name: quantity.arguments for quantity in QUANTITIES}
 
 
-def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalar: Scalar) -> Program:
-    """All quantities as kernels for one scalar type."""
-    limits = _Limits(mechanics, scalar)
-    kernels = tuple(_kernel(mechanics, derived, limits, scalar) for derived in quantities)
-    return Program(scalar, sincos(scalar), kernels)
+def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalars: Sequence[Scalar]) -> dict[Scalar, Program]:
+    """All quantities as kernels, for each scalar type.
+
+    The order of statements is worked out once; the thresholds, which differ, are filled in last.
+    """
+    limits = _Limits(mechanics)
+    kernels = [_kernel(mechanics, derived, limits) for derived in quantities]
+    programs: dict[Scalar, Program] = {}
+    for scalar in scalars:
+        filler = _Filler(limits.values(scalar))
+        programs[scalar] = Program(scalar, sincos(scalar), tuple(filler.kernel(kernel) for kernel in kernels))
+    return programs
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +67,20 @@ class _Test:
 
 
 class _Limits:
-    """The tests of guards for one scalar type, each made once."""
+    """The tests of guards, each made once, with named thresholds in place of numbers."""
 
-    def __init__(self, mechanics: Mechanics, scalar: Scalar) -> None:
-        self._mechanics, self._scalar = mechanics, scalar
+    def __init__(self, mechanics: Mechanics) -> None:
+        self._mechanics = mechanics
         self._known: dict[Guard, _Test] = {}
+        self._thresholds: dict[str, tuple[Guard, Fraction]] = {}
+
+    def values(self, scalar: Scalar) -> dict[str, Literal]:
+        """The numbers behind the names for one scalar type."""
+        found = {
+            name: Literal(_threshold(self._mechanics, guard, scalar) * factor)
+            for name, (guard, factor) in self._thresholds.items()
+        }
+        return {ANGLE: Literal(ANGLE_LIMIT[scalar]), **found}
 
     def tests(self, guards: Sequence[Guard]) -> list[_Test]:
         """The tests in the order in which statuses are reported."""
@@ -71,12 +89,19 @@ class _Limits:
     def _test(self, guard: Guard) -> _Test:
         if guard not in self._known:
             graph = self._mechanics.graph
-            threshold = _threshold(self._mechanics, guard, self._scalar)
             scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
             size = guard.denominator if guard.degree == 2 else graph.function("abs", (guard.denominator,))
             first = tuple(self.tests(guard.first))
-            self._known[guard] = _Test(guard.status, size, graph.const(threshold) * scale, first)
+            self._known[guard] = _Test(guard.status, size, self._limit(guard, scale), first)
         return self._known[guard]
+
+    def _limit(self, guard: Guard, scale: Node) -> Node:
+        constant = scale.constant
+        factor = Fraction(1) if constant is None else constant
+        name = f"threshold {guard.status.name} {guard.degree} {factor}"
+        self._thresholds[name] = guard, factor
+        threshold = self._mechanics.graph.symbol(name)
+        return threshold * scale if constant is None else threshold
 
 
 def _threshold(mechanics: Mechanics, guard: Guard, scalar: Scalar) -> Fraction:
@@ -90,7 +115,33 @@ def _threshold(mechanics: Mechanics, guard: Guard, scalar: Scalar) -> Fraction:
     return max(value, own) if own is not None else value
 
 
-def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, scalar: Scalar) -> Kernel:
+class _Filler:
+    """Puts numbers in the place of named thresholds."""
+
+    def __init__(self, values: Mapping[str, Literal]) -> None:
+        self._values = values
+
+    def kernel(self, kernel: Kernel) -> Kernel:
+        """The kernel for one scalar type."""
+        return replace(kernel, blocks=tuple(map(self._block, kernel.blocks)))
+
+    def _block(self, block: Block) -> Block:
+        return Block(tuple(map(self._statement, block.statements)), tuple(map(self._check, block.checks)))
+
+    def _statement(self, statement: Statement) -> Statement:
+        if not any(type(o) is Local and o.name in self._values for o in statement.operands):
+            return statement
+        return replace(statement, operands=tuple(map(self._operand, statement.operands)))
+
+    def _check(self, check: Check) -> Check:
+        first = None if check.first is None else self._block(check.first)
+        return replace(check, value=self._operand(check.value), limit=self._operand(check.limit), first=first)
+
+    def _operand(self, operand: Operand) -> Operand:
+        return self._values.get(operand.name, operand) if isinstance(operand, Local) else operand
+
+
+def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     tests = limits.tests(derived.guards)
     roots = list(_roots(tests))
     shared = share_angles(mechanics.graph, [*derived.outputs, *roots])
@@ -98,10 +149,10 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, scalar: Sca
     writer = _Writer(mechanics, ARGUMENTS[derived.name])
     outputs = shared[: len(derived.outputs)]
     regular = [*outputs, *(image[node] for test in tests for node in (test.size, test.limit))]
-    angles = writer.angle_block(regular, scalar)
+    angles = writer.angle_block(regular)
     # outputs come last so that a denominator's statements stand before its test
     statements = writer.write(regular[len(outputs) :]) + writer.write(outputs)
-    late, late_checks = writer.late_angles(regular, scalar)
+    late, late_checks = writer.late_angles(regular)
     rank_checks = tuple(writer.check(test, image) for test in tests)
     if rank_checks:
         # an angle that comes out of a singular step is no angle: the drop of rank is the cause
@@ -110,7 +161,7 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, scalar: Sca
     sizes = {"q": mechanics.n, "qd": mechanics.n, "qdd": mechanics.n, "u": mechanics.m}
     return Kernel(
         name=derived.name,
-        arguments=tuple(Argument(name, sizes[name]) for name in ARGUMENTS[derived.name]),
+        arguments=tuple(Argument(name, sizes[name]) for name in ARGUMENTS[derived.name] if sizes[name]),
         loads=writer.loads(),
         blocks=(angles, Block((*statements, *late), checks)),
         outputs=tuple(writer.operand(node) for node in outputs),
@@ -150,31 +201,31 @@ class _Writer:
         if (value := node.constant) is not None:
             return Literal(value)
         if node.op == "symbol":
-            load = self._symbols[str(node.payload)]
+            load = self._symbols.get(str(node.payload))
+            if load is None:
+                # a threshold, whose number is filled in for each scalar type
+                return Local(str(node.payload))
             if load.argument != "p" and load.argument not in self._arguments:
                 raise SymgenBug(f"schedule: {node.payload} is not an argument of this kernel")
             self._loads[load.local] = load
             return Local(load.local)
         return self._written[node]
 
-    def angle_block(self, outputs: Sequence[Node], scalar: Scalar) -> Block:
+    def angle_block(self, outputs: Sequence[Node]) -> Block:
         """The arguments of the sines and cosines, and the tests of their range."""
         plain = [argument for argument in _angles(outputs) if not _angles([argument])]
         statements = self.write(plain)
-        tests, checks = self._range_checks(plain, scalar)
+        tests, checks = self._range_checks(plain)
         return Block((*statements, *tests), checks)
 
-    def late_angles(self, outputs: Sequence[Node], scalar: Scalar) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
+    def late_angles(self, outputs: Sequence[Node]) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
         """The range tests of arguments that are themselves computed from sines and cosines."""
-        return self._range_checks([argument for argument in _angles(outputs) if _angles([argument])], scalar)
+        return self._range_checks([argument for argument in _angles(outputs) if _angles([argument])])
 
-    def _range_checks(
-        self, arguments: Sequence[Node], scalar: Scalar
-    ) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
+    def _range_checks(self, arguments: Sequence[Node]) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
         sizes = [self._graph.raw("abs", (argument,)) for argument in arguments]
         statements = self.write(sizes)
-        limit = Literal(ANGLE_LIMIT[scalar])
-        checks = tuple(Check(Status.ANGLE_RANGE, limit, self.operand(size), inclusive=True) for size in sizes)
+        checks = tuple(Check(Status.ANGLE_RANGE, Local(ANGLE), self.operand(size), inclusive=True) for size in sizes)
         return tuple(statements), checks
 
     def check(self, test: _Test, image: Mapping[Node, Node]) -> Check:

@@ -97,7 +97,7 @@ def test_figure_7_torques_are_smooth_and_small() -> None:
 def generated(model: Model, folder: Path) -> ModuleType:
     """symgen's own Python module of the model, imported from a file."""
     derivations = derive_quantities(model, ("inverse_dynamics",))
-    files = emit_python(model, schedule(derivations.mechanics, derivations.quantities, "float64"))
+    files = emit_python(model, schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"])
     (text,) = (text for name, text in files.items() if name.endswith(f"{model.name}.py"))
     (folder / "figure_kernel.py").write_text(str(text), encoding="utf-8")
     return importlib.import_module("figure_kernel")

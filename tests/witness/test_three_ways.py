@@ -124,7 +124,7 @@ def test_three_derivations_agree(name: str) -> None:
     witness = witness_functions(model)
     sympy = SympyWitness(model, derive_closed_forms(model))
     derivations = derive_quantities(model, model.outputs)
-    program = schedule(derivations.mechanics, derivations.quantities, "float64")
+    program = schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"]
     interpreter = Interpreter(program.sincos)
     kernels = {kernel.name: kernel for kernel in program.kernels}
 
