@@ -137,7 +137,7 @@ def test_a_model_without_inputs_parameters_and_constraints_passes(tool: Callable
     tool("cc")
     model = build("bare", "x y", "x_dot**2 + (2 + cos(x))*y_dot**2", "x*y")
     derivations = derive_quantities(model, ("all",))
-    programs = {scalar: schedule(derivations.mechanics, derivations.quantities, scalar) for scalar in shipped.SCALARS}
+    programs = schedule(derivations.mechanics, derivations.quantities, shipped.SCALARS)
     files = emit_python(model, programs["float64"])
     for program in programs.values():
         files |= emit_c(model, program)
