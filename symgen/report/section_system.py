@@ -124,7 +124,7 @@ def _parameters(context: Context) -> Table:
 
 
 def _default(value: Expression) -> Text:
-    if isinstance(value, Number):
+    if isinstance(value, Number) and "e" not in rational_text(value.value):
         return say("{}", rational_text(value.value))
     return (InlineMath(expression_layout(value)),)
 

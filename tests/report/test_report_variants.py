@@ -1,0 +1,49 @@
+"""Reports of systems the shipped models do not cover: no inputs, dependent constraints, too few or rivalling inputs."""
+
+from __future__ import annotations
+
+import pytest
+
+from symgen.closedform.forms import derive_closed_forms
+from symgen.model.load import load_text
+from symgen.report.compose import compose
+from symgen.report.content import ReportInput
+from symgen.report.html import render_html
+from symgen.report.latex import render_latex
+from symgen.report.pdf import render_pdf
+
+BASE = """
+model: variant
+coordinates: {x: {}, y: {}, z: {}}
+parameters: {m: 2}
+kinetic_energy: m/2*(x_dot**2 + y_dot**2 + z_dot**2)
+"""
+NO_INPUTS = BASE + "constraints: {geometric: {level: z}, nonholonomic: {edge: sin(x)*x_dot - cos(x)*y_dot}}\n"
+DEPENDENT = BASE + "constraints: {geometric: {one: z + x, two: (z + x)*(2 + y**2)}}\ninputs: {u: {acts_on: {y: 1}}}\n"
+RIVALS = BASE + "inputs: {u: {acts_on: {x: 1}}, v: {acts_on: {x: 2}}}\n"
+
+
+def report(text: str) -> str:
+    """The report of a model given as text, in all three formats, as HTML."""
+    model = load_text(text, "variant.yaml")
+    forms = derive_closed_forms(model)
+    document = compose(
+        ReportInput(model, "1.2.3", forms.forms, forms.structure, forms.integrability, forms.singular_sets)
+    )
+    assert render_latex(document)
+    assert render_pdf(document)
+    return render_html(document)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentences"),
+    [
+        (NO_INPUTS, ("There are no inputs", "Without inputs there is no inverse dynamics", "no inputs.")),
+        (DEPENDENT, ("the constraints depend on each other", "the multipliers are not unique")),
+        (RIVALS, ("redundantly under-actuated", "Moore–Penrose inverse at this rank", "the residual tells")),
+    ],
+)
+def test_words_for_unusual_systems(text: str, sentences: tuple[str, ...]) -> None:
+    page = " ".join(report(text).split())
+    for sentence in sentences:
+        assert sentence in page
