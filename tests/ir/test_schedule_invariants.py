@@ -1,0 +1,131 @@
+"""What every scheduled kernel keeps: one assignment each, no use before it, checks in the order of statuses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from laws_harness import shipped, system
+
+from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Local, Operand, Scalar, Status
+from symgen.ir.sincos import ANGLE_LIMIT, sincos
+
+MODELS = ("skate", "rear_car", "rapkm_2rrr_rr", "slider_crank", "double_pendulum")
+ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
+
+
+def kernels(scalar: Scalar = "float64") -> Iterator[Kernel]:
+    for model in MODELS:
+        yield from system(shipped(model)).program(scalar).kernels
+
+
+def names(*operands: Operand) -> set[str]:
+    return {operand.name for operand in operands if isinstance(operand, Local)}
+
+
+def walk(block: Block, known: set[str]) -> None:
+    """Asserts that a block assigns each name once and uses only what is known; adds its targets."""
+    for statement in block.statements:
+        assert names(*statement.operands) <= known
+        assert len(statement.targets) == (2 if statement.operation == "sincos" else 1)
+        for target in statement.targets:
+            assert target not in known
+            known.add(target)
+    for check in block.checks:
+        # what only a failure needs sees the values so far, and leaves nothing behind
+        inner = set(known)
+        assert names(check.value, check.limit) <= known
+        if check.first is not None:
+            walk(check.first, inner)
+
+
+def used(block: Block) -> set[str]:
+    found = {name for statement in block.statements for name in names(*statement.operands)}
+    for check in block.checks:
+        found |= names(check.value, check.limit)
+        if check.first is not None:
+            found |= used(check.first)
+    return found
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+def test_each_name_is_assigned_once_before_its_use(scalar: Scalar) -> None:
+    for kernel in kernels(scalar):
+        known = {load.local for load in kernel.loads}
+        assert len(known) == len(kernel.loads)
+        assert len({(load.argument, load.index) for load in kernel.loads}) == len(kernel.loads)
+        for block in kernel.blocks:
+            walk(block, known)
+        assert names(*kernel.outputs) <= known
+
+
+def test_nothing_is_computed_in_vain() -> None:
+    for kernel in kernels():
+        wanted = names(*kernel.outputs).union(*map(used, kernel.blocks))
+        for statement in kernel.statements:
+            assert wanted & set(statement.targets), (kernel.name, statement)
+        for load in kernel.loads:
+            assert load.local in wanted, (kernel.name, load)
+
+
+def test_no_operation_is_done_twice() -> None:
+    for kernel in kernels():
+        operations = [(statement.operation, statement.operands) for statement in kernel.statements]
+        assert len(set(operations)) == len(operations), kernel.name
+
+
+def test_checks_stand_in_the_order_in_which_statuses_are_reported() -> None:
+    seen = set()
+    for kernel in kernels():
+        places = [ORDER.index(check.status) for block in kernel.blocks for check in block.checks]
+        assert places == sorted(places), kernel.name
+        seen |= {ORDER[place] for place in places}
+    assert seen == set(ORDER)
+
+
+def test_every_reduced_angle_is_tested() -> None:
+    for scalar in ("float64", "float32"):
+        for kernel in kernels(scalar):
+            angles = sum(statement.operation == "sincos" for statement in kernel.statements)
+            checks = [
+                check for block in kernel.blocks for check in block.checks if check.status is Status.ANGLE_RANGE
+            ]
+            assert len(checks) == angles, kernel.name
+            limits = {check.value for check in checks if check.inclusive}
+            assert limits <= {Literal(ANGLE_LIMIT[scalar])}
+
+
+def test_sizes_are_those_of_the_shape() -> None:
+    for kernel in kernels():
+        count = 1
+        for size in kernel.shape:
+            count *= size
+        assert len(kernel.outputs) == count > 0
+
+
+def test_constant_quantities_cannot_fail() -> None:
+    pendulum = system(shipped("double_pendulum"))
+    kernel = pendulum.kernel("nullspace_projector")
+    assert [operand.value for operand in kernel.outputs if isinstance(operand, Literal)] == [1, 0, 0, 1]
+    assert not kernel.statements
+    assert not any(block.checks for block in kernel.blocks)
+
+
+def test_thresholds_follow_the_scalar_type() -> None:
+    """8 n eps squared enters the limit of a sum of squares."""
+    for scalar in ("float64", "float32"):
+        kernel = system(shipped("slider_crank")).kernel("nullspace_projector", scalar)
+        literals = {o.value for s in kernel.statements for o in s.operands if isinstance(o, Literal)}
+        assert (8 * 3 * UNIT_ROUNDOFF[scalar]) ** 2 in literals
+
+
+def test_the_sine_and_cosine_are_straight_lines() -> None:
+    for scalar in ("float64", "float32"):
+        function = sincos(scalar)
+        known = set(function.parameters)
+        for statement in function.statements:
+            assert statement.operation in ("add", "sub", "mul")
+            assert names(*statement.operands) <= known
+            assert not known & set(statement.targets)
+            known |= set(statement.targets)
+        assert set(function.results) <= known
