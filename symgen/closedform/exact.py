@@ -244,6 +244,8 @@ class Exact:
         for k in range(self.delta):
             entries = [minors.signed((*best[:k], a, *best[k + 1 :]), self.ring) for a in range(self.model.n)]
             shared = common_factor(self.ring, entries)
+            if next(e for e in entries if e).LC < 0:
+                shared = -shared
             columns.append(tuple(polynomial(self.ring, divide(self.ring, e, shared)) for e in entries))
         return transpose(tuple(columns))
 

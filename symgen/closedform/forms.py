@@ -52,14 +52,16 @@ class ClosedForm:
 class ClosedForms:
     """All closed forms of a model and its structure; `exact` holds the same in the ring.
 
+    `null_space` has a basis W of ker B as columns, polynomial in sines and cosines (None where it is too long).
     `actuation_determinants` are (inputs J, Delta_J = det[M_J, B^T]) for every choice of as many inputs as degrees of
     freedom, without the common factor of the minors Phi of B: det(N_B M_J)^T (N_B M_J) = Delta_J^2 / sum Phi^2, the
-    curves of Fig. 6.  Empty for under-actuated models and where the minors are too large.
+    curves of Fig. 6.  Empty for under-actuated models, dependent constraints and where the minors are too large.
     """
 
     model: str
     forms: Mapping[str, ClosedForm]
     structure: Structure
+    null_space: ImmutableDenseMatrix | None
     integrability: tuple[Integrability, ...]
     singular_sets: tuple[SingularSet, ...]
     actuation_determinants: tuple[tuple[tuple[str, ...], Expr], ...]
@@ -80,12 +82,14 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     structure = derive_structure(model, mechanics, points)
     exact = Exact(model, mechanics, structure)
     speller = Speller(exact.ring, dynamic_names(model))
+    kernel = _short_kernel(exact)
     writer = _Writer(model, exact, speller, straight_line_operations or {})
     return ClosedForms(
         model=model.name,
         forms={form.quantity: form for form in writer.all_forms()},
         structure=structure,
-        integrability=derive_integrability(model, mechanics),
+        null_space=None if kernel is None else _spelled(speller, kernel),
+        integrability=derive_integrability(model, mechanics, kernel),
         singular_sets=derive_singular_sets(model, exact, speller),
         actuation_determinants=_actuation_determinants(model, exact, speller),
         symbol_table=writer.symbol_table(),
@@ -93,13 +97,29 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     )
 
 
+def _short_kernel(exact: Exact) -> Matrix | None:
+    """W, unless it is too long to print."""
+    try:
+        kernel = exact.kernel
+    except TooLargeError:
+        return None
+    return kernel if sum(len(entry.numerator) for row in kernel for entry in row) <= LONGEST_MATRIX else None
+
+
+def _spelled(speller: Speller, matrix: Matrix) -> ImmutableDenseMatrix:
+    return ImmutableDenseMatrix([[speller.quotient(entry) for entry in row] for row in matrix])
+
+
 def _actuation_determinants(model: Model, exact: Exact, speller: Speller) -> tuple[tuple[tuple[str, ...], Expr], ...]:
     if not model.inputs or not exact.full_actuation:
         return ()
     try:
-        (actuation,) = exact.actuations
-    except (TooLargeError, ValueError):
+        choices = exact.actuations
+    except TooLargeError:
         return ()
+    if len(choices) != 1:
+        return ()
+    (actuation,) = choices
     scale = speller.polynomial(exact.control_scale) ** exact.delta
     return tuple(
         (tuple(model.inputs[k].name for k in subset), speller.polynomial(value) / scale)
@@ -232,7 +252,7 @@ class _Writer:
                     matrix = build()
                 terms = sum(len(e.numerator) + len(e.denominator) - 1 for row in matrix for e in row)
                 if terms <= (LONG_MATRIX if structured else LONGEST_MATRIX):
-                    printed = ImmutableDenseMatrix([[self.speller.quotient(e) for e in row] for row in matrix])
+                    printed = _spelled(self.speller, matrix)
                     return self._record(ClosedForm(quantity, printed, (), ""))
                 reason = f"not written out: {terms} terms"
             if structured is not None:

@@ -11,7 +11,11 @@ from symgen.closedform.matrices import dot, multiply, null_space, transpose
 from symgen.closedform.mechanics import Mechanics
 from symgen.closedform.points import Point, rank
 from symgen.closedform.quotient import Matrix, Quotient
+from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
+
+LONGEST_CURVATURE = 12
+"""A component of the object of non-holonomy with more terms than this is not printed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,39 +70,56 @@ def describe_actuation(inputs: int, degree: int, freedom: int) -> str:
     return f"{first} {'full-actuated' if degree == freedom else 'under-actuated'}"
 
 
-def derive_integrability(model: Model, mechanics: Mechanics) -> tuple[Integrability, ...]:
+def derive_integrability(model: Model, mechanics: Mechanics, basis: Matrix | None) -> tuple[Integrability, ...]:
     """The largest integrable part of the constraints by derived systems; one verdict for every non-holonomic row.
 
     A row w of the current system I stays when dw vanishes on all pairs of admissible directions, which is what the
     object of non-holonomy (12) measures; I shrinks to the combinations that stay until nothing changes (Frobenius).
+    `basis` is W (n x delta), whose columns the evidence refers to; None where there is none to show.
     """
     rows = [(i, row.name) for i, row in enumerate(model.constraints) if row.kind == "nonholonomic"]
     if not rows:
         return ()
     try:
         with mechanics.ring.work.limited("the test of integrability"):
-            return _integrable_part(model, mechanics, rows)
+            return _integrable_part(model, mechanics, rows, basis)
     except TooLargeError as large:
         return tuple(Integrability(name, "not decided", str(large)) for _, name in rows)
 
 
-def _integrable_part(model: Model, mechanics: Mechanics, rows: list[tuple[int, str]]) -> tuple[Integrability, ...]:
+def _integrable_part(
+    model: Model, mechanics: Mechanics, rows: list[tuple[int, str]], basis: Matrix | None
+) -> tuple[Integrability, ...]:
     system = mechanics.jacobian
     while system:
         smaller = _derived_system(model, mechanics, system)
         if len(smaller) == len(system):
             break
         system = smaller
-    basis = null_space(mechanics.ring, system, model.n)
+    free = null_space(mechanics.ring, system, model.n)
+    part = f"the largest integrable part of all constraints has dimension {len(system)}"
     result = []
     for i, name in rows:
-        if all(not dot(mechanics.ring, mechanics.jacobian[i], vector) for vector in basis):
+        row = mechanics.jacobian[i]
+        if all(not dot(mechanics.ring, row, vector) for vector in free):
             text = "the row belongs to an integrable part of the constraints: it fixes a function of the coordinates"
             result.append(Integrability(name, "integrable", text))
-        else:
-            text = f"largest integrable part of the {len(mechanics.jacobian)} constraints has dimension {len(system)}"
-            result.append(Integrability(name, "not integrable", text))
+            continue
+        evidence = "" if basis is None else _evidence(model, mechanics, row, transpose(basis))
+        result.append(Integrability(name, "not integrable", evidence + part))
     return tuple(result)
+
+
+def _evidence(model: Model, mechanics: Mechanics, row: tuple[Quotient, ...], kernel: Matrix) -> str:
+    """The first component of the row's exterior derivative on columns of W that is not zero, in words."""
+    for (i, x), (j, y) in combinations(enumerate(kernel, 1), 2):
+        value = _exterior(model, mechanics, row, x, y)
+        if value and len(value.numerator) + len(value.denominator) <= LONGEST_CURVATURE:
+            shown = Speller(mechanics.ring).quotient(value)
+            return f"its exterior derivative on columns {i} and {j} of the null-space basis W is {shown}, not zero; "
+        if value:
+            return f"its exterior derivative on columns {i} and {j} of the null-space basis W is not zero; "
+    return "its exterior derivative vanishes on all admissible velocities, but "
 
 
 def _derived_system(model: Model, mechanics: Mechanics, system: Matrix) -> Matrix:
