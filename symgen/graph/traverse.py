@@ -13,20 +13,22 @@ def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> lis
     """Every node the outputs reach, depth first, operands before the node that uses them; `known` ones are left out."""
     order: list[Scalar] = []
     seen: set[Scalar] = set()
+    # a node stands on the stack as itself until it is opened, and behind None until its operands are done
+    stack: list[Scalar | None] = []
     for output in outputs:
-        stack = [output]
+        stack.append(output)
         while stack:
-            node = stack[-1]
-            if node in seen or node in known:
-                stack.pop()
-                continue
-            missing = [a for a in node.args if a not in seen and a not in known]
-            if missing:
-                stack.extend(reversed(missing))
-            else:
+            node = stack.pop()
+            if node is None:
+                done = stack.pop()
+                assert done is not None
+                order.append(done)
+            elif node not in seen and node not in known:
                 seen.add(node)
-                order.append(node)
-                stack.pop()
+                if node.args:
+                    stack += (node, None, *reversed(node.args))
+                else:
+                    order.append(node)
     return order
 
 
