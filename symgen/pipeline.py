@@ -136,12 +136,11 @@ def _verified(
 
 
 def _report(path: Path, report: ReportInput, certificate: Certificate | None) -> dict[str, str | bytes]:
-    """HTML and LaTeX are functions of the model; the PDF says in addition what this run measured."""
+    """HTML and LaTeX are functions of the model; a verified run adds the PDF, which says what it measured."""
     from symgen.report.compose import compose
     from symgen.report.gather import path_charts, with_measurements
     from symgen.report.html import render_html
     from symgen.report.latex import render_latex
-    from symgen.report.pdf import render_pdf
 
     model, stem = report.model, file_stem(report.model.name)
     document = compose(report)
@@ -149,15 +148,16 @@ def _report(path: Path, report: ReportInput, certificate: Certificate | None) ->
         f"report/{stem}.html": render_html(document),
         f"report/{stem}.tex": render_latex(document),
     }
-    if certificate is not None:
-        from symgen.paths.path_equations import PathError
+    if certificate is None:
+        return files
+    from symgen.paths.path_equations import PathError
+    from symgen.report.pdf import render_pdf
 
-        try:
-            charts = path_charts(model)
-        except PathError as error:
-            raise ModelError(str(path), path.read_text(encoding="utf-8"), (error.mistake,)) from error
-        document = compose(with_measurements(report, certificate, charts))
-    return {**files, f"report/{stem}.pdf": render_pdf(document)}
+    try:
+        charts = path_charts(model)
+    except PathError as error:
+        raise ModelError(str(path), path.read_text(encoding="utf-8"), (error.mistake,)) from error
+    return {**files, f"report/{stem}.pdf": render_pdf(compose(with_measurements(report, certificate, charts)))}
 
 
 def _summary(derived: _Derived, certificate: Certificate | None) -> Summary:
