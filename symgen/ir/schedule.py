@@ -149,10 +149,12 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     writer = _Writer(mechanics, ARGUMENTS[derived.name])
     outputs = shared[: len(derived.outputs)]
     regular = [*outputs, *(image[node] for test in tests for node in (test.size, test.limit))]
-    angles = writer.angle_block(regular)
+    arguments = _angles(regular)
+    computed = {argument for argument in arguments if _angles([argument])}
+    angles = writer.angle_block([argument for argument in arguments if argument not in computed])
     # outputs come last so that a denominator's statements stand before its test
     statements = writer.write(regular[len(outputs) :]) + writer.write(outputs)
-    late, late_checks = writer.late_angles(regular)
+    late, late_checks = writer.range_checks([argument for argument in arguments if argument in computed])
     rank_checks = tuple(writer.check(test, image) for test in tests)
     if rank_checks:
         # an angle that comes out of a singular step is no angle: the drop of rank is the cause
@@ -211,18 +213,14 @@ class _Writer:
             return Local(load.local)
         return self._written[node]
 
-    def angle_block(self, outputs: Sequence[Node]) -> Block:
-        """The arguments of the sines and cosines, and the tests of their range."""
-        plain = [argument for argument in _angles(outputs) if not _angles([argument])]
-        statements = self.write(plain)
-        tests, checks = self._range_checks(plain)
+    def angle_block(self, arguments: Sequence[Node]) -> Block:
+        """The arguments of sines and cosines that need no other sine or cosine, and the tests of their range."""
+        statements = self.write(arguments)
+        tests, checks = self.range_checks(arguments)
         return Block((*statements, *tests), checks)
 
-    def late_angles(self, outputs: Sequence[Node]) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
-        """The range tests of arguments that are themselves computed from sines and cosines."""
-        return self._range_checks([argument for argument in _angles(outputs) if _angles([argument])])
-
-    def _range_checks(self, arguments: Sequence[Node]) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
+    def range_checks(self, arguments: Sequence[Node]) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
+        """The tests of the range of angles."""
         sizes = [self._graph.raw("abs", (argument,)) for argument in arguments]
         statements = self.write(sizes)
         checks = tuple(Check(Status.ANGLE_RANGE, Local(ANGLE), self.operand(size), inclusive=True) for size in sizes)
