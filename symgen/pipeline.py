@@ -61,16 +61,13 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     certificate = _verified(derived, options, files, progress) if options.verify else None
     notices = _notices(derived, options, certificate)
     if "report" in options.parts and (certificate is None or certificate.passed):
-        from symgen.report.gather import gather
-
         progress("closed forms and report")
-        report = gather(derived.model, derived.derivations, derived.structure, derived.program)
-        notices += tuple(
-            Notice(f"the non-holonomic row {row.row} is integrable: {row.explanation}")
-            for row in report.integrability
-            if row.verdict == "integrable"
-        )
-        files |= _report(path, report, certificate)
+        report = _gathered(derived)
+        if isinstance(report, Notice):
+            notices += (report,)
+        else:
+            notices += _integrable_rows(report)
+            files |= _report(path, report, certificate)
     if certificate is not None:
         files["certificate.json"] = json.dumps(certificate.to_json(), indent=2, ensure_ascii=False) + "\n"
     return Result(
@@ -86,13 +83,14 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
 def explain(path: Path, quantity: str | None, progress: Progress) -> str:
     """Structure and closed forms as text for the terminal; of one quantity when it is named."""
     from symgen.explain import overview, quantity_text
-    from symgen.report.gather import gather
 
     if quantity is not None and quantity not in BY_NAME:
         raise WrongUseError(f"unknown quantity {quantity!r}; symgen explain MODEL.yaml lists them")
     derived = _derive(path, Options(outputs=("all",), scalars=("float64",)), progress)
     progress("closed forms")
-    report = gather(derived.model, derived.derivations, derived.structure, derived.program)
+    report = _gathered(derived)
+    if isinstance(report, Notice):
+        return report.message
     return overview(report) if quantity is None else quantity_text(report, quantity)
 
 
@@ -133,6 +131,25 @@ def _verified(
     if not c_sources and python_source is None:
         return None
     return verify(derived.model, derived.program.kernels, c_sources, python_source, options.states, progress)
+
+
+def _gathered(derived: _Derived) -> ReportInput | Notice:
+    """What the report says, or why B or M are too long to be written out at all."""
+    from symgen.closedform.limits import TooLargeError
+    from symgen.report.gather import gather
+
+    try:
+        return gather(derived.model, derived.derivations, derived.structure, derived.program)
+    except TooLargeError as large:
+        return Notice(f"closed forms and report are left out: {large}")
+
+
+def _integrable_rows(report: ReportInput) -> tuple[Notice, ...]:
+    return tuple(
+        Notice(f"the non-holonomic row {row.row} is integrable: {row.explanation}")
+        for row in report.integrability
+        if row.verdict == "integrable"
+    )
 
 
 def _report(path: Path, report: ReportInput, certificate: Certificate | None) -> dict[str, str | bytes]:
