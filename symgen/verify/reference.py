@@ -54,7 +54,8 @@ class Reference:
         known = ranks or generic_ranks(self.system)
         if known is None:
             raise ReferenceValueError(
-                f"{model.name}: no configuration that satisfies the geometric constraints was found"
+                f"{model.name}: no configuration that satisfies the geometric constraints was found; "
+                "give a start under `configuration`, and the ranges of the coordinates"
             )
         self.ranks = known
         self._literals: dict[int, list[Any]] = {}

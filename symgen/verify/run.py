@@ -56,26 +56,53 @@ def verify(
     states: int = USUAL_STATES,
     progress: Progress = lambda _: None,
 ) -> Certificate:
-    """Run what was generated and compare it with the reference.
+    """Run what was generated and compare it with the reference; what goes wrong is a failure of the certificate.
 
-    `kernels` name the emitted quantities with their arguments and shapes (those of one program serve for all targets);
+    `kernels` name the emitted quantities with their arguments and shapes (those of one program serve for all targets).
     Up to 64 `states` become fewer (8 at least) where a count of operations predicts more than 20 s; more are taken as
-    asked.
-    Raises VerificationError when fewer than 8 admissible states are found.
+    asked.  Fewer than 8 admissible states found is a failure, no C compiler a note.
     """
-    names = tuple(kernel.name for kernel in kernels)
     compiler = find_compiler() if c_sources else None
-    with _compilations(compiler, c_sources) as compilations:
-        progress("verifying: looking for states")
-        reference = _reference(model)
-        count = states if states > USUAL_STATES else affordable_states(reference, states)
-        doubles = sample_states(reference, names, count)
-        scalars: dict[Scalar, tuple[Sample, ...]] = {scalar: _rounded(doubles, scalar) for scalar in c_sources}
-        if python_source is not None:
-            scalars["float64"] = doubles
-        expected = _expected(reference, names, scalars, progress)
-        progress("verifying: running C and Python")
-        results, failures = _run_c(model, kernels, compilations, scalars)
+    blank = Certificate(
+        model=model.name,
+        states=0,
+        ranks=(),
+        errors=(),
+        invariants=(),
+        conditions=(),
+        versions=_versions(compiler),
+        hashes=tuple(_hashes(model, c_sources, python_source)),
+        failures=(),
+        notes=("no C compiler: C not verified",) if c_sources and compiler is None else (),
+    )
+    try:
+        with _compilations(compiler, c_sources) as compilations:
+            return _verified(blank, model, kernels, compilations, python_source, states, progress)
+    except (VerificationError, ReferenceValueError) as fault:
+        return replace(blank, failures=(str(fault),))
+
+
+def _verified(
+    blank: Certificate,
+    model: Model,
+    kernels: Sequence[Kernel],
+    compilations: Mapping[Scalar, Compilation],
+    python_source: str | None,
+    states: int,
+    progress: Progress,
+) -> Certificate:
+    """The certificate with everything that was found; compilers work while the reference does."""
+    names = tuple(kernel.name for kernel in kernels)
+    progress("verifying: looking for states")
+    reference = Reference(model)
+    count = states if states > USUAL_STATES else affordable_states(reference, states)
+    doubles = sample_states(reference, names, count)
+    samples: dict[Scalar, tuple[Sample, ...]] = {scalar: _rounded(doubles, scalar) for scalar in compilations}
+    if python_source is not None:
+        samples["float64"] = doubles
+    expected = _expected(reference, names, samples, progress)
+    progress("verifying: running C and Python")
+    results, failures = _run_c(model, kernels, compilations, samples)
     if python_source is not None:
         outcomes, faults = _run_python(python_source, kernels, doubles)
         results["Python float64"] = ("float64", outcomes)
@@ -84,25 +111,25 @@ def verify(
     laws: list[InvariantRecord] = []
     judged: list[str] = []
     for target, (scalar, made) in results.items():
-        twin = next((t for t, other in results.items() if t in judged and other == (scalar, made)), None)
+        twin = next((t for t in judged if results[t] == (scalar, made)), None)
         if twin is None:
             records = [compare(name, target, [e[name] for e in expected[scalar]], made[name]) for name in names]
-            found = check_laws(target, reference, scalars[scalar], expected[scalar], made)
+            found = check_laws(target, reference, samples[scalar], expected[scalar], made)
         else:  # the same bits: C and Python usually agree
             records = [replace(record, target=target) for record in errors if record.target == twin]
             found = [replace(law, target=target) for law in laws if law.target == twin]
         judged.append(target)
-        for record in records:
-            failures += failures_of(record, made[record.quantity], scalars[scalar])
         errors += records
         laws += found
-    failures += [
-        f"{law.target} violates {law.name}: {law.largest:.3g} times the allowed defect"
-        for law in laws
-        if law.largest > 1
-    ]
-    return Certificate(
-        model=model.name,
+        for record in records:
+            failures += failures_of(record, made[record.quantity], samples[scalar])
+        failures += [
+            f"{target} violates {law.name}: {law.largest:.3g} times the allowed defect"
+            for law in found
+            if not law.largest <= 1
+        ]
+    return replace(
+        blank,
         states=len(doubles),
         ranks=(
             ("constraints", reference.ranks.constraints),
@@ -112,10 +139,7 @@ def verify(
         errors=tuple(errors),
         invariants=tuple(laws),
         conditions=tuple(ConditionRecord(*record) for record in condition_numbers(reference, doubles)),
-        versions=_versions(compiler),
-        hashes=tuple(_hashes(model, c_sources, python_source)),
         failures=tuple(failures),
-        notes=("no C compiler: C not verified",) if c_sources and compiler is None else (),
     )
 
 
@@ -146,15 +170,6 @@ def _compilations(
         finally:
             for compilation in started.values():
                 compilation.cancel()
-
-
-def _reference(model: Model) -> Reference:
-    try:
-        return Reference(model)
-    except ReferenceValueError as fault:
-        raise VerificationError(
-            f"{fault}; give a start under `configuration` that satisfies them, and the ranges of the coordinates"
-        ) from fault
 
 
 def _rounded(samples: Sequence[Sample], scalar: Scalar) -> tuple[Sample, ...]:

@@ -14,16 +14,17 @@ from mechanisms import build
 from symgen.derive.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.python import emit_python
+from symgen.ir.kernel import Argument, Kernel
 from symgen.ir.schedule import schedule
 from symgen.verify import run
 from symgen.verify.certificate import Certificate
 from symgen.verify.compile import find_compiler
 from symgen.verify.run import generated_sources, verify
-from symgen.verify.states import VerificationError
 
 QUANTITIES = ("nullspace_projector", "constraint_jacobian", "inverse_dynamics", "forward_dynamics")
 STATES = 8
 NAME = "skate"
+FORCE = [Kernel("potential_force", (Argument("q", 1),), (), (), (), (1,))]
 
 
 def certificate(edit: Callable[[str], str] = str, python: Callable[[str], str] = str, c: bool = True) -> Certificate:
@@ -128,8 +129,15 @@ def test_without_a_compiler_on_the_machine_none_is_found(monkeypatch: pytest.Mon
 
 def test_constraints_that_nothing_satisfies_are_said_so() -> None:
     model = build("nowhere", "x y", "x_dot**2/2 + y_dot**2/2", geometric=("x**2 + y**2 + 1",))
-    with pytest.raises(VerificationError, match=r"no configuration .* was found; give a start under `configuration`"):
-        verify(model, [], {}, None)
+    failed = verify(model, [], {}, "")
+    assert not failed.passed
+    assert re.search(r"no configuration .* was found; give a start under `configuration`", failed.failures[0])
+
+
+def test_too_few_states_are_said_so_and_are_a_failure() -> None:
+    failed = verify(build("bad", "x", "x_dot**2", "sqrt(-1 - x**2)"), FORCE, {}, "")
+    assert not failed.passed
+    assert "only 0 regular configurations" in failed.failures[0]
 
 
 @pytest.mark.toolchain
