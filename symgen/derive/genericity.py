@@ -144,7 +144,7 @@ def solve(a: list[list[float]], b: list[float]) -> list[float] | None:
     return x
 
 
-def rank(rows: Sequence[Sequence[float]]) -> int | None:
+def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:
     """Rank by elimination with complete pivoting of the row-normalised matrix; None where it is not clear-cut."""
     work = []
     for row in rows:
@@ -158,7 +158,7 @@ def rank(rows: Sequence[Sequence[float]]) -> int | None:
         size, i, j = max(pivots, key=lambda entry: entry[0])
         if size < NEGLIGIBLE:
             return found
-        if size < PLAIN:
+        if size < plain:
             return None
         work[found], work[i] = work[i], work[found]
         lead = work[found]
@@ -174,17 +174,22 @@ def genericity(mechanics: Mechanics) -> Genericity:
     n, r, m = mechanics.n, mechanics.r, mechanics.m
     rows = len(mechanics.geometric_jacobian)
     evaluate = Evaluator([*flatten(mechanics.constraint_jacobian), *(x for c in mechanics.inputs for x in c)])
-    best = (0, 0, 0)
     points = configurations(mechanics)
     if not points:
         raise SymgenBug(f"genericity: no configuration of {mechanics.model.name} satisfies its constraints")
-    for point in points:
-        values = evaluate(point)
-        b = [values[i * n : (i + 1) * n] for i in range(r)]
-        inputs = [values[(r + k) * n : (r + k + 1) * n] for k in range(m)]
-        ranks = rank(b[:rows]), rank(b), rank([*b, *inputs])
-        if None not in ranks:
-            geometric, constraint, together = (value or 0 for value in ranks)
-            best = max(best, (constraint, together - constraint, geometric))
-    constraint, alpha, geometric = best
+    found: list[tuple[int, int, int]] = []
+    # where lengths of very different sizes meet no point is clear-cut: then what is not negligible counts
+    for plain in (PLAIN, NEGLIGIBLE):
+        for point in points:
+            values = evaluate(point)
+            b = [values[i * n : (i + 1) * n] for i in range(r)]
+            inputs = [values[(r + k) * n : (r + k + 1) * n] for k in range(m)]
+            geometric, constraint, together = rank(b[:rows], plain), rank(b, plain), rank([*b, *inputs], plain)
+            if geometric is not None and constraint is not None and together is not None:
+                found.append((constraint, together - constraint, geometric))
+        if found:
+            break
+    else:
+        raise SymgenBug(f"genericity: the constraints of {mechanics.model.name} have no value where they hold")
+    constraint, alpha, geometric = max(found)
     return Genericity(n, r, m, constraint, alpha, geometric)
