@@ -160,3 +160,23 @@ def test_no_number_never_passes(model: str, scalar: Scalar) -> None:
                 assert status is not Status.OK or all(map(isfinite, outputs)), (name, load.local, bad)
                 if load.argument != "p":
                     assert isfinite(bad) or status is not Status.OK, (name, load.local, bad)
+
+
+VANISHING_MASS = """
+model: vanishing_mass
+coordinates: {x: {}, y: {}, z: {}}
+kinetic_energy: (x_dot*sin(y))**2 + y_dot**2 + z_dot**2/1e6
+CONSTRAINT
+inputs: {push: {acts_on: {x: 1}}, pull: {acts_on: {y: 1}}}
+"""
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+@pytest.mark.parametrize("constraint", ["", "constraints: {nonholonomic: {row: z_dot - y_dot*cos(x)}}"])
+def test_motion_without_mass_has_no_acceleration(constraint: str, scalar: Scalar) -> None:
+    given = system(VANISHING_MASS.replace("CONSTRAINT", constraint))
+    state = given.state([0.4, 0.0, 0.2], scalar=scalar)
+    assert given.run("forward_dynamics", state, scalar)[0] is Status.MASS_RANK
+    assert given.run("inverse_dynamics", state, scalar)[0] is Status.OK
+    # a small mass beside a large one is no reason to refuse
+    given.assert_right(given.state([0.4, 0.01, 0.2], scalar=scalar), ["forward_dynamics", "inverse_dynamics"], scalar)
