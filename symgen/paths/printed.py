@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -22,20 +23,41 @@ class Switched:
     partition: tuple[int, ...]
 
 
+def inverse(a: Any) -> Any:
+    """A⁻¹ by elimination with partial pivoting in the type of A; LinAlgError for a pivot of zero.
+
+    NumPy's own routine would lift float32 to float64.
+    """
+    if a.dtype == np.float64:
+        return np.linalg.inv(a)
+    size = a.shape[0]
+    work = np.concatenate([a, np.eye(size, dtype=a.dtype)], axis=1)
+    for k in range(size):
+        pivot = k + int(np.argmax(np.abs(work[k:, k])))
+        if not abs(work[pivot, k]) > 0:
+            raise np.linalg.LinAlgError("Singular matrix")
+        work[[k, pivot]] = work[[pivot, k]]
+        work[k] /= work[k, k]
+        for i in range(size):
+            if i != k:
+                work[i] -= work[i, k] * work[k]
+    return work[:, size:]
+
+
 def projector(B: Array) -> Array:
     """N_B = I − Bᵀ(B Bᵀ)⁻¹ B (21), n×n."""
-    return np.asarray(np.eye(B.shape[1]) - B.T @ np.linalg.inv(B @ B.T) @ B)
+    return np.asarray(np.eye(B.shape[1], dtype=B.dtype) - B.T @ inverse(B @ B.T) @ B)
 
 
 def pseudoinverse(M_tilde: Array, first: Sequence[int]) -> Array:
     """M̃⁺ (28), m×n, with M̃₁ the columns `first`; LinAlgError where these δ columns are dependent."""
     second = [j for j in range(M_tilde.shape[1]) if j not in first]
     M_1, M_2 = M_tilde[:, list(first)], M_tilde[:, second]
-    M_1_plus = np.linalg.inv(M_1.T @ M_1) @ M_1.T
+    M_1_plus = inverse(M_1.T @ M_1) @ M_1.T
     R = M_1_plus @ M_2
-    lower = np.linalg.inv(np.eye(len(second)) + R.T @ R) @ R.T @ M_1_plus
-    result = np.empty((M_tilde.shape[1], M_tilde.shape[0]))
-    result[list(first)] = M_1_plus @ (np.eye(M_tilde.shape[0]) - M_2 @ lower)
+    lower = inverse(np.eye(len(second), dtype=M_tilde.dtype) + R.T @ R) @ R.T @ M_1_plus
+    result = np.empty((M_tilde.shape[1], M_tilde.shape[0]), dtype=M_tilde.dtype)
+    result[list(first)] = M_1_plus @ (np.eye(M_tilde.shape[0], dtype=M_tilde.dtype) - M_2 @ lower)
     result[second] = lower
     return result
 

@@ -1,0 +1,203 @@
+"""The families of trouble of a model: curves of states, each towards something that goes wrong as d falls."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal, TypeAlias
+
+from symgen.model.model import Model
+from symgen.stress.determinants import Trouble, joint_troubles, troubles
+from symgen.stress.dimensions import parameter_dimensions
+from symgen.stress.zeros import Place, places
+from symgen.verify.reference import Reference, ReferenceValueError, State
+from symgen.verify.states import sample_states
+
+Kind: TypeAlias = Literal[
+    "parameter", "input", "constraint", "large angles", "small angles", "mass ratios", "drift", "incompatible rates"
+]
+SAMPLES = 2  # places or states of each family
+SINGULAR = 1e-24  # a measure below this at a place is zero
+BITS = 128
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """States at distance d for d in (0, 1]; `partitions` and `inputs` are the choices that fail as d falls.
+
+    `meaning` says what d is.  A curve gives None where it has no state.
+    """
+
+    kind: Kind
+    label: str
+    meaning: str
+    curves: tuple[Callable[[float], State | None], ...]
+    partitions: tuple[tuple[int, ...], ...] = ()
+    inputs: tuple[tuple[int, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """What was found: the families, whether determinants were factored, and what has no singularity (in words)."""
+
+    families: tuple[Family, ...]
+    factored: bool
+    nowhere: tuple[str, ...]
+
+
+def search(reference: Reference) -> Search:
+    """All families of a model, in a fixed order."""
+    singular, factored, nowhere = _singularities(reference)
+    return Search((*singular, *_extremes(reference)), factored, nowhere)
+
+
+def _singularities(reference: Reference) -> tuple[list[Family], bool, tuple[str, ...]]:
+    choices, factored = troubles(reference)
+    found: list[Family] = []
+    nowhere: list[str] = []
+    for trouble in choices:
+        at = places(reference, trouble, SAMPLES)
+        if at:
+            found.append(_family(reference, _kind(reference, at[0]), trouble, at))
+        else:
+            nowhere.append(f"{trouble.label}: no zero found on the constraint manifold")
+    for kind, trouble in joint_troubles(reference):
+        if any(family.kind == kind for family in found):
+            continue
+        wanted = [place for place in _joint_places(reference, trouble) if _kind(reference, place) == kind]
+        if wanted:
+            found.append(_family(reference, "constraint" if kind == "constraint" else "input", trouble, wanted))
+        else:
+            what = "the rank of B drops" if kind == "constraint" else "the degree of actuation drops"
+            nowhere.append(f"{what} nowhere that was found")
+    order = ("constraint", "input", "parameter")
+    return sorted(found, key=lambda family: order.index(family.kind)), factored, tuple(nowhere)
+
+
+def _joint_places(reference: Reference, trouble: Trouble) -> list[Place]:
+    return places(reference, trouble, SAMPLES) or places(reference, trouble, SAMPLES, parameters_too=True)
+
+
+def _kind(reference: Reference, place: Place) -> Kind:
+    """By the measures of singularity at the place."""
+    zero = (0,) * reference.model.n
+    state = State(place.q, zero, zero, (0,) * reference.model.m, place.parameters)
+    try:
+        first, second = reference.matrices(state, ("singularity",), 384)["singularity"].entries()
+    except ReferenceValueError:
+        return "constraint"
+    if abs(float(first)) < SINGULAR:
+        return "constraint"
+    return "input" if reference.model.m and abs(float(second)) < SINGULAR else "parameter"
+
+
+def _family(reference: Reference, kind: Kind, trouble: Trouble, at: Sequence[Place]) -> Family:
+    curves = tuple(_curve(reference, place, f"{trouble.label} {k}") for k, place in enumerate(at))
+    return Family(
+        kind, trouble.label, "distance from the singular configuration", curves, trouble.partitions, trouble.inputs
+    )
+
+
+def _curve(reference: Reference, place: Place, seed: str) -> Callable[[float], State | None]:
+    model = reference.model
+    draws = _draws(model, seed)
+    scale: list[float] = []
+
+    def at(d: float) -> State | None:
+        q = place.at(reference, d)
+        if q is None:
+            return None
+        # rounded first: rates are admissible where the kernel looks
+        q = tuple(float(x) for x in q)
+        state = State(q, draws.qd, draws.qdd, (0.0,) * model.m, tuple(float(x) for x in place.parameters))
+        try:
+            names = ("admissible_velocity", "admissible_acceleration")
+            values = reference.matrices(state, names, BITS)
+            rates, accelerations = (tuple(float(x) for x in values[name].entries()) for name in names)
+            state = replace(state, qd=rates, qdd=accelerations)
+            if model.m and not scale:
+                u = reference.matrices(state, ("inverse_dynamics",), BITS)["inverse_dynamics"].entries()
+                scale.append(2 * max(1.0, *(abs(float(x)) for x in u)))
+        except ReferenceValueError:
+            return replace(state, u=tuple(draws.u))
+        return replace(state, u=tuple(x * (scale[0] if scale else 1.0) for x in draws.u))
+
+    return at
+
+
+@dataclass(frozen=True, slots=True)
+class _Draws:
+    qd: tuple[float, ...]
+    qdd: tuple[float, ...]
+    u: tuple[float, ...]
+
+
+def _draws(model: Model, seed: str) -> _Draws:
+    generator = random.Random(f"rates {seed}")
+    return _Draws(
+        tuple(generator.uniform(*map(float, c.rate_range)) for c in model.coordinates),
+        tuple(generator.uniform(*map(float, c.acceleration_range)) for c in model.coordinates),
+        tuple(generator.uniform(-1, 1) for _ in model.inputs),
+    )
+
+
+def _extremes(reference: Reference) -> list[Family]:
+    """Families around regular states: angles, masses, drift, rates that violate the constraints."""
+    model = reference.model
+    regular = [s.state for s in sample_states(reference, ("inverse_dynamics",) if model.m else (), 8) if s.admissible]
+    regular = regular[:SAMPLES]
+    angles = [i for i, c in enumerate(model.coordinates) if c.is_angle]
+    found = []
+    if angles:
+        curves = tuple(_large_angles(state, angles) for state in regular)
+        found.append(Family("large angles", "whole turns added to every angle", "one radian over the angle", curves))
+        curves = tuple(_small_angles(state, angles, k) for k, state in enumerate(regular))
+        found.append(Family("small angles", "every angle near zero", "size of the angles in rad", curves))
+    heavy = [i for i, dimension in enumerate(parameter_dimensions(model)) if dimension is not None and dimension[0]]
+    for i in heavy:
+        name = model.parameters[i].name
+        curves = tuple(_scaled(state, i, sign) for state in regular[:1] for sign in (1, -1))
+        meaning = f"{name} multiplied or divided by d"
+        found.append(Family("mass ratios", name, meaning, curves))
+    if any(row.kind == "geometric" for row in model.constraints):
+        curves = tuple(_moved(state, "q", f"drift {k}") for k, state in enumerate(regular))
+        found.append(Family("drift", "configuration off the constraints", "distance from V", curves))
+    if model.r:
+        curves = tuple(_moved(state, "qd", f"rates {k}") for k, state in enumerate(regular))
+        label = "rates and accelerations that violate the constraints"
+        found.append(Family("incompatible rates", label, "relative size of the violation", curves))
+    return found
+
+
+def _large_angles(state: State, angles: Sequence[int]) -> Callable[[float], State]:
+    def at(d: float) -> State:
+        turns = round((1 / d - 1) / 6.283185307179586)
+        q = [x + turns * 6.283185307179586 if i in angles else x for i, x in enumerate(state.q)]
+        return replace(state, q=tuple(q))
+
+    return at
+
+
+def _small_angles(state: State, angles: Sequence[int], seed: int) -> Callable[[float], State]:
+    generator = random.Random(f"small {seed}")
+    shares = [generator.uniform(0.2, 1) * generator.choice((-1, 1)) for _ in state.q]
+    return lambda d: replace(state, q=tuple(d * shares[i] if i in angles else x for i, x in enumerate(state.q)))
+
+
+def _scaled(state: State, index: int, sign: int) -> Callable[[float], State]:
+    p = state.parameters
+    return lambda d: replace(state, parameters=(*p[:index], p[index] * d**sign, *p[index + 1 :]))
+
+
+def _moved(state: State, part: Literal["q", "qd"], seed: str) -> Callable[[float], State]:
+    generator = random.Random(seed)
+    shifts = [[generator.uniform(-1, 1) for _ in state.q] for _ in range(2)]
+
+    def moved(values: Sequence[Any], d: float, by: Sequence[float]) -> tuple[float, ...]:
+        size = max(abs(x) for x in values) or 1.0
+        return tuple(x + d * size * s for x, s in zip(values, by, strict=True))
+
+    if part == "q":
+        return lambda d: replace(state, q=moved(state.q, 0.1 * d, shifts[0]))
+    return lambda d: replace(state, qd=moved(state.qd, d, shifts[0]), qdd=moved(state.qdd, d, shifts[1]))

@@ -1,0 +1,102 @@
+"""The generated kernels of a model, ready to run: compiled C, or the interpreter where there is no compiler."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from symgen.derive.catalogue import CATALOGUE
+from symgen.derive.select import derive_quantities
+from symgen.emit.c import emit_c
+from symgen.ir.interpret import Interpreter
+from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.ir.schedule import schedule
+from symgen.model.model import Model
+from symgen.verify.compile import CFunction, Compilation, Outcome, c_array, find_compiler
+from symgen.verify.reference import State
+from symgen.verify.run import generated_sources
+from symgen.verify.states import Sample, rounded
+
+SCALARS: tuple[Scalar, ...] = ("float64", "float32")
+# What the formulas of the paper are computed from.
+PIECES = (
+    "mass_matrix",
+    "coriolis_matrix",
+    "potential_force",
+    "applied_force",
+    "constraint_jacobian",
+    "constraint_jacobian_dot",
+    "control_matrix",
+)
+STRESSED = ("inverse_dynamics", "forward_dynamics", "multipliers", "nullspace_projector")
+DRIVEN = ("constraint_residual", "energy", "admissible_velocity", "projected_configuration")
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """The way to the null space by which a quantity is computed."""
+
+    quantity: str
+    name: str
+
+
+class Kernels:
+    """Kernels by quantity name and scalar type, and the C they are made of (`files`, by path)."""
+
+    def __init__(self, model: Model, folder: Path, quantities: Sequence[str] = (*PIECES, *STRESSED, *DRIVEN)) -> None:
+        self.model = model
+        known = {entry.name for entry in CATALOGUE}
+        derivations = derive_quantities(model, tuple(name for name in quantities if name in known))
+        self.programs: dict[Scalar, Program] = dict(
+            schedule(derivations.mechanics, derivations.quantities, SCALARS).items()
+        )
+        self._ways = tuple(_Way(choice.quantity, choice.way) for choice in derivations.choices)
+        self.files: dict[str, str] = {}
+        for scalar in SCALARS:
+            self.files |= emit_c(model, self.programs[scalar])
+        self.names = tuple(kernel.name for kernel in self.programs["float64"].kernels)
+        self.compiler = find_compiler()
+        self._kernels = {(s, k.name): k for s in SCALARS for k in self.programs[s].kernels}
+        self._functions: dict[tuple[Scalar, str], CFunction] = {}
+        if self.compiler is None:
+            self._interpreters = {s: Interpreter(self.programs[s].sincos, s) for s in SCALARS}
+            return
+        sources, _ = generated_sources(model, dict(self.files))
+        compilations = {s: Compilation(self.compiler, source, folder) for s, source in sources.items()}
+        for scalar, compilation in compilations.items():
+            library = compilation.library()
+            for kernel in self.programs[scalar].kernels:
+                self._functions[scalar, kernel.name] = CFunction(library, model.name, kernel, scalar)
+
+    @property
+    def engine(self) -> str:
+        """What runs the kernels."""
+        return "interpreter" if self.compiler is None else "C"
+
+    def way(self, quantity: str) -> str:
+        """The way to the null space by which a quantity is computed; empty for one the model does not have."""
+        return next((way.name for way in self._ways if way.quantity == quantity), "")
+
+    def kernel(self, name: str, scalar: Scalar) -> Kernel:
+        """The straight-line kernel of a quantity."""
+        return self._kernels[scalar, name]
+
+    def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
+        """One kernel at one state, whose numbers are of the scalar type already."""
+        parts = {part: getattr(state, part) for part in ("q", "qd", "qdd", "u")}
+        if self._functions:
+            arrays: dict[str, Any] = {part: c_array(scalar, values) for part, values in parts.items()}
+            return self._functions[scalar, name](arrays, c_array(scalar, state.parameters))
+        kernel = self._kernels[scalar, name]
+        status, outputs = self._interpreters[scalar].run(kernel, parts, state.parameters)
+        return Outcome(int(status), tuple(outputs) or (math.nan,) * max(1, math.prod(kernel.shape)))
+
+
+def rounded_state(state: State, scalar: Scalar) -> State:
+    """The state with every number rounded to the scalar type."""
+    parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
+    doubles = State(*(tuple(float(x) for x in part) for part in parts))
+    return rounded(Sample(doubles, True, (1.0, 1.0)), scalar).state

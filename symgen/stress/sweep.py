@@ -1,0 +1,332 @@
+"""Runs the families: errors of every form against 50 digits, in units of the tolerance, and the statuses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
+from symgen.stress.families import Family
+from symgen.stress.forms import Data, partitioned, projected, switched
+from symgen.stress.kernels import PIECES, STRESSED, Kernels, rounded_state
+from symgen.verify.compile import Outcome
+from symgen.verify.reference import Reference, ReferenceValueError, State
+from symgen.verify.tolerance import FACTOR, Expectation, expectations
+
+DEEPEST: dict[Scalar, int] = {"float64": 24, "float32": 12}  # half decades below 1
+BELOW = (1e-14, 1e-16, 1e-18, 1e-24, 0.0)  # where statuses are tested as well
+SYMGEN = "symgen"
+PARTITION = "(9) fixed partition"
+FIXED = "(27)+(28) fixed"
+SWITCHING = "(27)+(28) switching"
+FORMS = (PARTITION, FIXED, SWITCHING, SYMGEN)
+PAPER_KINDS = ("parameter", "input", "constraint", "large angles", "mass ratios")
+ANGLE_LIMITS: dict[Scalar, float] = {"float64": 1e5, "float32": 100.0}
+MEASURE_BITS = 256
+
+
+@dataclass(frozen=True, slots=True)
+class Error:
+    """|y − y*| of one form at one distance: relative to |y*|, and in units of d + eps |y*|; the largest of a family.
+
+    `relative` is infinite where the form has no finite result.
+    """
+
+    distance: float
+    relative: float
+    units: float
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Errors of one form of one quantity along a family, from d = 1 downwards."""
+
+    family: int
+    scalar: Scalar
+    quantity: str
+    form: str
+    errors: tuple[Error, ...]
+
+    @property
+    def breaks(self) -> float | None:
+        """The largest d at which the error exceeds the tolerance; None where it never does."""
+        return max((e.distance for e in self.errors if not e.units <= FACTOR), default=None)
+
+    @property
+    def largest(self) -> Error:
+        """The worst in units of the tolerance."""
+        return max(self.errors, key=lambda e: e.units)
+
+
+@dataclass(frozen=True, slots=True)
+class StatusCount:
+    """Statuses of one kernel over all states of one scalar type.
+
+    `singular` states lie below (n eps)², `regular` ones above (1e3 n eps)² of the measures that count.
+    """
+
+    quantity: str
+    scalar: Scalar
+    states: int
+    refused: int
+    singular: int
+    singular_passed: int
+    regular: int
+    regular_refused: int
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """Everything measured along the families, and what is wrong with symgen's kernels (empty: nothing)."""
+
+    series: tuple[Series, ...]
+    statuses: tuple[StatusCount, ...]
+    failures: tuple[str, ...]
+
+
+Found: TypeAlias = dict[tuple[int, Scalar, str, str], dict[float, Error]]
+
+
+class Sweeper:
+    """One model's families run through every form."""
+
+    def __init__(self, reference: Reference, kernels: Kernels, families: Sequence[Family]) -> None:
+        self._reference = reference
+        self._kernels = kernels
+        self._families = families
+        self._names = tuple(name for name in STRESSED if name in kernels.names)
+        self._found: Found = {}
+        self._counts: dict[tuple[str, Scalar], list[int]] = {}
+        self._failures: list[str] = []
+
+    def family(self, index: int) -> None:
+        """Runs one family."""
+        for scalar, deepest in DEEPEST.items():
+            for curve in range(len(self._families[index].curves)):
+                form_choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None] | None = None
+                for d in (*(10 ** (-k / 2) for k in range(deepest + 1)), *BELOW):
+                    state = self._families[index].curves[curve](d) if d or self._singular(index) else None
+                    if state is None:
+                        continue
+                    state = rounded_state(state, scalar)
+                    if form_choice is None:
+                        form_choice = self._choices(index, curve)
+                    self._state(index, scalar, d, state, form_choice)
+
+    def result(self) -> Sweep:
+        """What was found so far."""
+        series = tuple(
+            Series(family, scalar, quantity, form, tuple(errors[d] for d in sorted(errors, reverse=True)))
+            for (family, scalar, quantity, form), errors in self._found.items()
+        )
+        statuses = tuple(StatusCount(name, scalar, *counts) for (name, scalar), counts in self._counts.items())
+        return Sweep(series, statuses, tuple(self._failures))
+
+    def _singular(self, index: int) -> bool:
+        return self._families[index].kind in ("parameter", "input", "constraint")
+
+    def _choices(self, index: int, curve: int) -> tuple[tuple[int, ...] | None, tuple[int, ...] | None]:
+        """The coordinates of (9) and the inputs of (28) that are closest to failing where the family leads."""
+        ranks, system = self._reference.ranks, self._reference.system
+        delta = system.n - ranks.constraints
+        if ranks.constraints < system.r or self._families[index].kind not in PAPER_KINDS:
+            return None, None
+        state = self._families[index].curves[curve](1e-3)
+        near = state and self._reference.matrices(state, ("nullspace_projector",), MEASURE_BITS)["nullspace_projector"]
+        if state is None or near is None:
+            return None, None
+        N = _floats(near)
+        # a choice that is singular everywhere is no choice
+        sizes = {J: float(np.linalg.det(N[np.ix_(J, J)])) for J in combinations(range(system.n), delta)}
+        usable = {J: size for J, size in sizes.items() if size > 1e-20}
+        family = self._families[index]
+        coordinates = min(usable, key=lambda J: (J not in family.partitions, usable[J])) if system.r else None
+        inputs = None
+        if system.m and ranks.actuation == delta:
+            M = N @ _floats(self._reference.matrices(state, ("control_matrix",), MEASURE_BITS)["control_matrix"])
+            minors = {J: float(np.linalg.det(M[:, J].T @ M[:, J])) for J in combinations(range(system.m), delta)}
+            inputs = min(minors, key=lambda J: minors[J])
+        return coordinates, inputs
+
+    def _state(
+        self,
+        index: int,
+        scalar: Scalar,
+        d: float,
+        state: State,
+        choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None],
+    ) -> None:
+        outcomes = {name: self._kernels.run(name, state, scalar) for name in self._names}
+        measures = self._measures(state)
+        where = f"{self._families[index].kind} {self._families[index].label}, d = {d:.3g}, {scalar}"
+        for name, outcome in outcomes.items():
+            self._status(name, scalar, state, outcome, measures, where)
+        if d < 10 ** (-DEEPEST[scalar] / 2) * 0.99:
+            return
+        try:
+            expected = expectations(self._reference, state, self._names, scalar, f"{scalar} {index} {d}")
+        except ReferenceValueError:
+            return
+        for name, outcome in outcomes.items():
+            if outcome.status == Status.OK:
+                error = self._record(index, scalar, name, SYMGEN, d, expected[name], outcome.entries)
+                if not error.units <= FACTOR:
+                    self._failures.append(
+                        f"{name}, {where}: error {error.units:.3g} times d + eps |y*|, {FACTOR:g} is allowed "
+                        f"(relative {error.relative:.2g})"
+                    )
+        for form, values in self._paper(scalar, state, choice):
+            for name in self._names:
+                if name in values or values == {}:
+                    entries = np.asarray(values[name], dtype=np.float64).ravel().tolist() if name in values else None
+                    self._record(index, scalar, name, form, d, expected[name], entries)
+
+    def _record(
+        self,
+        index: int,
+        scalar: Scalar,
+        name: str,
+        form: str,
+        d: float,
+        expected: Expectation,
+        entries: Sequence[float] | None,
+    ) -> Error:
+        if entries is None or not all(map(math.isfinite, entries)):
+            error = Error(d, math.inf, math.inf)
+        else:
+            distance = expected.distance(entries)
+            error = Error(d, distance / expected.size if expected.size else distance, expected.in_units(distance))
+        errors = self._found.setdefault((index, scalar, name, form), {})
+        if d in errors:
+            error_before = errors[d]
+            errors[d] = Error(d, max(error.relative, error_before.relative), max(error.units, error_before.units))
+        else:
+            errors[d] = error
+        return error
+
+    def _paper(
+        self, scalar: Scalar, state: State, choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None]
+    ) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Results of the paper's forms; empty where a form has none at all."""
+        coordinates, inputs = choice
+        if coordinates is None or self._reference.system.r == 0:
+            return
+        data = self._data(scalar, state)
+        if data is None:
+            return
+        delta = len(coordinates)
+        choices = list(combinations(range(self._reference.system.m), delta)) if inputs is not None else [()]
+        with np.errstate(all="ignore"):
+            for form, run in (
+                (PARTITION, lambda: partitioned(data, coordinates)),
+                (FIXED, lambda: projected(data, inputs or ())),
+                (SWITCHING, lambda: switched(data, choices)),
+            ):
+                if inputs is None and form != PARTITION:
+                    continue
+                try:
+                    yield form, run()
+                except np.linalg.LinAlgError:
+                    yield form, {}
+
+    def _data(self, scalar: Scalar, state: State) -> Data | None:
+        kernels, n = self._kernels, self._reference.system.n
+        values: dict[str, Any] = {}
+        for name in PIECES:
+            if name not in kernels.names:
+                return None
+            outcome = kernels.run(name, state, scalar)
+            if outcome.status != Status.OK:
+                return None
+            values[name] = np.array(outcome.entries, dtype=scalar).reshape(kernels.kernel(name, scalar).shape)
+        qd, qdd, u = (np.array(part, dtype=scalar) for part in (state.qd, state.qdd, state.u))
+        assert len(qd) == n
+        return Data(
+            G=values["mass_matrix"],
+            C=values["coriolis_matrix"],
+            B=values["constraint_jacobian"],
+            B_dot=values["constraint_jacobian_dot"],
+            M=values["control_matrix"],
+            Q=values["potential_force"] - values["applied_force"],
+            qd=qd,
+            qdd=qdd,
+            u=u,
+        )
+
+    def _measures(self, state: State) -> tuple[float, float] | None:
+        try:
+            values = self._reference.matrices(state, ("singularity",), MEASURE_BITS)["singularity"].entries()
+        except ReferenceValueError:
+            return None
+        first, second = (float(x) for x in values)
+        return (first, second) if math.isfinite(first) and math.isfinite(second) else None
+
+    def _status(
+        self,
+        name: str,
+        scalar: Scalar,
+        state: State,
+        outcome: Outcome,
+        measures: tuple[float, float] | None,
+        where: str,
+    ) -> None:
+        counts = self._counts.setdefault((name, scalar), [0] * 6)
+        counts[0] += 1
+        refused = outcome.status != Status.OK
+        counts[1] += refused
+        if not refused and not all(map(math.isfinite, outcome.entries)):
+            self._failures.append(f"{name}, {where}: a result that is not finite with status 0")
+        angles = [x for x, c in zip(state.q, self._reference.model.coordinates, strict=True) if c.is_angle]
+        if max((abs(x) for x in angles), default=0.0) > ANGLE_LIMITS[scalar] / 2:
+            return  # sums of angles may leave the range
+        if measures is None:
+            return
+        model, ranks = self._reference.model, self._reference.ranks
+        eps = float(UNIT_ROUNDOFF[scalar])
+        low, high = (model.n * eps) ** 2, (1e3 * model.n * eps) ** 2
+        input_counts = name == "inverse_dynamics" and ranks.actuation == model.n - ranks.constraints
+        counting = measures if input_counts else measures[:1]
+        given = (model.constraint_rank_tolerance, model.actuation_rank_tolerance)
+        if min(counting) < low:
+            counts[2] += 1
+            if not refused:
+                counts[3] += 1
+                self._failures.append(f"{name}, {where}: status 0 at measures {_texts(counting)}, below {low:.2g}")
+        elif min(counting) > high and given == (None, None):
+            counts[4] += 1
+            if refused and outcome.status != Status.NOT_FINITE:
+                counts[5] += 1
+                self._failures.append(
+                    f"{name}, {where}: status {outcome.status} at measures {_texts(counting)}, above {high:.2g}"
+                )
+
+
+def _texts(values: Sequence[float]) -> str:
+    return ", ".join(f"{x:.2g}" for x in values)
+
+
+def _floats(matrix: Any) -> Any:
+    return np.array([float(x) for x in matrix.entries()]).reshape(matrix.nrows(), matrix.ncols())
+
+
+def by_form(series: Sequence[Series], quantity: str, scalar: Scalar, families: Sequence[int]) -> Mapping[str, Series]:
+    """The worst over some families for each form, distance by distance."""
+    found: dict[str, dict[float, Error]] = {}
+    for one in series:
+        if one.quantity == quantity and one.scalar == scalar and one.family in families:
+            errors = found.setdefault(one.form, {})
+            for e in one.errors:
+                before = errors.get(e.distance, e)
+                errors[e.distance] = Error(
+                    e.distance, max(e.relative, before.relative), max(e.units, before.units)
+                )
+    return {
+        form: Series(-1, scalar, quantity, form, tuple(found[form][d] for d in sorted(found[form], reverse=True)))
+        for form in FORMS
+        if form in found
+    }
