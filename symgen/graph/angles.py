@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import rebuild, topological
+from symgen.graph.traverse import topological
 
 
 def share_angles(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
@@ -87,8 +87,7 @@ def _replace(graph: Graph, outputs: Sequence[Scalar], image: dict[Scalar, Scalar
         args = tuple(done.get(argument, argument) for argument in node.args)
         if args == node.args:
             done[node] = node
-        elif node.op in ("add", "sub"):
-            done[node] = graph.raw(node.op, args)
         else:
-            done[node] = rebuild(graph, node, args)
+            # as it stands: the constructors would find the angle again
+            done[node] = graph.raw(node.op, args, node.payload)
     return [done[output] for output in outputs]

@@ -13,6 +13,8 @@ from fractions import Fraction
 from math import isqrt
 from typing import TypeAlias
 
+from symgen.graph.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
+
 Number: TypeAlias = "Scalar | int | Fraction"
 
 Monomial: TypeAlias = "tuple[Fraction, dict[Scalar, int]]"
@@ -27,7 +29,7 @@ PI = Fraction(314159265358979323846264338327950288419716939937510582097494459230
 class Scalar:
     """One node; compared by identity because equal nodes are the same object within a graph."""
 
-    __slots__ = ("args", "constant", "graph", "is_one", "is_zero", "op", "payload", "serial")
+    __slots__ = ("args", "constant", "graph", "is_one", "is_zero", "op", "payload", "serial", "size", "value")
 
     def __init__(self, graph: Graph, serial: int, op: str, args: tuple[Scalar, ...], payload: object) -> None:
         self.graph = graph
@@ -39,6 +41,9 @@ class Scalar:
         self.constant: Fraction | None = payload if op == "const" and type(payload) is Fraction else None
         self.is_zero = self.constant is not None and self.constant == 0
         self.is_one = self.constant is not None and self.constant == 1
+        # operations of the expression written out, and its value in the field of fingerprints
+        self.size: int = sum(a.size for a in args) + (op not in ("const", "symbol", "neg"))
+        self.value = 0
 
     def __add__(self, other: Number) -> Scalar:
         return self.graph.add(self, self.graph.lift(other))
@@ -79,17 +84,46 @@ class Graph:
     def __init__(self) -> None:
         self._nodes: dict[tuple[object, ...], Scalar] = {}
         self._monomials: dict[Scalar, Monomial] = {}
+        self._by_value: dict[int, Scalar] = {}
+        self._angles: dict[int, tuple[int, int]] = {}
         self.zero = self.const(0)
         self.one = self.const(1)
+        self.const(2)
 
     def __len__(self) -> int:
         return len(self._nodes)
 
     def _node(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
+        """The node, or a shorter one that is the same function."""
         key = (op, payload, *map(id, args))
         node = self._nodes.get(key)
         if node is None:
-            node = self._nodes[key] = Scalar(self, len(self._nodes), op, args, payload)
+            node = self._new(key, op, args, payload)
+            same = self._by_value.get(node.value)
+            if same is not None and same.size <= node.size:
+                node = same
+            elif op != "neg" and (opposite := self._by_value.get(-node.value % PRIME)) and opposite.size < node.size:
+                node = self.neg(opposite)
+            else:
+                self._by_value[node.value] = node
+            self._nodes[key] = node
+        return node
+
+    def _new(self, key: tuple[object, ...], op: str, args: tuple[Scalar, ...], payload: object) -> Scalar:
+        node = self._nodes[key] = Scalar(self, len(self._nodes), op, args, payload)
+        if op == "const":
+            assert isinstance(payload, Fraction)
+            node.value = residue(payload)
+        elif op == "symbol":
+            node.value = opaque("symbol", payload)
+        elif op in ("sin", "cos"):
+            form = {leaf.value: count for leaf, count in self.angle_form(args[0]).items()}
+            for leaf in form:
+                if leaf not in self._angles:
+                    self._angles[leaf] = leaf_pair(leaf)
+            node.value = angle_pair(form, self._angles)[op == "sin"]
+        else:
+            node.value = combine(op, [a.value for a in args], payload)
         return node
 
     def lift(self, value: Number) -> Scalar:
@@ -104,9 +138,11 @@ class Graph:
         """A named input."""
         return self._node("symbol", (), name)
 
-    def raw(self, op: str, args: tuple[Scalar, ...]) -> Scalar:
+    def raw(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
         """The operation as it stands, past the constructor rules."""
-        return self._node(op, args)
+        key = ("raw", op, payload, *map(id, args))
+        node = self._nodes.get(key)
+        return self._new(key, op, args, payload) if node is None else node
 
     def sum(self, terms: Iterable[Scalar]) -> Scalar:
         """Left-to-right sum; 0 for no terms."""

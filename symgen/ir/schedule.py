@@ -186,6 +186,7 @@ class _Writer:
         self._graph: Graph = mechanics.graph
         self._arguments = arguments
         self._written: dict[Node, Operand] = {}
+        self._pairs: dict[Node, tuple[str, str]] = {}
         self._loads: dict[str, Load] = {}
         self._symbols = _symbol_loads(mechanics)
         self._labels = {node: name for name, node in mechanics.definitions.items()}
@@ -230,11 +231,11 @@ class _Writer:
         """The check of a test; what only a failure needs is written into its own block."""
         first = None
         if test.first:
-            saved = dict(self._written)
+            saved, pairs = dict(self._written), dict(self._pairs)
             inner = [image[node] for t in test.first for node in (t.size, t.limit)]
             statements = self.write(inner)
             first = Block(tuple(statements), tuple(self.check(t, image) for t in test.first))
-            self._written = saved
+            self._written, self._pairs = saved, pairs
         return Check(test.status, self.operand(image[test.size]), self.operand(image[test.limit]), first=first)
 
     def write(self, outputs: Sequence[Node]) -> list[Statement]:
@@ -245,7 +246,7 @@ class _Writer:
                 # a pair writes both its values, so the second one may be known by now
                 continue
             if node.op in ("sin", "cos"):
-                statements.append(self._pair(node))
+                statements += self._pair(node)
             else:
                 statements.append(self._plain(node))
         for output in outputs:
@@ -261,12 +262,17 @@ class _Writer:
         self._written[node] = Local(target)
         return Statement((target,), node.op, operands)  # type: ignore[arg-type]
 
-    def _pair(self, node: Node) -> Statement:
-        sine = self._graph.trig("sin", node.args[0])
-        cosine = self._graph.trig("cos", node.args[0])
-        targets = self._name(sine), self._name(cosine)
-        self._written[sine], self._written[cosine] = Local(targets[0]), Local(targets[1])
-        return Statement(targets, "sincos", (self.operand(node.args[0]),))
+    def _pair(self, node: Node) -> list[Statement]:
+        """The sine/cosine pair of an angle, once; its other value needs no statement."""
+        (angle,) = node.args
+        known = self._pairs.get(angle)
+        if known is None:
+            sine, cosine = (self._graph.trig(op, angle) for op in ("sin", "cos"))
+            known = self._pairs[angle] = self._name(sine), self._name(cosine)
+            self._written[node] = Local(known[node.op == "cos"])
+            return [Statement(known, "sincos", (self.operand(angle),))]
+        self._written[node] = Local(known[node.op == "cos"])
+        return []
 
     def _name(self, node: Node) -> str:
         if (label := self._labels.get(node)) is not None:

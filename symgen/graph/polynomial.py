@@ -1,0 +1,215 @@
+"""Scalars multiplied out, reduced by s^2 + c^2 = 1, and factored again: shorter where products were nested by accident.
+
+A polynomial maps monomials over atoms to rational coefficients.  Atoms are symbols, sines and cosines, and whatever is
+neither a sum nor a product; sums of parameters stay whole, because nothing cancels into them.  Exponents may be
+negative: denominators are atoms too.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import TypeAlias
+
+from symgen.graph.scalar import Graph, Scalar
+
+Monomial: TypeAlias = "tuple[tuple[Scalar, int], ...]"
+Polynomial: TypeAlias = "dict[Monomial, Fraction]"
+
+# Outputs beyond these are left as they are: nothing becomes shorter by multiplying out a long sum of long products.
+MOST_TERMS = 120
+MOST_OPERATIONS = 4000
+
+
+class _TooLongError(Exception):
+    """More terms than are worth handling."""
+
+
+class Multiplier:
+    """Multiplies scalars out; `whole` tells which sums are left alone."""
+
+    def __init__(self, graph: Graph, whole: Callable[[Scalar], bool]) -> None:
+        self._graph = graph
+        self._whole = whole
+        self._known: dict[Scalar, Polynomial] = {}
+
+    def polynomial(self, node: Scalar) -> Polynomial | None:
+        """The scalar as a reduced polynomial, or None where it has too many terms."""
+        try:
+            return reduced(self._graph, self._expand(node))
+        except _TooLongError:
+            return None
+
+    def _expand(self, node: Scalar) -> Polynomial:
+        known = self._known.get(node)
+        if known is None:
+            known = self._known[node] = self._expanded(node)
+        if len(known) > MOST_TERMS:
+            raise _TooLongError
+        return known
+
+    def _expanded(self, node: Scalar) -> Polynomial:
+        if (value := node.constant) is not None:
+            return {(): value} if value else {}
+        if node.op in ("add", "sub") and self._whole(node):
+            return {((node, 1),): Fraction(1)}
+        match node.op:
+            case "add":
+                return _sum(self._expand(node.args[0]), self._expand(node.args[1]), 1)
+            case "sub":
+                return _sum(self._expand(node.args[0]), self._expand(node.args[1]), -1)
+            case "neg":
+                return {key: -value for key, value in self._expand(node.args[0]).items()}
+            case "mul":
+                return self._times(self._expand(node.args[0]), self._expand(node.args[1]))
+            case "div":
+                return self._times(self._expand(node.args[0]), self._inverse(node.args[1]))
+            case _:
+                return {((node, 1),): Fraction(1)}
+
+    def _inverse(self, node: Scalar) -> Polynomial:
+        terms = self._expand(node)
+        if len(terms) != 1:
+            return {((node, -1),): Fraction(1)}
+        ((key, value),) = terms.items()
+        return {tuple((atom, -power) for atom, power in key): 1 / value}
+
+    def _times(self, a: Polynomial, b: Polynomial) -> Polynomial:
+        if len(a) * len(b) > 8 * MOST_TERMS:
+            raise _TooLongError
+        result: Polynomial = {}
+        for left, x in a.items():
+            for right, y in b.items():
+                key = _product(left, right)
+                result[key] = result.get(key, Fraction(0)) + x * y
+        return reduced(self._graph, {key: value for key, value in result.items() if value})
+
+
+def _product(a: Monomial, b: Monomial) -> Monomial:
+    powers = dict(a)
+    for atom, power in b:
+        powers[atom] = powers.get(atom, 0) + power
+    return _key(powers)
+
+
+def _key(powers: dict[Scalar, int]) -> Monomial:
+    return tuple(sorted(((a, p) for a, p in powers.items() if p), key=lambda entry: entry[0].serial))
+
+
+def _sum(a: Polynomial, b: Polynomial, sign: int) -> Polynomial:
+    result = dict(a)
+    for key, value in b.items():
+        result[key] = result.get(key, Fraction(0)) + sign * value
+    return {key: value for key, value in result.items() if value}
+
+
+def reduced(graph: Graph, terms: Polynomial) -> Polynomial:
+    """No square of a sine is left (which makes cancellation certain), then squares are put where they save terms."""
+    work = dict(terms)
+    pending = list(work)
+    while pending:
+        key = pending.pop()
+        square = next((atom for atom, power in key if atom.op == "sin" and power >= 2), None)
+        if square is None or key not in work:
+            continue
+        value = work.pop(key)
+        for factor, sign in (({square: -2}, 1), ({square: -2, graph.trig("cos", square.args[0]): 2}, -1)):
+            powers = dict(key)
+            for atom, power in factor.items():
+                powers[atom] = powers.get(atom, 0) + power
+            fresh = _key(powers)
+            total = work.get(fresh, Fraction(0)) + sign * value
+            if total:
+                work[fresh] = total
+                pending.append(fresh)
+            else:
+                work.pop(fresh, None)
+    return _with_sines(graph, work)
+
+
+def _with_sines(graph: Graph, terms: Polynomial) -> Polynomial:
+    """k T - k T c^2 = k T s^2 wherever both terms stand."""
+    work = dict(terms)
+    for key in sorted(work, key=lambda k: [(a.serial, p) for a, p in k]):
+        value = work.get(key)
+        square = next((atom for atom, power in key if atom.op == "cos" and power >= 2), None)
+        if value is None or square is None:
+            continue
+        powers = dict(key)
+        powers[square] -= 2
+        partner = _key(powers)
+        if work.get(partner) == -value:
+            del work[key], work[partner]
+            sine = graph.trig("sin", square.args[0])
+            powers[sine] = powers.get(sine, 0) + 2
+            fresh = _key(powers)
+            total = work.get(fresh, Fraction(0)) - value
+            if total:
+                work[fresh] = total
+            else:
+                work.pop(fresh, None)
+    return work
+
+
+def factored(graph: Graph, terms: Polynomial, first: Callable[[Scalar], bool]) -> Scalar:
+    """The polynomial as a scalar: common factors out, then the most frequent atom, and so on (greedy Horner).
+
+    Atoms for which `first` holds are multiplied with each other before the rest, so that their products are shared.
+    """
+    if not terms:
+        return graph.zero
+    shared = _common(terms)
+    inner = {_product(key, tuple((a, -p) for a, p in shared)): value for key, value in terms.items()}
+    if len(inner) == 1:
+        ((key, value),) = inner.items()
+        return _multiply(graph, value, _product(key, shared), first)
+    counts = Counter(atom for key in inner for atom, power in key if power > 0)
+    best = max(counts, key=lambda atom: (counts[atom], -atom.serial), default=None)
+    if best is None or counts[best] == 1:
+        total = graph.sum(_multiply(graph, value, key, first) for key, value in _ordered(inner))
+    else:
+        chosen = {key: value for key, value in inner.items() if dict(key).get(best, 0) > 0}
+        quotient = {_product(key, ((best, -1),)): value for key, value in chosen.items()}
+        rest = {key: value for key, value in inner.items() if key not in chosen}
+        total = best * factored(graph, quotient, first)
+        if rest:
+            total = total + factored(graph, rest, first)
+    return _multiply(graph, Fraction(1), shared, first, total)
+
+
+def _ordered(terms: Polynomial) -> list[tuple[Monomial, Fraction]]:
+    return sorted(terms.items(), key=lambda entry: [(a.serial, p) for a, p in entry[0]])
+
+
+def _common(terms: Polynomial) -> Monomial:
+    """The largest monomial that divides every term, the smallest power of each denominator included."""
+    keys = [dict(key) for key in terms]
+    atoms = {atom for key in keys for atom in key}
+    return _key({atom: min(key.get(atom, 0) for key in keys) for atom in atoms})
+
+
+def _multiply(
+    graph: Graph, value: Fraction, key: Monomial, first: Callable[[Scalar], bool], rest: Scalar | None = None
+) -> Scalar:
+    above = [(atom, power) for atom, power in key if power > 0]
+    ranked = sorted(above, key=lambda entry: (not first(entry[0]), entry[0].serial))
+    fixed = graph.product(atom for atom, power in ranked if first(atom) for _ in range(power))
+    moving = graph.product(atom for atom, power in ranked if not first(atom) for _ in range(power))
+    below = graph.product(atom for atom, power in key for _ in range(-power))
+    weight = fixed if below.is_one else fixed / below
+    if rest is not None:
+        moving = moving * rest
+    return graph.const(value) * (weight * moving)
+
+
+def refactor(
+    graph: Graph, outputs: Sequence[Scalar], whole: Callable[[Scalar], bool], first: Callable[[Scalar], bool]
+) -> list[Scalar]:
+    """Each output multiplied out and factored again; the output itself where that would be too long."""
+    multiplier = Multiplier(graph, whole)
+    result = []
+    for output in outputs:
+        terms = multiplier.polynomial(output) if output.size <= MOST_OPERATIONS else None
+        result.append(output if terms is None else factored(graph, terms, first))
+    return result
