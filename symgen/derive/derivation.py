@@ -33,7 +33,7 @@ from symgen.graph.matrix import (
     transpose,
 )
 from symgen.graph.scalar import Scalar
-from symgen.graph.traverse import substitute
+from symgen.graph.traverse import cost, substitute
 from symgen.ir.kernel import Status
 
 
@@ -51,8 +51,18 @@ class Derivation:
 
     @cached_property
     def admissible(self) -> Vector:
-        """v = N_B q_dot."""
-        return self.space.project(self.mechanics.qd)
+        """v = N_B q_dot, factored where that is no longer."""
+        plain = self.space.project(self.mechanics.qd)
+        factored = self.mechanics.factoring.shorten(plain)
+        return min((factored, plain), key=lambda v: cost(v).weight)
+
+    @cached_property
+    def common_speeds(self) -> frozenset[Scalar]:
+        """The sums that all components of v are multiples of: v itself varies in fewer directions than it has entries.
+
+        Left whole, they let what vanishes for admissible velocities cancel exactly.
+        """
+        return self.mechanics.factoring.common_sums(self.admissible)
 
     @cached_property
     def inertia(self) -> ConstrainedInertia:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from symgen.derive.factoring import Factoring
 from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Matrix, Vector, dot, matvec, subtract_vectors
 from symgen.graph.scalar import Graph, Scalar
@@ -31,6 +32,7 @@ class Mechanics:
         self.names: dict[str, Scalar] = {str(name): node for name, node in names.items()}
         for definition in model.definitions:
             self.names[definition.name] = translate(graph, definition.value, self.names)
+        self.factoring = Factoring(graph, self.parameters)
         self.definitions = {d.name: self.names[d.name] for d in model.definitions}
 
     @property

@@ -12,10 +12,7 @@ from symgen.derive.derivation import Derivation
 from symgen.derive.genericity import Genericity, genericity
 from symgen.derive.mechanics import Mechanics
 from symgen.derive.spaces import HouseholderSpace, MinorSpace
-from symgen.graph.angles import share_angles
-from symgen.graph.polynomial import refactor
-from symgen.graph.scalar import Scalar
-from symgen.graph.traverse import cost, topological
+from symgen.graph.traverse import cost
 from symgen.model.model import Model
 
 # Minors are built only while their number stays small; beyond, Householder reflections are cheaper anyway.
@@ -42,26 +39,6 @@ class Derivations:
     quantities: tuple[Derived, ...]
     choices: tuple[Choice, ...]
     absent: tuple[tuple[str, str], ...]
-
-
-class Factoring:
-    """Multiplies the outputs of a quantity out and factors them again."""
-
-    def __init__(self, mechanics: Mechanics) -> None:
-        self._graph = mechanics.graph
-        self._fixed: dict[Scalar, bool] = dict.fromkeys(mechanics.parameters, True)
-
-    def fixed(self, node: Scalar) -> bool:
-        """Whether a scalar depends on parameters only."""
-        for inner in topological([node], self._fixed):
-            self._fixed[inner] = inner.op == "const" or (bool(inner.args) and all(self._fixed[a] for a in inner.args))
-        return self._fixed[node]
-
-    def shorten(self, derived: Derived) -> Derived:
-        """The quantity with outputs multiplied out, cancelled and factored where they are not too long."""
-        shared = share_angles(self._graph, derived.outputs)
-        outputs = refactor(self._graph, shared, self.fixed, self.fixed)
-        return replace(derived, outputs=tuple(outputs))
 
 
 def ways(mechanics: Mechanics, generic: Genericity) -> dict[str, Derivation]:
@@ -97,15 +74,15 @@ def derive_quantities(model: Model, outputs: Sequence[str]) -> Derivations:
     generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
     derivations = ways(mechanics, generic)
-    factoring = Factoring(mechanics)
     quantities: list[Derived] = []
     choices: list[Choice] = []
     for name in present:
         candidates = {way: derive(BY_NAME[name], derivation) for way, derivation in derivations.items()}
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
         best = min(costs, key=lambda way: costs[way])
-        if 0 < costs[best] <= FACTORING_LIMIT:
-            shorter = factoring.shorten(candidates[best])
+        if 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
+            chosen, kept = candidates["minors"], derivations["minors"].common_speeds
+            shorter = replace(chosen, outputs=mechanics.factoring.shorten(chosen.outputs, kept))
             costs["factored"] = cost(scalars(shorter)).weight
             # multiplied out, terms that vanish have cancelled exactly: worth a few operations more
             if costs["factored"] <= costs[best] * (1 + CANCELLATION_WORTH):

@@ -1,10 +1,10 @@
 """Values of scalars in a large prime field: two scalars with the same value are the same function.
 
 Symbols get fixed pseudo-random residues modulo 2^127 - 1, sines and cosines the rational parametrisation
-c = (1 - t^2)/(1 + t^2), s = 2t/(1 + t^2) of the circle, sums of angles the addition theorem.  An identity between rational
-functions of symbols, sines and cosines then holds up to a chance of about degree / 2^127 (Schwartz and Zippel);
-every other function is an independent residue that depends on its argument's value, so identities it may take part in
-are not seen, but none is invented.
+c = (1 - t^2)/(1 + t^2), s = 2t/(1 + t^2) of the circle, sums of angles the addition theorem.  A false identity between
+rational functions of symbols, sines and cosines passes with a chance of about degree / 2^127 (Schwartz and Zippel).
+Every other function is an independent residue that depends on its argument's value: identities it may take part in are
+not seen, but none is invented.
 """
 
 from __future__ import annotations

@@ -1,0 +1,39 @@
+"""Shorter scalars for a system: multiplied out, cancelled, factored, with sums of parameters left whole."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from symgen.graph.angles import share_angles
+from symgen.graph.polynomial import refactor
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import topological
+
+
+class Factoring:
+    """Multiplies scalars out and factors them again; sums of parameters and the sums in `kept` stay whole."""
+
+    def __init__(self, graph: Graph, parameters: Sequence[Scalar]) -> None:
+        self._graph = graph
+        self._fixed: dict[Scalar, bool] = dict.fromkeys(parameters, True)
+
+    def fixed(self, node: Scalar) -> bool:
+        """Whether a scalar depends on parameters only."""
+        for inner in topological([node], self._fixed):
+            self._fixed[inner] = inner.op == "const" or (bool(inner.args) and all(self._fixed[a] for a in inner.args))
+        return self._fixed[node]
+
+    def shorten(self, outputs: Sequence[Scalar], kept: frozenset[Scalar] = frozenset()) -> tuple[Scalar, ...]:
+        """The scalars multiplied out, cancelled and factored where they are not too long."""
+        shared = share_angles(self._graph, outputs)
+        return tuple(refactor(self._graph, shared, lambda node: node in kept or self.fixed(node), self.fixed))
+
+    def common_sums(self, components: Sequence[Scalar]) -> frozenset[Scalar]:
+        """The sums that are factors of two components or more: what a vector is a multiple of."""
+        seen: dict[Scalar, int] = {}
+        for component in components:
+            _, powers = self._graph.monomial(component)
+            for factor, power in powers.items():
+                if power > 0 and factor.op in ("add", "sub") and not self.fixed(factor):
+                    seen[factor] = seen.get(factor, 0) + 1
+        return frozenset(factor for factor, count in seen.items() if count > 1)
