@@ -9,8 +9,8 @@ import json
 from typing import Any
 
 from symgen import __version__
-from symgen.derive.select import Derivations
-from symgen.derive.structure import Structure
+from symgen.dynamics.select import Derivations
+from symgen.dynamics.structure import Structure
 from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Program
 from symgen.model.model import Model

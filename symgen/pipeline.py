@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symgen.derivation_file import derivation_json
-from symgen.derive.catalogue import BY_NAME
-from symgen.derive.select import Derivations, derive_quantities
-from symgen.derive.structure import Structure, analyse
 from symgen.diagnostics import ModelError, Notice
+from symgen.dynamics.catalogue import BY_NAME
+from symgen.dynamics.select import Derivations, derive_quantities
+from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
 from symgen.emit.operations import count_operations
 from symgen.emit.python import emit_python

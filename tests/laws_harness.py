@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
-from symgen.derive.select import Derivations, derive_quantities
+from symgen.dynamics.select import Derivations, derive_quantities
 from symgen.ir.interpret import Interpreter, round_float32
 from symgen.ir.kernel import Kernel, Program, Scalar, Status
 from symgen.ir.schedule import schedule

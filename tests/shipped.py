@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from symgen.derive.select import derive_quantities
+from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.python import emit_python
 from symgen.ir.kernel import Program, Scalar

@@ -9,10 +9,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from symgen.derive.catalogue import Derived
-from symgen.derive.guards import Guard, magnitude
-from symgen.derive.mechanics import Mechanics
 from symgen.diagnostics import SymgenBug
+from symgen.dynamics.catalogue import Derived
+from symgen.dynamics.guards import Guard, magnitude
+from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.angles import share_angles
 from symgen.graph.scalar import Graph
 from symgen.graph.scalar import Scalar as Node

@@ -8,8 +8,8 @@ from dataclasses import asdict, replace
 from symgen import __version__
 from symgen.closedform.forms import derive_closed_forms
 from symgen.closedform.published import decide_published
-from symgen.derive.select import Derivations
-from symgen.derive.structure import Structure
+from symgen.dynamics.select import Derivations
+from symgen.dynamics.structure import Structure
 from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Program
 from symgen.model.model import Model

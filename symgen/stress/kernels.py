@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from symgen.derive.catalogue import CATALOGUE
-from symgen.derive.select import derive_quantities
+from symgen.dynamics.catalogue import CATALOGUE
+from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel, Program, Scalar

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = """
 import hashlib, sys
 from pathlib import Path
-from symgen.derive.select import derive_quantities
+from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.python import emit_python
 from symgen.ir.schedule import schedule

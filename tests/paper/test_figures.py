@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from symgen.derive.select import derive_quantities
+from symgen.dynamics.select import derive_quantities
 from symgen.emit.python import emit_python
 from symgen.ir.schedule import schedule
 from symgen.model.load import load_model

@@ -11,7 +11,7 @@ import pytest
 import shipped
 from mechanisms import build
 
-from symgen.derive.select import derive_quantities
+from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.python import emit_python
 from symgen.ir.kernel import Argument, Kernel

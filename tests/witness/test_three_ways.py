@@ -13,7 +13,7 @@ from sympy import lambdify
 from witness_models import EXTRA
 
 from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
-from symgen.derive.select import derive_quantities
+from symgen.dynamics.select import derive_quantities
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Status
 from symgen.ir.schedule import schedule

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from symgen.derive.exterior import wedge
-from symgen.derive.guards import Guard, magnitude
-from symgen.derive.spaces import HouseholderSpace, MinorSpace
+from symgen.dynamics.exterior import wedge
+from symgen.dynamics.guards import Guard, magnitude
+from symgen.dynamics.spaces import HouseholderSpace, MinorSpace
 from symgen.graph.matrix import Matrix, Vector, dot, identity, matmul, matvec, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status

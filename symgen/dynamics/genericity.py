@@ -11,8 +11,8 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symgen.derive.mechanics import Mechanics
 from symgen.diagnostics import SymgenBug
+from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.matrix import flatten
 from symgen.graph.translate import translate

@@ -10,13 +10,13 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import combinations
 
-from symgen.derive.exterior import ActuationForms, RowForms, unit, wedge_all
-from symgen.derive.exterior import square as multivector_square
-from symgen.derive.genericity import Genericity
-from symgen.derive.guards import Guard, magnitude
-from symgen.derive.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia, ShiftedInertia
-from symgen.derive.mechanics import Mechanics
-from symgen.derive.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
+from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
+from symgen.dynamics.exterior import square as multivector_square
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.guards import Guard, magnitude
+from symgen.dynamics.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia, ShiftedInertia
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
 from symgen.graph.calculus import derivative_along
 from symgen.graph.matrix import (
     Matrix,

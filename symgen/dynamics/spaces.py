@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Protocol
 
-from symgen.derive.exterior import ActuationForms, RowForms
-from symgen.derive.guards import Guard
+from symgen.dynamics.exterior import ActuationForms, RowForms
+from symgen.dynamics.guards import Guard
 from symgen.graph.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status

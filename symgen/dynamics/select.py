@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb
 
-from symgen.derive.catalogue import BY_NAME, CATALOGUE, Derived, derive, missing, scalars
-from symgen.derive.derivation import Derivation
-from symgen.derive.genericity import Genericity, genericity
-from symgen.derive.mechanics import Mechanics
-from symgen.derive.spaces import HouseholderSpace, MinorSpace
+from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, derive, missing, scalars
+from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.genericity import Genericity, genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.spaces import HouseholderSpace, MinorSpace
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
 

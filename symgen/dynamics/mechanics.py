@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from symgen.derive.factoring import Factoring
+from symgen.dynamics.factoring import Factoring
 from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Matrix, Vector, dot, matvec, subtract_vectors
 from symgen.graph.scalar import Graph, Scalar

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symgen.derive.genericity import Genericity, configurations, rank
-from symgen.derive.mechanics import Mechanics
+from symgen.dynamics.genericity import Genericity, configurations, rank
+from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.matrix import Matrix, flatten
 from symgen.graph.scalar import Scalar

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from symgen.derive.derivation import Derivation
-from symgen.derive.genericity import Genericity
-from symgen.derive.guards import Guard
+from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.guards import Guard
 from symgen.graph.matrix import Vector, flatten
 from symgen.graph.scalar import Scalar
 from symgen.model.model import Model

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from laws_harness import System, shipped, system
 
-from symgen.derive.catalogue import BY_NAME, sizes
+from symgen.dynamics.catalogue import BY_NAME, sizes
 from symgen.ir.kernel import Status
 from symgen.verify.reference import State
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from symgen.derive.genericity import genericity, rank
-from symgen.derive.mechanics import Mechanics
+from symgen.dynamics.genericity import genericity, rank
+from symgen.dynamics.mechanics import Mechanics
 from symgen.model.load import load_text
 
 TINY = """
