@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from symgen.background import Background, Receive
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.dynamics.catalogue import BY_NAME
@@ -25,11 +27,11 @@ from symgen.ir.kernel import Program, Scalar
 from symgen.ir.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.results import LargestError, Options, Result, Summary, WrongUseError
 
 if TYPE_CHECKING:
-    from symgen.report.content import ReportInput
+    from symgen.report.facts import Facts
+    from symgen.report.files import ReportFiles
     from symgen.verify.certificate import Certificate
 
 Progress = Callable[[str], None]
@@ -53,54 +55,60 @@ class _Derived:
 def generate(path: Path, options: Options, progress: Progress) -> Result:
     """All files of one model, verified unless told otherwise.
 
+    Closed forms and report are worked out in a process of their own, while this one derives, prints and verifies.
     Raises ModelError for mistakes in the file and WrongUseError for outputs that do not exist; verification failures
     come back in the result.
     """
-    derived = _derive(path, options, progress)
-    files = _code(derived, options)
-    certificate = _verified(derived, options, files, progress) if options.verify else None
-    notices = _notices(derived, options, certificate)
-    if "report" in options.parts and (certificate is None or certificate.passed):
+    progress("reading the model")
+    model = load_model(path)
+    outputs = _outputs(path, model, options)
+    wanted = "report" in options.parts
+    with Background(lambda receive: _report(model, receive)) if wanted else nullcontext() as reporting:
+        progress("deriving")
+        derived = _derive(model, outputs, options)
+        if reporting is not None:
+            reporting.send(_facts(derived))
+        files = _code(derived, options)
+        certificate = _verified(derived, files, options.states, progress) if options.verify else None
+        result = _result(derived, options, files, certificate)
+        if reporting is None or result.failures:
+            return result
         progress("closed forms and report")
-        report = _gathered(derived)
-        if isinstance(report, Notice):
-            notices += (report,)
-        else:
-            notices += _integrable_rows(report)
-            files |= _report(path, report, certificate)
-    if certificate is not None:
-        files["certificate.json"] = json.dumps(certificate.to_json(), indent=2, ensure_ascii=False) + "\n"
-    return Result(
-        model=derived.model,
-        files=files,
-        summary=_summary(derived, certificate),
-        notices=(*derived.model.notices, *notices),
-        certificate=None if certificate is None else certificate.to_json(),
-        failures=() if certificate is None else certificate.failures,
-    )
+        reporting.send(certificate)
+        report = reporting.answer()
+    if report.mistakes:
+        raise ModelError(str(path), path.read_text(encoding="utf-8"), report.mistakes)
+    return replace(result, files={**result.files, **report.files}, notices=(*result.notices, *report.notices))
 
 
 def explain(path: Path, quantity: str | None, progress: Progress) -> str:
     """Structure and closed forms as text for the terminal; of one quantity when it is named."""
+    from symgen.closedform.limits import TooLargeError
     from symgen.explain import overview, quantity_text
+    from symgen.report.gather import gather
 
     if quantity is not None and quantity not in BY_NAME:
         raise WrongUseError(f"unknown quantity {quantity!r}; symgen explain MODEL.yaml lists them")
-    derived = _derive(path, Options(outputs=("all",), scalars=("float64",)), progress)
+    progress("reading the model")
+    model = load_model(path)
+    progress("deriving")
+    derived = _derive(model, ("all",), Options(scalars=("float64",)))
     progress("closed forms")
-    report = _gathered(derived)
-    if isinstance(report, Notice):
-        return report.message
+    try:
+        report = gather(model, _facts(derived))
+    except TooLargeError as large:
+        return f"closed forms are left out: {large}"
     return overview(report) if quantity is None else quantity_text(report, quantity)
 
 
-def _derive(path: Path, options: Options, progress: Progress) -> _Derived:
-    progress("reading the model")
-    model = load_model(path)
+def _outputs(path: Path, model: Model, options: Options) -> tuple[str, ...]:
     outputs = options.outputs or model.outputs
     if unknown := [name for name in outputs if name != "all" and name not in BY_NAME]:
         raise WrongUseError(f"unknown quantity {unknown[0]!r}; symgen explain {path} lists those of this model")
-    progress("deriving")
+    return outputs
+
+
+def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> _Derived:
     derivations = derive_quantities(model, outputs)
     structure = analyse(derivations.mechanics, derivations.generic)
     scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
@@ -122,7 +130,7 @@ def _code(derived: _Derived, options: Options) -> dict[str, str | bytes]:
 
 
 def _verified(
-    derived: _Derived, options: Options, files: dict[str, str | bytes], progress: Progress
+    derived: _Derived, files: dict[str, str | bytes], states: int, progress: Progress
 ) -> Certificate | None:
     """What is wrong with the files just made; None when there is no code among them."""
     from symgen.verify.run import generated_sources, verify
@@ -130,51 +138,36 @@ def _verified(
     c_sources, python_source = generated_sources(derived.model, files)
     if not c_sources and python_source is None:
         return None
-    return verify(derived.model, derived.program.kernels, c_sources, python_source, options.states, progress)
+    return verify(derived.model, derived.program.kernels, c_sources, python_source, states, progress)
 
 
-def _gathered(derived: _Derived) -> ReportInput | Notice:
-    """What the report says, or why B or M are too long to be written out at all."""
-    from symgen.closedform.limits import TooLargeError
-    from symgen.report.gather import gather
+def _facts(derived: _Derived) -> Facts:
+    from symgen.report.facts import Facts
 
-    try:
-        return gather(derived.model, derived.derivations, derived.structure, derived.program)
-    except TooLargeError as large:
-        return Notice(f"closed forms and report are left out: {large}")
+    operations = {kernel.name: count_operations(kernel.statements) for kernel in derived.program.kernels}
+    decisions = tuple((decision.what, decision.why) for decision in derived.structure.decisions)
+    return Facts(operations, (*decisions, *derived.derivations.absent))
 
 
-def _integrable_rows(report: ReportInput) -> tuple[Notice, ...]:
-    return tuple(
-        Notice(f"the non-holonomic row {row.row} is integrable: {row.explanation}")
-        for row in report.integrability
-        if row.verdict == "integrable"
+def _report(model: Model, receive: Receive) -> ReportFiles:
+    from symgen.report.files import report_files
+
+    return report_files(model, receive)
+
+
+def _result(
+    derived: _Derived, options: Options, files: dict[str, str | bytes], certificate: Certificate | None
+) -> Result:
+    if certificate is not None:
+        files = {**files, "certificate.json": json.dumps(certificate.to_json(), indent=2, ensure_ascii=False) + "\n"}
+    return Result(
+        model=derived.model,
+        files=files,
+        summary=_summary(derived, certificate),
+        notices=(*derived.model.notices, *_notices(derived, options, certificate)),
+        certificate=None if certificate is None else certificate.to_json(),
+        failures=() if certificate is None else certificate.failures,
     )
-
-
-def _report(path: Path, report: ReportInput, certificate: Certificate | None) -> dict[str, str | bytes]:
-    """HTML and LaTeX are functions of the model; a verified run adds the PDF, which says what it measured."""
-    from symgen.report.compose import compose
-    from symgen.report.gather import path_charts, with_measurements
-    from symgen.report.html import render_html
-    from symgen.report.latex import render_latex
-
-    model, stem = report.model, file_stem(report.model.name)
-    document = compose(report)
-    files: dict[str, str | bytes] = {
-        f"report/{stem}.html": render_html(document),
-        f"report/{stem}.tex": render_latex(document),
-    }
-    if certificate is None:
-        return files
-    from symgen.paths.path_equations import PathError
-    from symgen.report.pdf import render_pdf
-
-    try:
-        charts = path_charts(model)
-    except PathError as error:
-        raise ModelError(str(path), path.read_text(encoding="utf-8"), (error.mistake,)) from error
-    return {**files, f"report/{stem}.pdf": render_pdf(compose(with_measurements(report, certificate, charts)))}
 
 
 def _summary(derived: _Derived, certificate: Certificate | None) -> Summary:

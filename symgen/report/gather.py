@@ -8,21 +8,16 @@ from dataclasses import asdict, replace
 from symgen import __version__
 from symgen.closedform.forms import derive_closed_forms
 from symgen.closedform.published import decide_published
-from symgen.dynamics.select import Derivations
-from symgen.dynamics.structure import Structure
-from symgen.emit.operations import count_operations
-from symgen.ir.kernel import Program
 from symgen.model.model import Model
 from symgen.report.content import Chart, ErrorRow, ReportInput, Verdict, Verification
+from symgen.report.facts import Facts
 from symgen.verify.certificate import Certificate
 
 
-def gather(model: Model, derivations: Derivations, structure: Structure, program: Program) -> ReportInput:
+def gather(model: Model, facts: Facts) -> ReportInput:
     """Everything that is a function of the model and symgen alone."""
-    counts = {kernel.name: count_operations(kernel.statements) for kernel in program.kernels}
+    counts = facts.operations
     forms = derive_closed_forms(model, {name: count.total for name, count in counts.items()})
-    skipped = [(decision.what, decision.why) for decision in structure.decisions]
-    skipped += [(name, reason) for name, reason in derivations.absent]
     return ReportInput(
         model=model,
         version=__version__,
@@ -30,7 +25,7 @@ def gather(model: Model, derivations: Derivations, structure: Structure, program
         structure=forms.structure,
         integrability=forms.integrability,
         singular_sets=forms.singular_sets,
-        skipped=tuple(skipped),
+        skipped=facts.skipped,
         operation_counts={name: asdict(count) for name, count in counts.items()},
         verdicts=tuple(Verdict(v.position, v.verdict, v.explanation) for v in decide_published(model, forms)),
         notices=tuple(notice.message for notice in model.notices),

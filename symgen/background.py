@@ -1,0 +1,76 @@
+"""One piece of work in a process of its own, which is sent messages on its way."""
+
+from __future__ import annotations
+
+import multiprocessing
+import multiprocessing.connection
+import sys
+import traceback
+from collections.abc import Callable
+from typing import Any, Generic, TypeAlias, TypeVar
+
+from symgen.diagnostics import SymgenBug
+
+Answer = TypeVar("Answer")
+Receive: TypeAlias = Callable[[], Any]
+
+
+class Background(Generic[Answer]):
+    """Runs `work(receive)` in a forked process; `receive` blocks until the next message is sent.
+
+    Where processes cannot be forked safely the work is done when the answer is asked for.  Messages and answer must
+    pickle.  Use as a context manager: what is not finished is ended.
+    """
+
+    def __init__(self, work: Callable[[Receive], Answer]) -> None:
+        self._work = work
+        self._process = None
+        self._messages: list[Any] = []
+        if sys.platform.startswith("linux"):
+            context = multiprocessing.get_context("fork")
+            self._pipe, far = context.Pipe()
+            self._process = context.Process(target=_child, args=(work, far), daemon=True)
+            self._process.start()
+            far.close()
+
+    def __enter__(self) -> Background[Answer]:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._process is not None and self._process.is_alive():
+            self._process.terminate()
+
+    def send(self, message: Any) -> None:
+        """The next message; nothing happens when the work has ended early."""
+        if self._process is None:
+            self._messages.append(message)
+            return
+        try:
+            self._pipe.send(message)
+        except BrokenPipeError:
+            return
+
+    def answer(self) -> Answer:
+        """Waits for the end of the work; a fault of it is a SymgenBug with its traceback."""
+        if self._process is None:
+            waiting = iter(self._messages)
+            return self._work(lambda: next(waiting))
+        try:
+            fault, answer = self._pipe.recv()
+        except EOFError as error:
+            raise SymgenBug("the background process ended without an answer") from error
+        self._process.join()
+        if fault is not None:
+            raise SymgenBug(f"in the background process:\n{fault}")
+        result: Answer = answer
+        return result
+
+
+def _child(work: Callable[[Receive], Answer], pipe: multiprocessing.connection.Connection) -> None:
+    try:
+        pipe.send((None, work(pipe.recv)))
+    except (KeyboardInterrupt, EOFError):
+        # the user or the parent has given up
+        return
+    except Exception:
+        pipe.send((traceback.format_exc(), None))

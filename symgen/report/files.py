@@ -1,0 +1,57 @@
+"""The files of a report: HTML and LaTeX from the model alone, the PDF with what a run measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from symgen.closedform.limits import TooLargeError
+from symgen.diagnostics import Mistake, Notice
+from symgen.model.model import Model
+from symgen.naming import file_stem
+from symgen.paths.path_equations import PathError
+from symgen.report.compose import compose
+from symgen.report.facts import Facts
+from symgen.report.gather import gather, path_charts, with_measurements
+from symgen.report.html import render_html
+from symgen.report.latex import render_latex
+from symgen.report.pdf import render_pdf
+from symgen.verify.certificate import Certificate
+
+
+@dataclass(frozen=True, slots=True)
+class ReportFiles:
+    """The report of one model, what the user should know, and mistakes in the model's paths."""
+
+    files: dict[str, str | bytes]
+    notices: tuple[Notice, ...] = ()
+    mistakes: tuple[Mistake, ...] = ()
+
+
+def report_files(model: Model, receive: Callable[[], Any]) -> ReportFiles:
+    """The files; receives the `Facts` of the derivation, then the certificate or None where nothing was measured."""
+    facts: Facts = receive()
+    try:
+        report = gather(model, facts)
+    except TooLargeError as large:
+        return ReportFiles({}, (Notice(f"closed forms and report are left out: {large}"),))
+    notices = tuple(
+        Notice(f"the non-holonomic row {row.row} is integrable: {row.explanation}")
+        for row in report.integrability
+        if row.verdict == "integrable"
+    )
+    document, stem = compose(report), file_stem(model.name)
+    files: dict[str, str | bytes] = {
+        f"report/{stem}.html": render_html(document),
+        f"report/{stem}.tex": render_latex(document),
+    }
+    certificate: Certificate | None = receive()
+    if certificate is None:
+        return ReportFiles(files, notices)
+    try:
+        charts = path_charts(model)
+    except PathError as error:
+        return ReportFiles(files, notices, (error.mistake,))
+    pdf = render_pdf(compose(with_measurements(report, certificate, charts)))
+    return ReportFiles({**files, f"report/{stem}.pdf": pdf}, notices)
