@@ -25,6 +25,7 @@ _SCALARS: dict[str, tuple[Scalar, ...]] = {
 _EPILOG = """commands:
   symgen MODEL.yaml...              generate and verify
   symgen verify MODEL.yaml          verify again, write the certificate only
+  symgen stress MODEL.yaml...       errors near singularities, extreme values, a long run
   symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
   symgen schema                     JSON Schema of model files, for editors
 
@@ -137,7 +138,41 @@ def _schema(arguments: list[str]) -> int:
     return DONE
 
 
-_COMMANDS: dict[str, Callable[[list[str]], int]] = {"verify": _verify, "explain": _explain, "schema": _schema}
+def _stress(arguments: list[str]) -> int:
+    parser = _parser(
+        "symgen stress",
+        "Errors against the distance to singularities and for extreme values, statuses, other units, a long run.",
+    )
+    parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, default=Path("generated"), help="writes DIR/<model>/ (default: generated)"
+    )
+    parser.add_argument(
+        "--steps", metavar="N", type=int, default=1_000_000, help="steps of the long run, 0 for none (default: 1000000)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
+    given = parser.parse_args(arguments)
+
+    def one(path: Path) -> int:
+        from symgen.stress.command import run_stress
+
+        progress = Progress(path.stem, given.quiet)
+        try:
+            return run_stress(path, given.out, max(0, given.steps), given.quiet, progress)
+        finally:
+            progress.done()
+
+    for path in given.models:
+        if not path.is_file():
+            raise WrongUseError(f"no such file: {path}")
+    return max([_guarded(partial(one, path)) for path in given.models])
+
+
+_COMMANDS: dict[str, Callable[[list[str]], int]] = {"verify": _verify,
+    "stress": _stress,
+    "explain": _explain,
+    "schema": _schema,
+}
 
 
 def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: Callable[[Result], int]) -> int:

@@ -40,12 +40,12 @@ def summary_table(name: str, summary: Summary) -> str:
     sections = [f"{name}   {sizes}"]
     if summary.operations:
         rows = [(quantity, str(count)) for quantity, count in summary.operations]
-        sections.append(_columns(("quantity", "operations"), rows, "<>"))
+        sections.append(columns(("quantity", "operations"), rows, "<>"))
     if summary.errors:
         errors = [(e.target, f"{e.error:.2g}", f"{e.tolerance:g}", e.quantity) for e in summary.errors]
-        sections.append(_columns(("largest error*", "found", "allowed", "in"), errors, "<>><") + "\n" + _ERROR_NOTE)
+        sections.append(columns(("largest error*", "found", "allowed", "in"), errors, "<>><") + "\n" + _ERROR_NOTE)
     if summary.skipped:
-        sections.append(_columns(("not needed", "because"), summary.skipped, "<<"))
+        sections.append(columns(("not needed", "because"), summary.skipped, "<<"))
     return "\n\n".join(sections) + "\n"
 
 
@@ -55,7 +55,8 @@ def notice_line(file: str, notice: Notice) -> str:
     return f"{place}: notice: {notice.message}"
 
 
-def _columns(head: Sequence[str], rows: Sequence[Sequence[str]], alignment: str) -> str:
+def columns(head: Sequence[str], rows: Sequence[Sequence[str]], alignment: str) -> str:
+    """Rows below a head, each column as wide as needed; `alignment` has < or > for each."""
     widths = [max(len(row[k]) for row in (head, *rows)) for k in range(len(head))]
     lines = [
         "   ".join(f"{cell:{side}{width}}" for cell, side, width in zip(row, alignment, widths, strict=True)).rstrip()

@@ -82,7 +82,7 @@ def _panels(data: FigureData, columns: Sequence[tuple[str, str, Array]], what: s
         if zeros:
             _note(axes[-1], "dashed: zeros of\nthe determinants")
 
-    return _svg(draw, height=PANEL_HEIGHT * len(units) + 0.2)
+    return svg(draw, height=PANEL_HEIGHT * len(units) + 0.2)
 
 
 def _determinants(model: Model, data: FigureData) -> str:
@@ -104,7 +104,7 @@ def _determinants(model: Model, data: FigureData) -> str:
             title="inputs", loc="upper left", bbox_to_anchor=(LEGEND_X, 1.0), borderaxespad=0, alignment="left"
         )
 
-    return _svg(draw, height=PANEL_HEIGHT + 0.4)
+    return svg(draw, height=PANEL_HEIGHT + 0.4)
 
 
 def _note(panel: Any, text: str) -> None:
@@ -140,7 +140,7 @@ def _unit(unit: str) -> str:
     return unit.replace("**2", "²").replace("**3", "³").replace("*", "·")
 
 
-def _svg(draw: Any, height: float) -> str:
+def svg(draw: Any, height: float) -> str:
     """Draws without a display and without pyplot's global state."""
     import matplotlib
     from matplotlib.backends.backend_svg import FigureCanvasSVG

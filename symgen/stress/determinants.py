@@ -6,7 +6,7 @@ vanish is a trouble of its own.  Without closed forms the determinants themselve
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import comb
@@ -49,13 +49,56 @@ class _Factor:
     inputs: list[tuple[int, ...]] = field(default_factory=list)
 
 
-def troubles(reference: Reference) -> tuple[tuple[Trouble, ...], bool]:
-    """The troubles of choices (coordinates, inputs), factored where closed forms exist, and whether they do."""
-    found = _factored(reference.model)
-    return (tuple(found), True) if found is not None else (tuple(_numeric(reference)), False)
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """The troubles of choices (of coordinates, of inputs), and every choice there is; factored where that is possible.
+
+    A choice that no trouble names never fails.
+    """
+
+    troubles: tuple[Trouble, ...]
+    partitions: tuple[tuple[int, ...], ...]
+    inputs: tuple[tuple[int, ...], ...]
+    factored: bool
 
 
-def _factored(model: Model) -> list[Trouble] | None:
+def choices(reference: Reference) -> Choices:
+    """The determinants of all choices, factored where closed forms exist."""
+    return _factored(reference.model) or Choices(tuple(_numeric(reference)), (), (), False)
+
+
+def common_troubles(known: Choices) -> Iterator[tuple[str, Trouble]]:
+    """Sets of up to three factors without which no choice of coordinates (of inputs) is left: rank B (the degree of
+    actuation) can drop only where such a set vanishes at once.
+    """
+    sides: tuple[tuple[str, tuple[tuple[int, ...], ...], Callable[[Trouble], tuple[tuple[int, ...], ...]]], ...] = (
+        ("constraint", known.partitions, lambda t: t.partitions),
+        ("input", known.inputs, lambda t: t.inputs),
+    )
+    for kind, everything, killed in sides:
+        smaller: list[set[int]] = []
+        for size in (1, 2, 3):
+            for chosen in combinations(range(len(known.troubles)), size):
+                members = [known.troubles[k] for k in chosen]
+                covered = {subset for trouble in members for subset in killed(trouble)}
+                if not everything or covered != set(everything) or any(s <= set(chosen) for s in smaller):
+                    continue
+                smaller.append(set(chosen))
+                if size > 1:
+                    yield kind, _all_of(members)
+
+
+def _all_of(members: Sequence[Trouble]) -> Trouble:
+    def values(q: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
+        return [value for trouble in members for value in trouble.values(q, parameters)]
+
+    label = " = ".join(trouble.label for trouble in members) + " = 0"
+    partitions = tuple(dict.fromkeys(subset for trouble in members for subset in trouble.partitions))
+    inputs = tuple(dict.fromkeys(subset for trouble in members for subset in trouble.inputs))
+    return Trouble(label, values, partitions, inputs)
+
+
+def _factored(model: Model) -> Choices | None:
     from symgen.closedform.exact import Exact
     from symgen.closedform.limits import TooLargeError
     from symgen.closedform.mechanics import Mechanics, make_translator
@@ -74,7 +117,7 @@ def _factored(model: Model) -> list[Trouble] | None:
         return None
 
 
-def _factors(model: Model, exact: Exact) -> list[Trouble]:
+def _factors(model: Model, exact: Exact) -> Choices:
     from symgen.closedform.singular import essential_factors
     from symgen.closedform.spelling import Speller
     from symgen.report.terminal import render_text_math
@@ -94,21 +137,25 @@ def _factors(model: Model, exact: Exact) -> list[Trouble]:
             result.append(found[value])
         return result
 
-    for minors in exact.minor_sets:
-        if model.constraints:
-            for subset, minor in minors.values.items():
-                for factor in factors(minor):
-                    factor.partitions.append(subset)
-            factors(minors.content)
-    if model.inputs and exact.full_actuation:
-        for actuation in exact.actuations:
-            for subset, value in actuation.determinants.items():
-                for factor in factors(value):
-                    factor.inputs.append(subset)
-    return [
+    partitions: list[tuple[int, ...]] = []
+    inputs: list[tuple[int, ...]] = []
+    for minors in exact.minor_sets if model.constraints else ():
+        partitions = [subset for subset, minor in minors.values.items() if minor]
+        for subset in partitions:
+            for factor in factors(minors.values[subset]):
+                factor.partitions.append(subset)
+        for factor in factors(minors.content):
+            factor.partitions = list(partitions)
+    for actuation in exact.actuations if model.inputs and exact.full_actuation else ():
+        inputs = [subset for subset, value in actuation.determinants.items() if value]
+        for subset in inputs:
+            for factor in factors(actuation.determinants[subset]):
+                factor.inputs.append(subset)
+    known = [
         Trouble(f.label, _ring_values(model, exact, f.value), tuple(f.partitions), tuple(f.inputs))
         for f in found.values()
     ]
+    return Choices(tuple(known), tuple(partitions), tuple(inputs), True)
 
 
 def _ring_values(model: Model, exact: Exact, p: PolyElement) -> Values:
@@ -164,7 +211,7 @@ def _minors_of_rows(reference: Reference, columns: Sequence[int]) -> Values:
 
 
 def joint_troubles(reference: Reference) -> tuple[tuple[str, Trouble], ...]:
-    """Where the rank of B drops, and where the degree of actuation does: all minors vanish at once."""
+    """Without factors: where the rank of B drops, and where the degree of actuation does, all minors vanish at once."""
     system, ranks = reference.system, reference.ranks
     found: list[tuple[str, Trouble]] = []
     if ranks.constraints and comb(system.n, ranks.constraints) * comb(system.r, ranks.constraints) <= MOST_DETERMINANTS:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from symgen.model.model import Model
-from symgen.stress.determinants import Trouble, joint_troubles, troubles
+from symgen.stress.determinants import Trouble, choices, common_troubles, joint_troubles
 from symgen.stress.dimensions import parameter_dimensions
 from symgen.stress.zeros import Place, places
 from symgen.verify.reference import Reference, ReferenceValueError, State
@@ -20,6 +20,8 @@ Kind: TypeAlias = Literal[
 SAMPLES = 2  # places or states of each family
 SINGULAR = 1e-24  # a measure below this at a place is zero
 BITS = 128
+MOST_JOINT = 12  # common zeros looked for
+FAMILIES_OF_KIND = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,29 +55,33 @@ def search(reference: Reference) -> Search:
 
 
 def _singularities(reference: Reference) -> tuple[list[Family], bool, tuple[str, ...]]:
-    choices, factored = troubles(reference)
+    known = choices(reference)
     found: list[Family] = []
     nowhere: list[str] = []
-    for trouble in choices:
-        at = places(reference, trouble, SAMPLES)
+    for trouble in known.troubles:
+        at = _places(reference, trouble)
         if at:
             found.append(_family(reference, _kind(reference, at[0]), trouble, at))
         else:
-            nowhere.append(f"{trouble.label}: no zero found on the constraint manifold")
-    for kind, trouble in joint_troubles(reference):
-        if any(family.kind == kind for family in found):
-            continue
-        wanted = [place for place in _joint_places(reference, trouble) if _kind(reference, place) == kind]
-        if wanted:
-            found.append(_family(reference, "constraint" if kind == "constraint" else "input", trouble, wanted))
-        else:
+            nowhere.append(f"{trouble.label} = 0: not found on the constraint manifold")
+    together = list(common_troubles(known)) if known.factored else list(joint_troubles(reference))
+    for kind in ("constraint", "input"):
+        candidates = [trouble for its_kind, trouble in together if its_kind == kind]
+        for trouble in candidates[:MOST_JOINT]:
+            if sum(family.kind == kind for family in found) == FAMILIES_OF_KIND:
+                break
+            wanted = [place for place in _places(reference, trouble) if _kind(reference, place) == kind]
+            if wanted:
+                found.append(_family(reference, "constraint" if kind == "constraint" else "input", trouble, wanted))
+        if not any(family.kind == kind for family in found):
             what = "the rank of B drops" if kind == "constraint" else "the degree of actuation drops"
-            nowhere.append(f"{what} nowhere that was found")
+            proven = known.factored and not candidates
+            nowhere.append(f"{what} nowhere" if proven else f"{what}: no such configuration was found")
     order = ("constraint", "input", "parameter")
-    return sorted(found, key=lambda family: order.index(family.kind)), factored, tuple(nowhere)
+    return sorted(found, key=lambda family: order.index(family.kind)), known.factored, tuple(nowhere)
 
 
-def _joint_places(reference: Reference, trouble: Trouble) -> list[Place]:
+def _places(reference: Reference, trouble: Trouble) -> list[Place]:
     return places(reference, trouble, SAMPLES) or places(reference, trouble, SAMPLES, parameters_too=True)
 
 

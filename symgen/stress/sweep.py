@@ -28,6 +28,7 @@ FORMS = (PARTITION, FIXED, SWITCHING, SYMGEN)
 PAPER_KINDS = ("parameter", "input", "constraint", "large angles", "mass ratios")
 ANGLE_LIMITS: dict[Scalar, float] = {"float64": 1e5, "float32": 100.0}
 MEASURE_BITS = 256
+GRADED = 1e-2
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,11 +83,14 @@ class StatusCount:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """Everything measured along the families, and what is wrong with symgen's kernels (empty: nothing)."""
+    """Everything measured along the families, what is wrong with symgen's kernels (empty: nothing), and where known
+    limits show: q̈ and λ lose with the condition of G under mass ratios.
+    """
 
     series: tuple[Series, ...]
     statuses: tuple[StatusCount, ...]
     failures: tuple[str, ...]
+    limits: tuple[str, ...]
 
 
 Found: TypeAlias = dict[tuple[int, Scalar, str, str], dict[float, Error]]
@@ -125,7 +129,10 @@ class Sweeper:
             for (family, scalar, quantity, form), errors in self._found.items()
         )
         statuses = tuple(StatusCount(name, scalar, *counts) for (name, scalar), counts in self._counts.items())
-        return Sweep(series, statuses, tuple(self._failures))
+        exceeded = [(self._families[one.family], one) for one in series if one.form == SYMGEN and one.breaks]
+        limits = tuple(_sentence(family, one) for family, one in exceeded if _known(family, one))
+        failures = (_sentence(family, one) for family, one in exceeded if not _known(family, one))
+        return Sweep(series, statuses, (*failures, *self._failures), limits)
 
     def _singular(self, index: int) -> bool:
         return self._families[index].kind in ("parameter", "input", "constraint")
@@ -174,12 +181,7 @@ class Sweeper:
             return
         for name, outcome in outcomes.items():
             if outcome.status == Status.OK:
-                error = self._record(index, scalar, name, SYMGEN, d, expected[name], outcome.entries)
-                if not error.units <= FACTOR:
-                    self._failures.append(
-                        f"{name}, {where}: error {error.units:.3g} times d + eps |y*|, {FACTOR:g} is allowed "
-                        f"(relative {error.relative:.2g})"
-                    )
+                self._record(index, scalar, name, SYMGEN, d, expected[name], outcome.entries)
         for form, values in self._paper(scalar, state, choice):
             for name in self._names:
                 if name in values or values == {}:
@@ -195,7 +197,7 @@ class Sweeper:
         d: float,
         expected: Expectation,
         entries: Sequence[float] | None,
-    ) -> Error:
+    ) -> None:
         if entries is None or not all(map(math.isfinite, entries)):
             error = Error(d, math.inf, math.inf)
         else:
@@ -207,7 +209,6 @@ class Sweeper:
             errors[d] = Error(d, max(error.relative, error_before.relative), max(error.units, error_before.units))
         else:
             errors[d] = error
-        return error
 
     def _paper(
         self, scalar: Scalar, state: State, choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None]
@@ -266,6 +267,15 @@ class Sweeper:
         first, second = (float(x) for x in values)
         return (first, second) if math.isfinite(first) and math.isfinite(second) else None
 
+    def _graded(self, state: State) -> bool:
+        """Whether rows of B differ so much in length that lengths are not O(1), as the statuses assume."""
+        if not self._reference.system.r:
+            return False
+        name = "constraint_jacobian"
+        B = _floats(self._reference.matrices(state, (name,), MEASURE_BITS)[name])
+        lengths = np.linalg.norm(B, axis=1)
+        return bool(lengths.min() < GRADED * lengths.max())
+
     def _status(
         self,
         name: str,
@@ -299,11 +309,24 @@ class Sweeper:
                 self._failures.append(f"{name}, {where}: status 0 at measures {_texts(counting)}, below {low:.2g}")
         elif min(counting) > high and given == (None, None):
             counts[4] += 1
-            if refused and outcome.status != Status.NOT_FINITE:
+            if refused and outcome.status != Status.NOT_FINITE and not self._graded(state):
                 counts[5] += 1
                 self._failures.append(
                     f"{name}, {where}: status {outcome.status} at measures {_texts(counting)}, above {high:.2g}"
                 )
+
+
+def _known(family: Family, one: Series) -> bool:
+    return family.kind == "mass ratios" and one.quantity in ("forward_dynamics", "multipliers")
+
+
+def _sentence(family: Family, one: Series) -> str:
+    worst = one.largest
+    return (
+        f"{one.quantity}, {family.kind}, {family.label}, {one.scalar}: beyond the tolerance from d = {one.breaks:.2g}, "
+        f"at most {worst.units:.2g} times d + eps |y*| ({FACTOR:g} is allowed) at d = {worst.distance:.2g}, "
+        f"relative {worst.relative:.2g}"
+    )
 
 
 def _texts(values: Sequence[float]) -> str:

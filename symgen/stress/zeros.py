@@ -97,7 +97,11 @@ def _solved(
         transposed = arb_mat(len(x), h.nrows(), [entry for row in slopes for entry in row])
         gram = transposed * transposed.transpose()
         shift = damping * max(float(gram.trace()), 1e-60)
-        step = solve(gram + identity(len(x)) * shift, transposed * h)
+        try:
+            step = solve((gram + identity(len(x)) * shift).mid(), (transposed * h).mid())
+        except ZeroDivisionError:
+            damping *= 1e6
+            continue
         trial = [arb((a - b).mid()) for a, b in zip(x, step.entries(), strict=True)]
         h_trial = residual(trial)
         size_trial = norm(h_trial)
@@ -105,7 +109,7 @@ def _solved(
             slow = slow + 1 if size_trial > 0.9 * size else 0
             if slow > 12:
                 return None
-            damping = max(damping * min(0.03, (size_trial / size) ** 2), 1e-60)
+            damping = max(damping * min(0.03, (size_trial / size) ** 2), 1e-45)
             x, h, size = trial, h_trial, size_trial
         elif damping < 1e6:
             damping *= 10

@@ -1,0 +1,37 @@
+"""`symgen stress` for one model: run, show, write."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from symgen.model.load import load_model
+from symgen.stress.charts import stress_charts
+from symgen.stress.run import Progress, stress
+from symgen.stress.tables import stress_tables
+from symgen.verify.reference import ReferenceValueError
+from symgen.verify.states import VerificationError
+from symgen.write import write_files
+
+
+def run_stress(path: Path, out: Path, steps: int, quiet: bool, progress: Progress) -> int:
+    """Writes stress.json and the charts into OUT/<model>/; 0, or 1 where a kernel is wrong.
+
+    Raises ModelError for mistakes in the file.
+    """
+    model = load_model(path)
+    try:
+        result = stress(model, steps, progress)
+    except (ReferenceValueError, VerificationError) as fault:
+        print(f"{path}: {fault}", file=sys.stderr)
+        return 1
+    progress("drawing")
+    data = json.dumps(result.to_json(), indent=1, ensure_ascii=False) + "\n"
+    written = write_files(out / model.name, {"stress.json": data, **stress_charts(result)})
+    if not quiet:
+        print(stress_tables(result))
+        print("written:", *(f"  {file}" for file in written), "", sep="\n")
+    for failure in result.failures:
+        print(f"{path}: {failure}", file=sys.stderr)
+    return 1 if result.failures else 0

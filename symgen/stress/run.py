@@ -1,0 +1,134 @@
+"""One model under stress: families, sweeps, statuses, units, odd numbers, a long run; the result is plain data."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from symgen.model.model import Model
+from symgen.stress.families import Family, Search, search
+from symgen.stress.kernels import STRESSED, Kernels
+from symgen.stress.long_run import Run, complaints, long_runs
+from symgen.stress.odd_numbers import OddNumbers, odd_numbers
+from symgen.stress.scaling import Scaled, scaling
+from symgen.stress.sweep import Series, StatusCount, Sweeper
+from symgen.verify.reference import Reference
+from symgen.verify.states import FEWEST_STATES, sample_states
+from symgen.verify.tolerance import FACTOR
+
+Progress = Callable[[str], None]
+ODD_STATES = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Stress:
+    """Everything measured; `failures` name what is wrong with symgen's kernels, `limits` known weaknesses met."""
+
+    model: str
+    engine: str
+    sizes: dict[str, int]
+    searched: Search
+    series: tuple[Series, ...]
+    statuses: tuple[StatusCount, ...]
+    scaled: tuple[Scaled, ...]
+    odd: tuple[OddNumbers, ...]
+    runs: tuple[Run, ...]
+    no_run: str
+    failures: tuple[str, ...]
+    limits: tuple[str, ...]
+
+    @property
+    def families(self) -> tuple[Family, ...]:
+        """The families, to which the series refer by position."""
+        return self.searched.families
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON-able form; what is infinite is null."""
+        families = [
+            {
+                "kind": family.kind,
+                "label": family.label,
+                "d": family.meaning,
+                "curves": len(family.curves),
+                "partitions": [list(p) for p in family.partitions],
+                "inputs": [list(p) for p in family.inputs],
+            }
+            for family in self.families
+        ]
+        return {
+            "model": self.model,
+            "engine": self.engine,
+            "passed": not self.failures,
+            "failures": list(self.failures),
+            "limits": list(self.limits),
+            "tolerance": FACTOR,
+            "sizes": self.sizes,
+            "factored": self.searched.factored,
+            "nowhere": list(self.searched.nowhere),
+            "families": families,
+            "series": [_plain({**asdict(one), "breaks": one.breaks}) for one in self.series],
+            "statuses": [asdict(one) for one in self.statuses],
+            "scaling": [_plain(asdict(one)) for one in self.scaled],
+            "odd_numbers": [asdict(one) for one in self.odd],
+            "long_runs": [_plain(asdict(run)) for run in self.runs],
+            "no_long_run": self.no_run,
+        }
+
+
+def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Stress:
+    """Put a model under stress; `steps` of the long run, 0 for none.
+
+    Raises ReferenceValueError or VerificationError where no regular states are found.
+    """
+    reference = Reference(model)
+    with tempfile.TemporaryDirectory(prefix="symgen-stress-") as name:
+        folder = Path(name)
+        progress("deriving and compiling")
+        kernels = Kernels(model, folder)
+        progress("looking for singularities")
+        searched = search(reference)
+        sweeper = Sweeper(reference, kernels, searched.families)
+        for index, family in enumerate(searched.families):
+            progress(f"{family.kind}, {family.label}")
+            sweeper.family(index)
+        swept = sweeper.result()
+        progress("other units")
+        scaled, wrong_units = scaling(reference, kernels, folder)
+        progress("odd numbers")
+        stressed = tuple(name for name in STRESSED if name in kernels.names)
+        states = [sample.state for sample in sample_states(reference, (), FEWEST_STATES)][:ODD_STATES]
+        odd, wrong_numbers = odd_numbers(kernels, stressed, states)
+        runs: tuple[Run, ...] = ()
+        no_run = "not asked for"
+        if steps:
+            progress("a long run")
+            runs, no_run = long_runs(reference, kernels, folder, steps)
+    ranks = reference.ranks
+    return Stress(
+        model=model.name,
+        engine=kernels.engine,
+        sizes={"n": model.n, "r": model.r, "delta": model.n - ranks.constraints, "m": model.m},
+        searched=searched,
+        series=swept.series,
+        statuses=swept.statuses,
+        scaled=scaled,
+        odd=odd,
+        runs=runs,
+        no_run=no_run,
+        failures=(*swept.failures, *wrong_units, *wrong_numbers, *complaints(runs)),
+        limits=swept.limits,
+    )
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float):
+        return float(f"{value:.6g}") if math.isfinite(value) else None
+    return value
