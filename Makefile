@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PAPER := skate front_car front_car_wheelset rear_car rapkm_2rrr_rr rapkm_two_drives
 
-.PHONY: run test generated lock
+.PHONY: run test generated stress lock
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -17,6 +17,11 @@ test: $(VENV)/installed
 
 generated: $(VENV)/installed
 	$(BIN)/symgen models/*.yaml
+
+# Numerical stability of every model: docs/stress, measured on this machine.
+stress: $(VENV)/installed
+	$(BIN)/symgen stress models/*.yaml --quiet
+	$(BIN)/python tools/stress_pages.py generated models/*.yaml
 
 # One lock for every platform and Python from 3.11 on; editables is what the build backend needs for `pip install -e`.
 lock: $(VENV)/installed

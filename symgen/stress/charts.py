@@ -98,7 +98,7 @@ def _curves(panel: Any, forms: Mapping[str, Series], scalar: Scalar) -> None:
     panel.set_xscale("log")
     panel.set_yscale("log")
     panel.set_ylim(eps / 50, 3 * NOTHING)
-    panel.invert_xaxis()
+    panel.set_xlim(2, min((e.distance for one in forms.values() for e in one.errors), default=0.1) / 2)
 
 
 def _families(result: Stress) -> str:

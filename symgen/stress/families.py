@@ -17,6 +17,7 @@ from symgen.verify.states import sample_states
 Kind: TypeAlias = Literal[
     "parameter", "input", "constraint", "large angles", "small angles", "mass ratios", "drift", "incompatible rates"
 ]
+ORDER = ("constraint", "input", "parameter")  # from bad to harmless
 SAMPLES = 2  # places or states of each family
 SINGULAR = 1e-24  # a measure below this at a place is zero
 BITS = 128
@@ -59,13 +60,15 @@ def _singularities(reference: Reference) -> tuple[list[Family], bool, tuple[str,
     found: list[Family] = []
     nowhere: list[str] = []
     for trouble in known.troubles:
-        at = _places(reference, trouble)
+        at = [(_kind(reference, place), place) for place in _places(reference, trouble)]
         if at:
-            found.append(_family(reference, _kind(reference, at[0]), trouble, at))
+            # a choice may also fail where more goes wrong; what it shows elsewhere is its own
+            kind = max((kind for kind, _ in at), key=ORDER.index)
+            found.append(_family(reference, kind, trouble, [place for its_kind, place in at if its_kind == kind]))
         else:
             nowhere.append(f"{trouble.label} = 0: not found on the constraint manifold")
     together = list(common_troubles(known)) if known.factored else list(joint_troubles(reference))
-    for kind in ("constraint", "input"):
+    for kind in ORDER[:2]:
         candidates = [trouble for its_kind, trouble in together if its_kind == kind]
         for trouble in candidates[:MOST_JOINT]:
             if sum(family.kind == kind for family in found) == FAMILIES_OF_KIND:
@@ -77,12 +80,11 @@ def _singularities(reference: Reference) -> tuple[list[Family], bool, tuple[str,
             what = "the rank of B drops" if kind == "constraint" else "the degree of actuation drops"
             proven = known.factored and not candidates
             nowhere.append(f"{what} nowhere" if proven else f"{what}: no such configuration was found")
-    order = ("constraint", "input", "parameter")
-    return sorted(found, key=lambda family: order.index(family.kind)), known.factored, tuple(nowhere)
+    return sorted(found, key=lambda family: ORDER.index(family.kind)), known.factored, tuple(nowhere)
 
 
 def _places(reference: Reference, trouble: Trouble) -> list[Place]:
-    return places(reference, trouble, SAMPLES) or places(reference, trouble, SAMPLES, parameters_too=True)
+    return places(reference, trouble, SAMPLES + 1) or places(reference, trouble, SAMPLES, parameters_too=True)
 
 
 def _kind(reference: Reference, place: Place) -> Kind:
@@ -99,7 +101,7 @@ def _kind(reference: Reference, place: Place) -> Kind:
 
 
 def _family(reference: Reference, kind: Kind, trouble: Trouble, at: Sequence[Place]) -> Family:
-    curves = tuple(_curve(reference, place, f"{trouble.label} {k}") for k, place in enumerate(at))
+    curves = tuple(_curve(reference, place, f"{trouble.label} {k}") for k, place in enumerate(at[:SAMPLES]))
     return Family(
         kind, trouble.label, "distance from the singular configuration", curves, trouble.partitions, trouble.inputs
     )
@@ -160,7 +162,7 @@ def _extremes(reference: Reference) -> list[Family]:
         found.append(Family("large angles", "whole turns added to every angle", "one radian over the angle", curves))
         curves = tuple(_small_angles(state, angles, k) for k, state in enumerate(regular))
         found.append(Family("small angles", "every angle near zero", "size of the angles in rad", curves))
-    heavy = [i for i, dimension in enumerate(parameter_dimensions(model)) if dimension is not None and dimension[0]]
+    heavy = [i for i, d in enumerate(parameter_dimensions(model)) if d is not None and d[0] == 1 and d[2] == 0]
     for i in heavy:
         name = model.parameters[i].name
         curves = tuple(_scaled(state, i, sign) for state in regular[:1] for sign in (1, -1))

@@ -1,0 +1,94 @@
+"""Other units, odd numbers, and the command itself."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from shipped import ROOT, model
+from test_families import reference
+
+from symgen.cli import main
+from symgen.stress.kernels import PIECES, STRESSED, Kernels
+from symgen.stress.long_run import long_runs
+from symgen.stress.odd_numbers import odd_numbers
+from symgen.stress.scaling import scaling
+from symgen.verify.states import sample_states
+
+PENDULUM = """
+model: crane
+coordinates: {s: {unit: m}, a: {unit: rad}}
+parameters: {m: {value: 2, unit: kg}, l: {value: 0.5, unit: m}, g: {value: 9.81, unit: m/s**2}}
+kinetic_energy: m/2*s_dot**2 + m/2*(s_dot**2 + l**2*a_dot**2 + 2*l*s_dot*a_dot*cos(a))
+potential_energy: -m*g*l*cos(a)
+inputs: {F: {unit: N, acts_on: {s: 1}}, T: {unit: N*m, acts_on: {a: 1}}}
+outputs: [inverse_dynamics, forward_dynamics]
+"""
+
+
+def test_powers_of_two_change_no_bit_of_the_inputs(tmp_path: Path) -> None:
+    found, failures = scaling(reference("slider_crank"), Kernels(model("slider_crank"), tmp_path, STRESSED), tmp_path)
+    assert failures == ()
+    changes = {"lengths", "masses", "times", "all three", "m in mm", "rad in deg"}
+    assert {one.change for one in found} == changes
+    u = [one for one in found if one.quantity == "inverse_dynamics"]
+    for one in u:
+        binary = one.change not in ("m in mm", "rad in deg")
+        assert one.covariant
+        assert one.required == one.identical == binary
+        assert one.units < 16
+
+
+def test_no_odd_number_gives_an_odd_result_with_status_0(tmp_path: Path) -> None:
+    kernels = Kernels(model("skate"), tmp_path, STRESSED)
+    states = [sample.state for sample in sample_states(reference("skate"), (), 8)][:2]
+    found, failures = odd_numbers(kernels, [name for name in STRESSED if name in kernels.names], states)
+    assert failures == ()
+    assert all(0 < one.answered < one.calls for one in found)
+
+
+@pytest.mark.toolchain
+def test_projections_keep_a_long_run_on_the_constraints(tmp_path: Path) -> None:
+    kernels = Kernels(model("slider_crank"), tmp_path, (*PIECES, *STRESSED, "constraint_residual", "energy",
+                                                        "admissible_velocity", "projected_configuration"))
+    (free, projected), _ = long_runs(reference("slider_crank"), kernels, tmp_path, 10_000)
+    assert free.complaint == projected.complaint == ""
+    assert len(free.time) == 200
+    assert max(free.tracking) < 1e-3
+    assert max(projected.position_drift) < 1e-14 < max(free.position_drift) < 1e-10
+    assert max(projected.energy) < 1e-10
+
+
+def test_command_writes_numbers_and_charts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "crane.yaml"
+    file.write_text(PENDULUM)
+    assert main(["stress", str(file), "--out", str(tmp_path), "--steps", "0"]) == 0
+    shown = capsys.readouterr().out
+    assert "mass ratios" in shown
+    assert "same bits" in shown
+    data = json.loads((tmp_path / "crane" / "stress.json").read_text())
+    assert data["passed"]
+    assert data["no_long_run"] == "not asked for"
+    for chart in ("stress.svg", "stress.families.svg"):
+        assert (tmp_path / "crane" / chart).read_text().startswith("<?xml")
+    assert main(["stress", str(tmp_path / "missing.yaml")]) == 2
+
+
+def test_command_names_mistakes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "bad.yaml"
+    file.write_text("model: bad\ncoordinates: {x: }\nkinetic_energy: y_dot**2\n")
+    assert main(["stress", str(file), "--out", str(tmp_path)]) == 1
+    assert "y_dot" in capsys.readouterr().err
+
+
+def test_the_page_needs_nothing_but_the_json(tmp_path: Path) -> None:
+    from symgen.stress.pages import page
+
+    file = tmp_path / "crane.yaml"
+    file.write_text(PENDULUM)
+    main(["stress", str(file), "--out", str(tmp_path), "--steps", "0", "--quiet"])
+    text = page([(tmp_path / "crane" / "stress.json").read_text()], {"crane": ["crane.forms.svg"]})
+    assert "## crane" in text
+    assert "crane.forms.svg" in text
+    assert ROOT.is_dir()
