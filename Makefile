@@ -20,8 +20,8 @@ generated: $(VENV)/installed
 
 # Numerical stability of every model: docs/stress, measured on this machine.
 stress: $(VENV)/installed
-	$(BIN)/symgen stress models/*.yaml --quiet
-	$(BIN)/python tools/stress_pages.py generated models/*.yaml
+	$(BIN)/symgen stress models/*.yaml --quiet; status=$$?; \
+	    $(BIN)/python tools/stress_pages.py generated models/*.yaml && exit $$status
 
 # One lock for every platform and Python from 3.11 on; editables is what the build backend needs for `pip install -e`.
 lock: $(VENV)/installed

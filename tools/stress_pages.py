@@ -22,7 +22,8 @@ def main(generated: Path, names: list[str]) -> None:
     charts: dict[str, list[str]] = {}
     for name in names:
         for chart in sorted((generated / name).glob("stress*.svg")):
-            target = f"{name}.{chart.name.removeprefix('stress').strip('.').removesuffix('svg').strip('.') or 'forms'}.svg"
+            kind = chart.name.removeprefix("stress").removesuffix("svg").strip(".")
+            target = f"{name}.{kind or 'forms'}.svg"
             shutil.copyfile(chart, TARGET / target)
             charts.setdefault(name, []).append(target)
     text = page([(generated / name / "stress.json").read_text(encoding="utf-8") for name in names], charts)

@@ -28,13 +28,22 @@ LOOKS: Mapping[str, tuple[str, str, str]] = {
 }
 NOTHING = 10.0  # where a form without any result is drawn: an error of more than everything
 PANEL = 2.5
-KINDS = ("constraint", "input", "parameter", "large angles", "small angles", "mass ratios", "drift", "incompatible rates")
+KINDS = (
+    "constraint",
+    "input",
+    "parameter",
+    "large angles",
+    "small angles",
+    "mass ratios",
+    "drift",
+    "incompatible rates",
+)
 
 
 def stress_charts(result: Stress) -> dict[str, str]:
     """SVG text by file name."""
     charts = {"stress.svg": _forms(result), "stress.families.svg": _families(result)}
-    if claim_families(result):
+    if claim_families(result) and any(s.quantity == "inverse_dynamics" for s in result.series):
         charts["stress.claim.svg"] = _claim(result)
     if any(run.time for run in result.runs):
         charts["stress.long_run.svg"] = _long_run(result)
@@ -49,12 +58,17 @@ def claim_families(result: Stress) -> list[int]:
 
 
 def _claim(result: Stress) -> str:
-    """Error of u against d at the parameter singularities."""
+    """Error of u against d where a choice fails, in the best conditioned of these families."""
+
+    def floor(index: int) -> float:
+        return max(e.relative for e in by_form(result.series, "inverse_dynamics", "float64", [index])[SYMGEN].errors)
+
+    shown = min(claim_families(result), key=floor)
 
     def draw(figure: Any) -> None:
         panel = figure.subplots()
-        _curves(panel, by_form(result.series, "inverse_dynamics", "float64", claim_families(result)), "float64")
-        panel.set_title("parameter singularities, float64: the worst over all of them", fontsize=9, loc="left")
+        _curves(panel, by_form(result.series, "inverse_dynamics", "float64", [shown]), "float64")
+        panel.set_title(f"towards {result.families[shown].label} = 0, float64", fontsize=9, loc="left")
         panel.set_ylabel("relative error of $u$")
         panel.set_xlabel("distance $d$ from the singularity")
         panel.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0)
@@ -165,7 +179,8 @@ def _long_run(result: Stress) -> str:
                     run.time, values, color=look[0], linestyle=look[1], linewidth=1.1,
                     label="with projections" if run.projected else "without projections",
                 )
-            panel.set_yscale("log")
+            values = [x for run in result.runs for x in getattr(run, name) if x > 0]
+            panel.set_yscale("log" if max(values) > 10 * min(values) else "linear")
             panel.set_ylabel(label)
         panels[-1].set_xlabel("time in s")
         panels[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0)

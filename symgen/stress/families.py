@@ -17,7 +17,7 @@ from symgen.verify.states import sample_states
 Kind: TypeAlias = Literal[
     "parameter", "input", "constraint", "large angles", "small angles", "mass ratios", "drift", "incompatible rates"
 ]
-ORDER = ("constraint", "input", "parameter")  # from bad to harmless
+ORDER: tuple[Kind, ...] = ("constraint", "input", "parameter")  # from bad to harmless
 SAMPLES = 2  # places or states of each family
 SINGULAR = 1e-24  # a measure below this at a place is zero
 BITS = 128

@@ -71,11 +71,14 @@ def _least_norm(M: Values, force: Values) -> Values:
 
 
 def projected(data: Data, first: Sequence[int]) -> dict[str, Values]:
-    """(27) and (28) with M̃₁ the columns `first`, N_B by (21), λ and q̈ by (14) and (15) as corrected."""
+    """(27) and (28) with M̃₁ the columns `first` (NaN where they are dependent), N_B by (21), λ and q̈ by (14), (15)."""
     N = projector(data.B)
     result = {"nullspace_projector": N, **_multipliers_first(data)}
     if data.M.shape[1]:
-        result["inverse_dynamics"] = pseudoinverse(N @ data.M, first) @ (N @ data.tau)
+        try:
+            result["inverse_dynamics"] = pseudoinverse(N @ data.M, first) @ (N @ data.tau)
+        except np.linalg.LinAlgError:
+            result["inverse_dynamics"] = np.full(data.M.shape[1], np.nan)  # the rest does not choose inputs
     return result
 
 

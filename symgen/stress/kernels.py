@@ -91,7 +91,7 @@ class Kernels:
             arrays: dict[str, Any] = {part: c_array(scalar, values) for part, values in parts.items()}
             return self._functions[scalar, name](arrays, c_array(scalar, state.parameters))
         kernel = self._kernels[scalar, name]
-        status, outputs = self._interpreters[scalar].run(kernel, parts, state.parameters)
+        status, outputs = self._interpreters[scalar].run(kernel, parts, tuple(map(float, state.parameters)))
         return Outcome(int(status), tuple(outputs) or (math.nan,) * max(1, math.prod(kernel.shape)))
 
 

@@ -23,7 +23,7 @@ from symgen.verify.reference import Reference
 
 STEPS = 1_000_000
 STEPS_PER_LAP = 10_000
-NODES = 2001
+NODES = 1001
 RECORDS = 200
 BANDWIDTH = 20.0  # of the controller, in rad per lap-time unit: critically damped
 NEEDED = ("inverse_dynamics", "forward_dynamics", "control_matrix", "applied_force", "energy")
@@ -105,8 +105,8 @@ def _run(program: FilePath, table: FilePath, path: str, steps: int, projected: b
     except subprocess.TimeoutExpired:
         output, complaint = "", f"not done after {LONGEST_SECONDS:.0f} s"
     rows = [tuple(map(float, line.split())) for line in output.splitlines()]
-    columns = list(zip(*rows, strict=True)) or [()] * 5
-    return Run(path, projected, steps, *columns, complaint=complaint)
+    time, drift, slip, tracking, energy = zip(*rows, strict=True) if rows else ((),) * 5
+    return Run(path, projected, steps, time, drift, slip, tracking, energy, complaint)
 
 
 def complaints(runs: tuple[Run, ...]) -> tuple[str, ...]:

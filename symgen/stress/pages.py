@@ -10,7 +10,7 @@ SYMBOLS = {"inverse_dynamics": "u", "forward_dynamics": "q̈", "multipliers": "�
 CAPTIONS = {
     "claim": "Error of u against the distance d to parameter singularities.",
     "forms": "Errors of u, q̈, λ and N_B against d, float64 and float32.",
-    "families": "symgen's error in units of what rounding does (the dashed line is what is allowed), by kind of trouble.",
+    "families": "symgen's error in units of what rounding does (dashed: what is allowed), by kind of trouble.",
     "long_run": "Constraint drift, tracking error and energy balance over the long run.",
 }
 ORDER = tuple(CAPTIONS)
@@ -18,11 +18,15 @@ FORMS = ("(9) fixed partition", "(27)+(28) fixed", "(27)+(28) switching", "symge
 HEAD = """# Numerical stability
 
 Written by `make stress`. Every family of trouble was found by `symgen stress` itself: the zeros of the factored
-determinants of all choices of independent coordinates and of inputs on the constraint manifold, and extremes of angles,
-masses, position drift and rates. d runs from 1 to 1e-12 in float64 and to 1e-6 in float32. Errors are those of whole
-kernels against a reference of 50 digits; the unit is d + eps |y|, where d is how far the exact result moves when inputs,
-parameters and literals are rounded, and 16 units are allowed. The paper's formulas run in NumPy on B, M, G, C and Q as
-the generated kernels compute them: (9) with the coordinates, and (28) with the inputs, that fail where the family leads.
+determinants of all choices of independent coordinates and of inputs on the constraint manifold, and extremes of
+angles, masses, position drift and rates. d runs from 1 to 1e-12 in float64 and to 1e-6 in float32; in the family
+"large angles" it is one radian over the angle.
+
+Errors are those of whole kernels against a reference of 50 digits. The unit of error is d + eps |y|, where this d is
+how far the exact result moves when inputs, parameters and literals are rounded; 16 units are allowed. The paper's
+formulas run in NumPy, in the same precision, on B, M, G, C and Q as the generated kernels compute them: (9) with the
+coordinates, and (28) with the inputs, that fail where the family leads. Beside (27) and (28), N_B is (21), and λ and q̈
+are (14) and (15) as corrected. "Breaks" is the largest d at which a form is beyond the tolerance.
 """
 CLAIM = """## The paper's claim
 
@@ -41,8 +45,9 @@ def page(results: Sequence[str], charts: Mapping[str, Sequence[str]]) -> str:
 
 
 def _claim(charts: Mapping[str, Sequence[str]]) -> list[str]:
-    chosen = next((f for name in ("rapkm_2rrr_rr", *charts) for f in charts.get(name, ()) if f.endswith("claim.svg")), "")
-    return [f"![{CAPTIONS['claim']}]({chosen})\n"] if chosen else []
+    names = [file for model in ("rapkm_2rrr_rr", *charts) for file in charts.get(model, ())]
+    chosen = [file for file in names if file.endswith("claim.svg")]
+    return [f"![{CAPTIONS['claim']}]({chosen[0]})\n"] if chosen else []
 
 
 def _overview(results: Sequence[Mapping[str, Any]]) -> str:

@@ -29,7 +29,7 @@ POLYNOMIAL = ("minors", "factored")  # ways without square roots
 SAME = 1e-40
 # exponents of two for mass, length, time
 POWERS_OF_TWO = (("lengths", (0, 3, 0)), ("masses", (-4, 0, 0)), ("times", (0, 0, 2)), ("all three", (3, -2, 1)))
-Factors: TypeAlias = tuple[Fraction, Fraction, Fraction]
+Factors: TypeAlias = tuple[Fraction, ...]  # of mass, length, time
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,8 @@ def _compare(
     found = []
     for name in names:
         conversion = _conversion(reference, other, states, converted, name)
-        required = binary and name == "inverse_dynamics" and kernels.way(name) in POLYNOMIAL and _one_dimension(reference)
+        required = binary and name == "inverse_dynamics" and kernels.way(name) in POLYNOMIAL
+        required = required and _one_dimension(reference)
         for scalar in SCALARS:
             worst, identical = 0.0, True
             for index, (state, moved) in enumerate(zip(states, converted, strict=True)):

@@ -29,6 +29,7 @@ PAPER_KINDS = ("parameter", "input", "constraint", "large angles", "mass ratios"
 ANGLE_LIMITS: dict[Scalar, float] = {"float64": 1e5, "float32": 100.0}
 MEASURE_BITS = 256
 GRADED = 1e-2
+RANKS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)  # what the measures of singularity speak of
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,18 +223,18 @@ class Sweeper:
             return
         delta = len(coordinates)
         choices = list(combinations(range(self._reference.system.m), delta)) if inputs is not None else [()]
-        with np.errstate(all="ignore"):
-            for form, run in (
-                (PARTITION, lambda: partitioned(data, coordinates)),
-                (FIXED, lambda: projected(data, inputs or ())),
-                (SWITCHING, lambda: switched(data, choices)),
-            ):
-                if inputs is None and form != PARTITION:
-                    continue
-                try:
-                    yield form, run()
-                except np.linalg.LinAlgError:
-                    yield form, {}
+        for form in (PARTITION, FIXED, SWITCHING):
+            if inputs is None and form != PARTITION:
+                continue
+            try:
+                with np.errstate(all="ignore"):
+                    if form == PARTITION:
+                        values = partitioned(data, coordinates)
+                    else:
+                        values = projected(data, inputs or ()) if form == FIXED else switched(data, choices)
+            except np.linalg.LinAlgError:
+                values = {}
+            yield form, values
 
     def _data(self, scalar: Scalar, state: State) -> Data | None:
         kernels, n = self._kernels, self._reference.system.n
@@ -309,7 +310,7 @@ class Sweeper:
                 self._failures.append(f"{name}, {where}: status 0 at measures {_texts(counting)}, below {low:.2g}")
         elif min(counting) > high and given == (None, None):
             counts[4] += 1
-            if refused and outcome.status != Status.NOT_FINITE and not self._graded(state):
+            if refused and outcome.status in RANKS and not self._graded(state):
                 counts[5] += 1
                 self._failures.append(
                     f"{name}, {where}: status {outcome.status} at measures {_texts(counting)}, above {high:.2g}"
