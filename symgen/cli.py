@@ -25,6 +25,7 @@ _SCALARS: dict[str, tuple[Scalar, ...]] = {
 _EPILOG = """commands:
   symgen MODEL.yaml...              generate and verify
   symgen verify MODEL.yaml          verify again, write the certificate only
+  symgen bench MODEL.yaml...        run time against error, beside other tools
   symgen stress MODEL.yaml...       errors near singularities, extreme values, a long run
   symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
   symgen schema                     JSON Schema of model files, for editors
@@ -138,6 +139,33 @@ def _schema(arguments: list[str]) -> int:
     return DONE
 
 
+def _bench(arguments: list[str]) -> int:
+    parser = _parser("symgen bench", "Run time against error of C and Python, beside other tools on the same work.")
+    parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, default=Path("generated"), help="writes DIR/<model>/ (default: generated)"
+    )
+    parser.add_argument(
+        "--states", metavar="N", type=_states, default=1000, help="admissible states (default: 1000)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
+    given = parser.parse_args(arguments)
+
+    def one(path: Path) -> int:
+        from symgen.bench.command import run_bench
+
+        progress = Progress(path.stem, given.quiet)
+        try:
+            return run_bench(path, given.out, given.states, given.quiet, progress)
+        finally:
+            progress.done()
+
+    for path in given.models:
+        if not path.is_file():
+            raise WrongUseError(f"no such file: {path}")
+    return max([_guarded(partial(one, path)) for path in given.models])
+
+
 def _stress(arguments: list[str]) -> int:
     parser = _parser(
         "symgen stress",
@@ -168,7 +196,9 @@ def _stress(arguments: list[str]) -> int:
     return max([_guarded(partial(one, path)) for path in given.models])
 
 
-_COMMANDS: dict[str, Callable[[list[str]], int]] = {"verify": _verify,
+_COMMANDS: dict[str, Callable[[list[str]], int]] = {
+    "verify": _verify,
+    "bench": _bench,
     "stress": _stress,
     "explain": _explain,
     "schema": _schema,

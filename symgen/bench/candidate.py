@@ -1,0 +1,68 @@
+"""What is measured: one way to compute one quantity, as C that is compiled and linked or as a Python function."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
+
+from symgen.ir.kernel import Scalar
+
+Third: TypeAlias = Literal["qdd", "u"]
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A quantity to compute from q, q̇, a third array and the parameters; `size` entries result."""
+
+    quantity: str
+    third: Third
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
+class CUnit:
+    """One source file of a candidate; headers by file name; `renamed` symbols get a name of their own when compiled."""
+
+    source: str
+    headers: Mapping[str, str] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    is_adaptor: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class CCandidate:
+    """C for one scalar type: `entry` has the signature (q, qd, third, p, result) with pointers to `REAL`.
+
+    The sources are the same for both scalar types but for `REAL`, except symgen's own.  `functions` are the symbols
+    whose code and stack count; `operations` is known for symgen's kernels only.
+    """
+
+    generator: str
+    form: str
+    scalar: Scalar
+    entry: str
+    units: tuple[CUnit, ...]
+    functions: tuple[str, ...]
+    operations: Mapping[str, int] | None = None
+    chosen: bool = False  # what symgen generates, up to the sine and cosine
+
+    @property
+    def label(self) -> str:
+        """The name in tables and charts, without the scalar type."""
+        return f"{self.generator} {self.form}"
+
+
+@dataclass(frozen=True, slots=True)
+class PythonCandidate:
+    """A function of arrays (states, n), parameters (states, P) that returns (states, size); single states likewise."""
+
+    generator: str
+    form: str
+    batch: Callable[[Any, Any, Any, Any], Any]
+    single: Callable[[Sequence[float], Sequence[float], Sequence[float], Sequence[float]], Any]
+
+    @property
+    def label(self) -> str:
+        """The name in tables and charts."""
+        return f"{self.generator} {self.form}"

@@ -1,0 +1,112 @@
+"""All peers of a task that can do it on this machine, as C candidates, and those left out with the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any, TypeAlias
+
+from symgen.bench.candidate import CCandidate, CUnit, Task
+from symgen.bench.peers.engine import Engine, Symbol
+from symgen.bench.peers.mechanics import Mechanics
+from symgen.ir.kernel import Scalar
+from symgen.model.model import Model
+from symgen.witness.lagrange import Lagrange, differentiate
+
+Build: TypeAlias = Callable[[Engine, Mechanics], list[Symbol]]
+OPTIONAL = ("wrenfold", "symforce", "pinocchio", "jax")
+NOT_WRITTEN = ("symforce", "pinocchio", "jax")
+
+
+@dataclass(frozen=True, slots=True)
+class Peers:
+    """The candidates of one scalar type, and (name, reason) of what was left out."""
+
+    candidates: tuple[CCandidate, ...]
+    left_out: tuple[tuple[str, str], ...]
+
+
+def peers(model: Model, task: Task, scalar: Scalar, states: Any) -> Peers:
+    """Peers for full-rank B; `states` (k, 2 n + third + P) are what an expert would look at to choose coordinates."""
+    s = differentiate(model)
+    if task.quantity != "inverse_dynamics":
+        return Peers((_native(model, s, task, scalar),), ())
+    forms, left_out = _forms(model, s, states)
+    found = [_native(model, s, task, scalar)]
+    for engine_type in _engines():
+        for form, build in forms.items():
+            found.append(_candidate(engine_type(), model, form, build, scalar))
+    found.append(_householder(model, s, scalar))
+    absent = [(name, "not installed") for name in OPTIONAL if name not in NOT_WRITTEN and find_spec(name) is None]
+    return Peers(tuple(found), (*left_out, *absent))
+
+
+def _forms(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
+    from symgen.bench.peers.expert import free_multipliers, independent_coordinates
+    from symgen.bench.peers.forms import lean, part, range_form
+
+    forms: dict[str, Build] = {"lean": lean}
+    left_out = []
+    independent = independent_coordinates(model, s, states)
+    if independent is None:
+        left_out.append(("form part", "fewer inputs than degrees of freedom, or too many choices of coordinates"))
+    else:
+        forms["part"] = lambda engine, system: part(engine, system, independent)
+    free = free_multipliers(model, s, states)
+    if free is None:
+        left_out.append(("form range", "the control matrix does not select coordinates"))
+    else:
+        forms["range"] = lambda engine, system: range_form(engine, system, free)
+    return forms, left_out
+
+
+def _engines() -> list[Callable[[], Engine]]:
+    from symgen.bench.peers.casadi_engine import CasadiEngine
+    from symgen.bench.peers.sympy_engine import SympyEngine
+
+    found: list[Callable[[], Engine]] = [CasadiEngine, SympyEngine]
+    if find_spec("wrenfold") is not None:
+        from symgen.bench.peers.wrenfold_engine import WrenfoldEngine
+
+        found.append(WrenfoldEngine)
+    return found
+
+
+def _candidate(engine: Engine, model: Model, form: str, build: Build, scalar: Scalar) -> CCandidate:
+    from symgen.bench.peers.casadi_engine import adaptor
+    from symgen.bench.peers.mechanics import mechanics
+
+    entry = f"{engine.tool.lower()}_{form}_{scalar}"
+    name = f"{entry}_function"
+    system = mechanics(engine, model)
+    source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
+    if needs_adaptor:
+        units: tuple[CUnit, ...] = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    else:
+        units = (CUnit(source, renamed={name: entry}),)
+    return CCandidate(engine.tool, form, scalar, entry, units, functions)
+
+
+def _native(model: Model, s: Lagrange, task: Task, scalar: Scalar) -> CCandidate:
+    from symgen.bench.peers import native
+    from symgen.bench.peers.casadi_engine import adaptor, generated
+
+    if task.quantity == "inverse_dynamics":
+        value = native.inverse_dynamics(model, s)
+    else:
+        value = native.forward_dynamics(model, s)[task.quantity == "multipliers"]
+    entry = f"casadi_native_{scalar}"
+    name = f"{entry}_function"
+    third = s.qdd if task.third == "qdd" else s.u
+    source, functions = generated(name, [s.q, s.qd, third, s.p], value)
+    units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    return CCandidate("CasADi", "native", scalar, entry, units, functions)
+
+
+def _householder(model: Model, s: Lagrange, scalar: Scalar) -> CCandidate:
+    from symgen.bench.peers.householder import householder_units
+
+    entry = f"c_householder_{scalar}"
+    units, functions = householder_units(model, s, entry)
+    return CCandidate("C", "Householder QR", scalar, entry, units, functions)

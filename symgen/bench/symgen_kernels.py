@@ -1,0 +1,96 @@
+"""symgen's own candidates: every valid way, with portable sine and cosine and with the C library's, C and Python."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from typing import Any
+
+from symgen.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
+from symgen.dynamics.catalogue import BY_NAME, derive
+from symgen.dynamics.select import derive_quantities, ways
+from symgen.emit.c import emit_c
+from symgen.emit.operations import count_operations
+from symgen.emit.python import emit_python
+from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.ir.schedule import schedule
+from symgen.model.model import Model
+from symgen.naming import file_stem
+from symgen.verify.compile import SUFFIXES
+from symgen.verify.python_module import PythonModule
+
+PORTABLE, LIBRARY = "portable", "libm"
+
+
+def programs_of(model: Model, task: Task, scalars: Sequence[Scalar]) -> dict[str, dict[Scalar, Program]]:
+    """The task's kernel alone, by way; the first is what symgen generates, the others are the ways it did not take."""
+    derivations = derive_quantities(model, (task.quantity,))
+    chosen = derivations.choices[0].way
+    found = {chosen: schedule(derivations.mechanics, derivations.quantities, scalars)}
+    for way, derivation in ways(derivations.mechanics, derivations.generic).items():
+        if way not in found:
+            quantity = derive(BY_NAME[task.quantity], derivation)
+            found[way] = schedule(derivations.mechanics, [quantity], scalars)
+    return found
+
+
+def symgen_candidates(
+    model: Model, programs: dict[str, dict[Scalar, Program]], scalar: Scalar
+) -> tuple[CCandidate, ...]:
+    """The C of every way for one scalar type."""
+    found = []
+    for number, (way, by_scalar) in enumerate(programs.items()):
+        portable = by_scalar[scalar]
+        trigonometric = any(s.operation == "sincos" for kernel in portable.kernels for s in kernel.statements)
+        variants = {PORTABLE: portable} | ({LIBRARY: replace(portable, sincos=None)} if trigonometric else {})
+        found += [
+            replace(_candidate(model, program, way, trig), chosen=number == 0) for trig, program in variants.items()
+        ]
+    return tuple(found)
+
+
+def symgen_python(model: Model, programs: dict[str, dict[Scalar, Program]], task: Task) -> PythonCandidate:
+    """The NumPy module of the way that symgen generates."""
+    way, by_scalar = next(iter(programs.items()))
+    program = by_scalar["float64"]
+    (source,) = emit_python(model, program).values()
+    module = PythonModule(str(source)).module
+    function = getattr(module, task.quantity)
+
+    def batch(q: Any, qd: Any, third: Any, p: Any) -> Any:
+        return function(*_arrays(program.kernels[0], q, qd, third), p=module.Parameters(*p.T))
+
+    def single(q: Sequence[float], qd: Sequence[float], third: Sequence[float], p: Sequence[float]) -> Any:
+        return function(*_arrays(program.kernels[0], q, qd, third), p=module.Parameters(*p))
+
+    return PythonCandidate("symgen", f"{way}, Python", batch, single)
+
+
+def _arrays(kernel: Kernel, q: Any, qd: Any, third: Any) -> list[Any]:
+    """The arguments the kernel has; those of length 0 are left out of signatures."""
+    given = {"q": q, "qd": qd, "qdd": third, "u": third}
+    return [given[argument.name] for argument in kernel.arguments if argument.length]
+
+
+def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidate:
+    kernel = program.kernels[0]
+    files = emit_c(model, program)
+    suffix = SUFFIXES[program.scalar]
+    stem = file_stem(model.name) + suffix
+    function, sincos = f"{model.name}_{kernel.name}{suffix}", f"{model.name}_sincos{suffix}"
+    entry = f"symgen_{way}_{trig}_{program.scalar}".replace("-", "_").replace(" ", "_")
+    defaults = f"{model.name}_default_params{suffix}"  # every variant brings its own
+    headers = {f"{stem}.h": str(files[f"c/{stem}.h"])}
+    source = str(files[f"c/{stem}.c"])
+    if any(a.name in ("qdd", "u") and a.length for a in kernel.arguments):
+        units: tuple[CUnit, ...] = (CUnit(source, headers, {function: entry, defaults: f"{entry}_defaults"}),)
+    else:
+        own = f"{entry}_function"
+        arguments = "const REAL *q, const REAL *qd, const REAL *x, const REAL *p, REAL *y"
+        adaptor = (
+            f"int {own}(const REAL *, const REAL *, const REAL *, REAL *);\nint {entry}({arguments});\n"
+            f"int {entry}({arguments})\n{{\n    (void)x;\n    return {own}(q, qd, p, y);\n}}\n"
+        )
+        units = (CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"}), CUnit(adaptor, is_adaptor=True))
+    operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}
+    return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, (function, sincos), operations)
