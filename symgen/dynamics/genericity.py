@@ -170,7 +170,11 @@ def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:
 
 
 def genericity(mechanics: Mechanics) -> Genericity:
-    """The generic ranks; the largest over the sampled configurations, which almost every configuration has."""
+    """The generic ranks: those most sampled configurations have, the largest where two are as frequent.
+
+    Not the largest of all: beside a singular configuration a residual at rounding level still leaves a distance from V
+    of its square root, and off V rows that depend on each other are independent.
+    """
     n, r, m = mechanics.n, mechanics.r, mechanics.m
     rows = len(mechanics.geometric_jacobian)
     evaluate = Evaluator([*flatten(mechanics.constraint_jacobian), *(x for c in mechanics.inputs for x in c)])
@@ -191,5 +195,5 @@ def genericity(mechanics: Mechanics) -> Genericity:
             break
     else:
         raise SymgenBug(f"genericity: the constraints of {mechanics.model.name} have no value where they hold")
-    constraint, alpha, geometric = max(found)
+    constraint, alpha, geometric = max(found, key=lambda ranks: (found.count(ranks), ranks))
     return Genericity(n, r, m, constraint, alpha, geometric)
