@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -9,11 +10,11 @@ from symgen.emit.about import STATUS_MEANING, count_lines, renaming_lines, shape
 from symgen.emit.comments import c_comment, c_comment_lines, indent_of
 from symgen.emit.defaults import default_values
 from symgen.emit.literals import c_literal
-from symgen.emit.locals import Names, all_statements, array_arguments, names_of, used_locals
+from symgen.emit.locals import Names, all_statements, array_arguments, check_operands, names_of, used_locals
 from symgen.emit.quantities import meaning
 from symgen.emit.render import render
 from symgen.emit.statements import CStatements, c_type
-from symgen.ir.kernel import Function, Kernel, Local, Program, Status
+from symgen.ir.kernel import Function, Kernel, Local, Operand, Program, Status
 from symgen.model.model import Model
 from symgen.naming import c_identifiers, file_stem
 
@@ -157,10 +158,21 @@ def _body(model: Model, program: Program, kernel: Kernel, names: Names, sincos: 
     loaded = {load.argument for load in loads}
     scalar, output = c_type(program.scalar), names.outputs[kernel.name]
     lines = [f"(void){name};" for name in (*(a.name for a in array_arguments(kernel)), "p") if name not in loaded]
+    waiting: dict[str, str] = {}
     for load in loads:
         place = f"p->{names.members[load.member]}" if load.argument == "p" else f"{load.argument}[{load.index}]"
-        lines.append(f"const {scalar} {names.locals[load.local]} = {place};")
-    lines += [line for block in kernel.blocks for line in printer.block(block)]
+        waiting[load.local] = f"const {scalar} {names.locals[load.local]} = {place};"
+
+    def due(operands: Iterable[Operand]) -> list[str]:
+        # read where first needed: fewer values are alive across the calls of the sine and cosine
+        return [waiting.pop(o.name) for o in operands if isinstance(o, Local) and o.name in waiting]
+
+    for block in kernel.blocks:
+        for statement in block.statements:
+            lines += [*due(statement.operands), *printer.statement(statement)]
+        for check in block.checks:
+            lines += [*due(check_operands(check)), *printer.check(check)]
+    lines += due(kernel.outputs)
     lines += _finite_test(model, program, kernel, names)
     lines += [
         f"{output}[{index}] = {printer.operand(operand).strip('()')};" for index, operand in enumerate(kernel.outputs)

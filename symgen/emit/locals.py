@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from symgen.emit.quantities import output_argument
-from symgen.ir.kernel import Argument, Block, Kernel, Local, Operand, Program, Statement
+from symgen.ir.kernel import Argument, Block, Check, Kernel, Local, Operand, Program, Statement
 from symgen.model.model import Model
 from symgen.naming import c_identifiers
 
@@ -72,7 +72,7 @@ def kernel_locals(kernel: Kernel) -> Iterator[str]:
 def used_locals(kernel: Kernel) -> frozenset[str]:
     """Locals that an operand, a check or an output refers to."""
     operands = [operand for statement in all_statements(kernel) for operand in statement.operands]
-    checked = [operand for block in kernel.blocks for operand in _checked(block)]
+    checked = [o for block in kernel.blocks for check in block.checks for o in check_operands(check)]
     return frozenset(o.name for o in (*operands, *checked, *kernel.outputs) if isinstance(o, Local))
 
 
@@ -83,8 +83,11 @@ def _block_statements(block: Block) -> Iterator[Statement]:
             yield from _block_statements(check.first)
 
 
-def _checked(block: Block) -> Iterator[Operand]:
-    for check in block.checks:
-        yield from (check.value, check.limit)
-        if check.first is not None:
-            yield from _checked(check.first)
+def check_operands(check: Check) -> Iterator[Operand]:
+    """Everything a check refers to, what it evaluates on failure included."""
+    yield from (check.value, check.limit)
+    if check.first is not None:
+        for statement in check.first.statements:
+            yield from statement.operands
+        for inner in check.first.checks:
+            yield from check_operands(inner)

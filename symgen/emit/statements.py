@@ -54,7 +54,7 @@ class CStatements:
     def block(self, block: Block) -> tuple[str, ...]:
         """Statements, then checks."""
         statements = [line for statement in block.statements for line in self.statement(statement)]
-        checks = [line for check in block.checks for line in self._check(check)]
+        checks = [line for check in block.checks for line in self.check(check)]
         return (*statements, *checks)
 
     def _declare(self, target: str, expression: str) -> str:
@@ -78,7 +78,8 @@ class CStatements:
         # Taking the address is a use, so a half that nothing reads gives no warning.
         return (f"{c_type(self.scalar)} {sine}, {cosine};", f"{self.sincos}({angle}, &{sine}, &{cosine});")
 
-    def _check(self, check: Check) -> tuple[str, ...]:
+    def check(self, check: Check) -> tuple[str, ...]:
+        """The early return of a failed check as lines."""
         relation = ">=" if check.inclusive else ">"
         first = () if check.first is None else self.block(check.first)
         return (

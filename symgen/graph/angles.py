@@ -26,11 +26,11 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
         (a, sign_a), (b, sign_b) = parts
         sines = [_value(graph, image, "sin", a), _value(graph, image, "sin", b)]
         cosines = [_value(graph, image, "cos", a), _value(graph, image, "cos", b)]
-        sin_a = sines[0] if sign_a > 0 else -sines[0]
-        sin_b = sines[1] if sign_b > 0 else -sines[1]
-        # built as raw nodes: the constructors would fold these sums back into the angle
-        image[graph.trig("sin", angle)] = raw_sum(graph, sin_a * cosines[1], cosines[0] * sin_b)
-        image[graph.trig("cos", angle)] = raw_sum(graph, cosines[0] * cosines[1], -(sin_a * sin_b))
+        # as they stand: the constructors would fold these products and sums back into the angle
+        crossed = [graph.raw("mul", (sines[0], cosines[1])), graph.raw("mul", (cosines[0], sines[1]))]
+        level = [graph.raw("mul", (cosines[0], cosines[1])), graph.raw("mul", (sines[0], sines[1]))]
+        image[graph.trig("sin", angle)] = _signed(graph, sign_a, crossed[0], sign_b, crossed[1])
+        image[graph.trig("cos", angle)] = _signed(graph, 1, level[0], -sign_a * sign_b, level[1])
     if not image:
         return list(outputs)
     return _replace(graph, outputs, image)
@@ -70,13 +70,11 @@ def _value(graph: Graph, image: dict[Scalar, Scalar], name: str, angle: Scalar) 
     return image.get(node, node)
 
 
-def raw_sum(graph: Graph, a: Scalar, b: Scalar) -> Scalar:
-    """a + b as it stands, without the addition theorem."""
-    if b.op == "neg":
-        return graph.raw("sub", (a, b.args[0]))
-    if a.op == "neg":
-        return graph.raw("sub", (b, a.args[0]))
-    return graph.raw("add", (a, b))
+def _signed(graph: Graph, sign_a: int, a: Scalar, sign_b: int, b: Scalar) -> Scalar:
+    """sign_a a + sign_b b as it stands; at least one sign is positive, since an angle leads with a positive leaf."""
+    if sign_a > 0:
+        return graph.raw("add" if sign_b > 0 else "sub", (a, b))
+    return graph.raw("sub", (b, a))
 
 
 def _replace(graph: Graph, outputs: Sequence[Scalar], image: dict[Scalar, Scalar]) -> list[Scalar]:

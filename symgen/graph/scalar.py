@@ -140,6 +140,11 @@ class Graph:
 
     def raw(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
         """The operation as it stands, past the constructor rules."""
+        if op in ("add", "mul") and args[0].serial > args[1].serial:
+            args = args[::-1]
+        usual = self._nodes.get((op, payload, *map(id, args)))
+        if usual is not None and usual.op == op and usual.args == args:
+            return usual
         key = ("raw", op, payload, *map(id, args))
         node = self._nodes.get(key)
         return self._new(key, op, args, payload) if node is None else node

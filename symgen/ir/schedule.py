@@ -92,7 +92,9 @@ class _Limits:
             scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
             size = guard.denominator if guard.degree == 2 else graph.function("abs", (guard.denominator,))
             first = tuple(self.tests(guard.first))
-            self._known[guard] = _Test(guard.status, size, self._limit(guard, scale), first)
+            # a denominator that is its own scale, such as a length, is negligible only where it is 0
+            limit = graph.zero if scale is size else self._limit(guard, scale)
+            self._known[guard] = _Test(guard.status, size, limit, first)
         return self._known[guard]
 
     def _limit(self, guard: Guard, scale: Node) -> Node:
@@ -151,9 +153,10 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     regular = [*outputs, *(image[node] for test in tests for node in (test.size, test.limit))]
     arguments = _angles(regular)
     computed = {argument for argument in arguments if _angles([argument])}
-    angles = writer.angle_block([argument for argument in arguments if argument not in computed])
+    plain = [argument for argument in arguments if argument not in computed]
+    angles = writer.angle_block(plain)
     # outputs come last so that a denominator's statements stand before its test
-    statements = writer.write(regular[len(outputs) :]) + writer.write(outputs)
+    statements = writer.pairs(plain, regular) + writer.write(regular[len(outputs) :]) + writer.write(outputs)
     late, late_checks = writer.range_checks([argument for argument in arguments if argument in computed])
     rank_checks = tuple(writer.check(test, image) for test in tests)
     if rank_checks:
@@ -219,6 +222,11 @@ class _Writer:
         statements = self.write(arguments)
         tests, checks = self.range_checks(arguments)
         return Block((*statements, *tests), checks)
+
+    def pairs(self, arguments: Sequence[Node], outputs: Sequence[Node]) -> list[Statement]:
+        """The sine/cosine pairs of known arguments: calls come first, while few values are alive."""
+        known = set(arguments)
+        return self.write([n for n in topological(outputs) if n.op in ("sin", "cos") and n.args[0] in known])
 
     def range_checks(self, arguments: Sequence[Node]) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
         """The tests of the range of angles."""

@@ -111,15 +111,12 @@ def sincos(scalar: Scalar) -> Function:
     else:
         inner = emit("ci", "sub", zc, Literal(Fraction(1, 2)))
         cosine = emit("cos_r", "add", one, emit("cz", "mul", z, inner))
-    # m = k mod 4 in {-2..2}; turn = sin(m pi/2), keep = cos(m pi/2), all products exact
-    quarter = emit("quarter", "mul", k, Literal(Fraction(1, 4)))
-    whole = emit("whole", "sub", emit("pushed", "add", quarter, rounder), rounder)
-    m = emit("m", "sub", k, emit("four", "mul", whole, Literal(Fraction(4))))
-    m2 = emit("m2", "mul", m, m)
-    odd = emit("odd", "mul", m, emit("fade", "sub", Literal(Fraction(4)), m2))
-    turn = emit("turn", "mul", odd, Literal(Fraction(1, 3)))
-    even = emit("even", "mul", m2, emit("bend", "sub", Literal(Fraction(7)), m2))
-    keep = emit("keep", "sub", Literal(Fraction(1)), emit("sixth", "mul", even, Literal(Fraction(1, 6))))
+    # m = k - the nearest multiple of 4, in {-2..2}; keep = cos(m pi/2), turn = sin(m pi/2): everything is exact
+    coarse = Literal(4 * ROUNDER[scalar])
+    m = emit("m", "sub", k, emit("four", "sub", emit("pushed", "add", k, coarse), coarse))
+    emit.statements.append(Statement(("size",), "abs", (m,)))
+    keep = emit("keep", "sub", one, Local("size"))
+    turn = emit("turn", "mul", m, emit("fade", "sub", Literal(Fraction(2)), Local("size")))
     emit("sine", "add", emit("ss", "mul", keep, sine), emit("sc", "mul", turn, cosine))
     emit("cosine", "sub", emit("cc", "mul", keep, cosine), emit("cs", "mul", turn, sine))
     return Function("sincos", ("x",), tuple(emit.statements), ("sine", "cosine"))

@@ -29,10 +29,9 @@ def portable(x: Any, scalar: Scalar) -> tuple[Any, Any]:
         assert isinstance(operand, Local)
         return values[operand.name]
 
-    operations = {"add": np.add, "sub": np.subtract, "mul": np.multiply}
+    operations = {"add": np.add, "sub": np.subtract, "mul": np.multiply, "abs": np.abs}
     for statement in function.statements:
-        a, b = map(value, statement.operands)
-        values[statement.targets[0]] = operations[statement.operation](a, b)
+        values[statement.targets[0]] = operations[statement.operation](*map(value, statement.operands))
     sine, cosine = (values[name] for name in function.results)
     assert sine.dtype == kind
     return sine, cosine
