@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -28,6 +29,7 @@ LOOKS: Mapping[str, tuple[str, str, str]] = {
 }
 NOTHING = 10.0  # where a form without any result is drawn: an error of more than everything
 PANEL = 2.5
+DECIMALS = re.compile(r"(\d\d\.\d{2})\d+")  # a hundredth of a point is enough; scales of glyphs stay
 KINDS = (
     "constraint",
     "input",
@@ -42,12 +44,14 @@ KINDS = (
 
 def stress_charts(result: Stress) -> dict[str, str]:
     """SVG text by file name."""
-    charts = {"stress.svg": _forms(result), "stress.families.svg": _families(result)}
+    charts = {"stress.svg": _forms(result)}
+    if result.families:
+        charts["stress.families.svg"] = _families(result)
     if claim_families(result) and any(s.quantity == "inverse_dynamics" for s in result.series):
         charts["stress.claim.svg"] = _claim(result)
     if any(run.time for run in result.runs):
         charts["stress.long_run.svg"] = _long_run(result)
-    return charts
+    return {name: DECIMALS.sub(r"\1", text) for name, text in charts.items()}
 
 
 def claim_families(result: Stress) -> list[int]:
@@ -67,7 +71,7 @@ def _claim(result: Stress) -> str:
 
     def draw(figure: Any) -> None:
         panel = figure.subplots()
-        _curves(panel, by_form(result.series, "inverse_dynamics", "float64", [shown]), "float64")
+        _curves(panel, by_form(result.series, "inverse_dynamics", "float64", [shown]), "float64", True)
         panel.set_title(f"towards {result.families[shown].label} = 0, float64", fontsize=9, loc="left")
         panel.set_ylabel("relative error of $u$")
         panel.set_xlabel("distance $d$ from the singularity")
@@ -97,7 +101,7 @@ def _forms(result: Stress) -> str:
     return svg(draw, height=PANEL * 0.8 * len(quantities) + 0.6)
 
 
-def _curves(panel: Any, forms: Mapping[str, Series], scalar: Scalar) -> None:
+def _curves(panel: Any, forms: Mapping[str, Series], scalar: Scalar, marked: bool = False) -> None:
     eps = float(UNIT_ROUNDOFF[scalar])
     for form, (colour, line, marker) in LOOKS.items():
         if form not in forms:
@@ -105,12 +109,14 @@ def _curves(panel: Any, forms: Mapping[str, Series], scalar: Scalar) -> None:
         errors = forms[form].errors
         heights = [max(min(e.relative, NOTHING), eps / 30) for e in errors]
         panel.plot(
-            [e.distance for e in errors], heights, label=form, color=colour, linestyle=line, marker=marker,
+            [e.distance for e in errors], heights, label=form, color=colour, linestyle=line,
+            marker=marker if marked else "",
             markersize=2.6, linewidth=1.2, zorder=3 if form == SYMGEN else 2,
         )
     panel.axhline(eps, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
     panel.set_xscale("log")
     panel.set_yscale("log")
+    panel.minorticks_off()
     panel.set_ylim(eps / 50, 3 * NOTHING)
     panel.set_xlim(2, min((e.distance for one in forms.values() for e in one.errors), default=0.1) / 2)
 
@@ -132,6 +138,7 @@ def _families(result: Stress) -> str:
             panel.axhline(FACTOR, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
             panel.set_xscale("log")
             panel.set_yscale("log")
+            panel.minorticks_off()
             panel.set_ylim(0.03, 1e3)
             panel.invert_xaxis()
             panel.set_title(kind, fontsize=9, loc="left")
@@ -181,6 +188,7 @@ def _long_run(result: Stress) -> str:
                 )
             values = [x for run in result.runs for x in getattr(run, name) if x > 0]
             panel.set_yscale("log" if max(values) > 10 * min(values) else "linear")
+            panel.minorticks_off()
             panel.set_ylabel(label)
         panels[-1].set_xlabel("time in s")
         panels[0].legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 
 from symgen.model.load import load_model
 from symgen.stress.charts import stress_charts
-from symgen.stress.run import Progress, stress
+from symgen.stress.run import Progress, json_text, stress
 from symgen.stress.tables import stress_tables
 from symgen.verify.reference import ReferenceValueError
 from symgen.verify.states import VerificationError
@@ -27,8 +26,8 @@ def run_stress(path: Path, out: Path, steps: int, quiet: bool, progress: Progres
         print(f"{path}: {fault}", file=sys.stderr)
         return 1
     progress("drawing")
-    data = json.dumps(result.to_json(), indent=1, ensure_ascii=False) + "\n"
-    written = write_files(out / model.name, {"stress.json": data, **stress_charts(result)})
+    files = {"stress.json": json_text(result.to_json()), **stress_charts(result)}
+    written = write_files(out / model.name, files)
     if not quiet:
         print(stress_tables(result))
         print("written:", *(f"  {file}" for file in written), "", sep="\n")

@@ -10,8 +10,11 @@ from typing import Any, Literal, TypeAlias
 from symgen.model.model import Model
 from symgen.stress.determinants import Trouble, choices, common_troubles, joint_troubles
 from symgen.stress.dimensions import parameter_dimensions
+from symgen.stress.zeros import BITS as PLACE_BITS
 from symgen.stress.zeros import Place, places
 from symgen.verify.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference_manifold import onto_manifold
+from symgen.verify.reference_tape import ball, precision
 from symgen.verify.states import sample_states
 
 Kind: TypeAlias = Literal[
@@ -29,7 +32,8 @@ FAMILIES_OF_KIND = 3
 class Family:
     """States at distance d for d in (0, 1]; `partitions` and `inputs` are the choices that fail as d falls.
 
-    `meaning` says what d is.  A curve gives None where it has no state.
+    `meaning` says what d is.  A curve gives None where it has no state.  With `truths` (one for each curve) results
+    are compared with those at that state, and the distance from it is allowed for.
     """
 
     kind: Kind
@@ -38,6 +42,7 @@ class Family:
     curves: tuple[Callable[[float], State | None], ...]
     partitions: tuple[tuple[int, ...], ...] = ()
     inputs: tuple[tuple[int, ...], ...] = ()
+    truths: tuple[State, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,11 +161,13 @@ def _extremes(reference: Reference) -> list[Family]:
     regular = [s.state for s in sample_states(reference, ("inverse_dynamics",) if model.m else (), 8) if s.admissible]
     regular = regular[:SAMPLES]
     angles = [i for i, c in enumerate(model.coordinates) if c.is_angle]
-    found = []
+    found: list[Family] = []
+    curves: tuple[Callable[[float], State | None], ...]
+    dependent = reference.ranks.constraints < model.r
     if angles:
         curves = tuple(_large_angles(state, angles) for state in regular)
         found.append(Family("large angles", "whole turns added to every angle", "one radian over the angle", curves))
-        curves = tuple(_small_angles(state, angles, k) for k, state in enumerate(regular))
+        curves = tuple(_small_angles(reference, state, angles, k) for k, state in enumerate(regular))
         found.append(Family("small angles", "every angle near zero", "size of the angles in rad", curves))
     heavy = [i for i, d in enumerate(parameter_dimensions(model)) if d is not None and d[0] == 1 and d[2] == 0]
     for i in heavy:
@@ -170,7 +177,10 @@ def _extremes(reference: Reference) -> list[Family]:
         found.append(Family("mass ratios", name, meaning, curves))
     if any(row.kind == "geometric" for row in model.constraints):
         curves = tuple(_moved(state, "q", f"drift {k}") for k, state in enumerate(regular))
-        found.append(Family("drift", "configuration off the constraints", "distance from V", curves))
+        # where rows depend on each other a result off V is a matter of definition: the one on V is what is meant
+        truths = tuple(regular) if dependent else ()
+        label = "configuration off the constraints"
+        found.append(Family("drift", label, "ten times the distance from V", curves, truths=truths))
     if model.r:
         curves = tuple(_moved(state, "qd", f"rates {k}") for k, state in enumerate(regular))
         label = "rates and accelerations that violate the constraints"
@@ -187,10 +197,26 @@ def _large_angles(state: State, angles: Sequence[int]) -> Callable[[float], Stat
     return at
 
 
-def _small_angles(state: State, angles: Sequence[int], seed: int) -> Callable[[float], State]:
+def _small_angles(
+    reference: Reference, state: State, angles: Sequence[int], seed: int
+) -> Callable[[float], State | None]:
+    """Off V in general, as measured states are; on it where rows depend on each other."""
     generator = random.Random(f"small {seed}")
     shares = [generator.uniform(0.2, 1) * generator.choice((-1, 1)) for _ in state.q]
-    return lambda d: replace(state, q=tuple(d * shares[i] if i in angles else x for i, x in enumerate(state.q)))
+    dependent = reference.ranks.constraints < reference.model.r
+
+    def at(d: float) -> State | None:
+        q = [d * shares[i] if i in angles else x for i, x in enumerate(state.q)]
+        if dependent:
+            with precision(PLACE_BITS):
+                parameters = [ball(x) for x in state.parameters]
+                near = onto_manifold(reference.system, q, parameters, reference.literals(), 1e-40)
+            if near is None:
+                return None
+            q = [float(x) for x in near]
+        return replace(state, q=tuple(q))
+
+    return at
 
 
 def _scaled(state: State, index: int, sign: int) -> Callable[[float], State]:

@@ -104,7 +104,7 @@ def _forms(result: Mapping[str, Any]) -> str:
                     if s["family"] in chosen
                     and (s["quantity"], s["form"], s["scalar"]) == (quantity, form, scalar)
                 ]
-                errors = [e["relative"] for s in mine for e in s["errors"]]
+                errors = [relative for s in mine for _, relative, _ in s["errors"]]
                 breaks = max((s["breaks"] for s in mine if s["breaks"] is not None), default=None)
                 cells.append("fails" if None in errors else f"{max(errors, default=0.0):.1e}")
                 cells.append("nowhere" if breaks is None else f"d ≤ {breaks:.0e}")
@@ -158,7 +158,7 @@ def _runs(result: Mapping[str, Any]) -> str:
 
 
 def _units(series: Mapping[str, Any]) -> float:
-    return max(_finite(e["units"]) for e in series["errors"])
+    return max(_finite(units) for _, _, units in series["errors"])
 
 
 def _finite(value: float | None) -> float:

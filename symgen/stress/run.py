@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -70,7 +71,7 @@ class Stress:
             "factored": self.searched.factored,
             "nowhere": list(self.searched.nowhere),
             "families": families,
-            "series": [_plain({**asdict(one), "breaks": one.breaks}) for one in self.series],
+            "series": [_series(one) for one in self.series],
             "statuses": [asdict(one) for one in self.statuses],
             "scaling": [_plain(asdict(one)) for one in self.scaled],
             "odd_numbers": [asdict(one) for one in self.odd],
@@ -124,11 +125,35 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
     )
 
 
+def _series(one: Series) -> dict[str, Any]:
+    """Errors as rows of d, relative error, error in units."""
+    errors = [(e.distance, e.relative, e.units) for e in one.errors]
+    return {
+        "family": one.family,
+        "scalar": one.scalar,
+        "quantity": one.quantity,
+        "form": one.form,
+        "breaks": _plain(one.breaks),
+        "errors": _plain(errors),
+    }
+
+
+def json_text(data: Mapping[str, Any]) -> str:
+    """JSON with one line for each entry of a list."""
+    lines = []
+    for key, value in data.items():
+        text = json.dumps(value, ensure_ascii=False)
+        if isinstance(value, list) and value:
+            text = "[\n  " + ",\n  ".join(json.dumps(item, ensure_ascii=False) for item in value) + "\n ]"
+        lines.append(f" {json.dumps(key)}: {text}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
     if isinstance(value, float):
-        return float(f"{value:.6g}") if math.isfinite(value) else None
+        return float(f"{value:.4g}") if math.isfinite(value) else None
     return value

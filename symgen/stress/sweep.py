@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any, TypeAlias
 
@@ -36,12 +36,28 @@ RANKS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)  # what the measures of 
 class Error:
     """|y − y*| of one form at one distance: relative to |y*|, and in units of d + eps |y*|; the largest of a family.
 
-    `relative` is infinite where the form has no finite result.
+    `relative` is infinite where the form has no finite result.  `floor` is eps κ, with κ estimated from the measures of
+    singularity: what a normwise stable algorithm may lose although the data determine the result better.
     """
 
     distance: float
     relative: float
     units: float
+    floor: float
+
+    @property
+    def normwise(self) -> bool:
+        """Whether the error is no more than a normwise stable algorithm may make."""
+        return self.relative <= FACTOR * self.floor
+
+    def worse(self, other: Error) -> Error:
+        """The larger of both, entry by entry."""
+        return Error(
+            self.distance,
+            max(self.relative, other.relative),
+            max(self.units, other.units),
+            max(self.floor, other.floor),
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +101,7 @@ class StatusCount:
 @dataclass(frozen=True, slots=True)
 class Sweep:
     """Everything measured along the families, what is wrong with symgen's kernels (empty: nothing), and where known
-    limits show: q̈ and λ lose with the condition of G under mass ratios.
+    limits show: normwise stable results that the data determine better, q̈ and λ under mass ratios.
     """
 
     series: tuple[Series, ...]
@@ -121,7 +137,9 @@ class Sweeper:
                     state = rounded_state(state, scalar)
                     if form_choice is None:
                         form_choice = self._choices(index, curve)
-                    self._state(index, scalar, d, state, form_choice)
+                    truths = self._families[index].truths
+                    truth = rounded_state(truths[curve], scalar) if truths else state
+                    self._state(index, scalar, d, state, truth, form_choice)
 
     def result(self) -> Sweep:
         """What was found so far."""
@@ -131,7 +149,7 @@ class Sweeper:
         )
         statuses = tuple(StatusCount(name, scalar, *counts) for (name, scalar), counts in self._counts.items())
         exceeded = [(self._families[one.family], one) for one in series if one.form == SYMGEN and one.breaks]
-        limits = tuple(_sentence(family, one) for family, one in exceeded if _known(family, one))
+        limits = tuple(_sentence(family, one) + _reason(family, one) for family, one in exceeded if _known(family, one))
         failures = (_sentence(family, one) for family, one in exceeded if not _known(family, one))
         return Sweep(series, statuses, (*failures, *self._failures), limits)
 
@@ -167,6 +185,7 @@ class Sweeper:
         scalar: Scalar,
         d: float,
         state: State,
+        truth: State,
         choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None],
     ) -> None:
         outcomes = {name: self._kernels.run(name, state, scalar) for name in self._names}
@@ -177,17 +196,21 @@ class Sweeper:
         if d < 10 ** (-DEEPEST[scalar] / 2) * 0.99:
             return
         try:
-            expected = expectations(self._reference, state, self._names, scalar, f"{scalar} {index} {d}")
+            expected = expectations(self._reference, truth, self._names, scalar, f"{scalar} {index} {d}")
         except ReferenceValueError:
             return
+        if truth is not state:
+            moved = math.dist(truth.q, state.q)
+            expected = {name: replace(e, unit=e.unit + moved * e.size) for name, e in expected.items()}
+        floors = {name: self._floor(name, scalar, measures) for name in self._names}
         for name, outcome in outcomes.items():
             if outcome.status == Status.OK:
-                self._record(index, scalar, name, SYMGEN, d, expected[name], outcome.entries)
+                self._record(index, scalar, name, SYMGEN, d, expected[name], outcome.entries, floors[name])
         for form, values in self._paper(scalar, state, choice):
             for name in self._names:
                 if name in values or values == {}:
                     entries = np.asarray(values[name], dtype=np.float64).ravel().tolist() if name in values else None
-                    self._record(index, scalar, name, form, d, expected[name], entries)
+                    self._record(index, scalar, name, form, d, expected[name], entries, floors[name])
 
     def _record(
         self,
@@ -198,18 +221,24 @@ class Sweeper:
         d: float,
         expected: Expectation,
         entries: Sequence[float] | None,
+        floor: float,
     ) -> None:
         if entries is None or not all(map(math.isfinite, entries)):
-            error = Error(d, math.inf, math.inf)
+            error = Error(d, math.inf, math.inf, floor)
         else:
             distance = expected.distance(entries)
-            error = Error(d, distance / expected.size if expected.size else distance, expected.in_units(distance))
+            relative = distance / expected.size if expected.size else distance
+            error = Error(d, relative, expected.in_units(distance), floor)
         errors = self._found.setdefault((index, scalar, name, form), {})
-        if d in errors:
-            error_before = errors[d]
-            errors[d] = Error(d, max(error.relative, error_before.relative), max(error.units, error_before.units))
-        else:
-            errors[d] = error
+        errors[d] = errors[d].worse(error) if d in errors else error
+
+    def _floor(self, name: str, scalar: Scalar, measures: tuple[float, float] | None) -> float:
+        """eps κ(B) κ(F'M), by 1/κ² ≈ measure; F'M counts for inputs only."""
+        eps = float(UNIT_ROUNDOFF[scalar])
+        if measures is None:
+            return math.inf
+        product = measures[0] * (measures[1] if name == "inverse_dynamics" else 1.0)
+        return eps / math.sqrt(product) if product > 0 else math.inf
 
     def _paper(
         self, scalar: Scalar, state: State, choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None]
@@ -318,7 +347,15 @@ class Sweeper:
 
 
 def _known(family: Family, one: Series) -> bool:
+    return _by_masses(family, one) or all(e.normwise for e in one.errors if not e.units <= FACTOR)
+
+
+def _by_masses(family: Family, one: Series) -> bool:
     return family.kind == "mass ratios" and one.quantity in ("forward_dynamics", "multipliers")
+
+
+def _reason(family: Family, one: Series) -> str:
+    return "; loses with the condition of G" if _by_masses(family, one) else "; within eps times that of B and FᵀM"
 
 
 def _sentence(family: Family, one: Series) -> str:
@@ -345,10 +382,7 @@ def by_form(series: Sequence[Series], quantity: str, scalar: Scalar, families: S
         if one.quantity == quantity and one.scalar == scalar and one.family in families:
             errors = found.setdefault(one.form, {})
             for e in one.errors:
-                before = errors.get(e.distance, e)
-                errors[e.distance] = Error(
-                    e.distance, max(e.relative, before.relative), max(e.units, before.units)
-                )
+                errors[e.distance] = e.worse(errors.get(e.distance, e))
     return {
         form: Series(-1, scalar, quantity, form, tuple(found[form][d] for d in sorted(found[form], reverse=True)))
         for form in FORMS

@@ -13,7 +13,7 @@ from symgen.ir.kernel import Scalar
 from symgen.verify.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference_manifold import onto_manifold, starts
 from symgen.verify.reference_system import parameters_from
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference_tape import ball, precision
 
 FEWEST_STATES = 8
 USUAL_STATES = 64
@@ -96,7 +96,8 @@ def _candidates(
         start = point
         if last is not None and index % 4 and system.r_geometric:
             start = _step(reference, last, generator)
-        q = onto_manifold(system, start, parameters, literals)
+        # balls: functions of a parameter alone know nothing of floats
+        q = onto_manifold(system, start, [ball(x) for x in parameters], literals)
         if q is None:
             continue
         in_range = _in_ranges(reference, q)
