@@ -190,6 +190,7 @@ class _Writer:
         self._arguments = arguments
         self._written: dict[Node, Operand] = {}
         self._pairs: dict[Node, tuple[str, str]] = {}
+        self._done: dict[tuple[str, tuple[Operand, ...]], Local] = {}
         self._loads: dict[str, Load] = {}
         self._symbols = _symbol_loads(mechanics)
         self._labels = {node: name for name, node in mechanics.definitions.items()}
@@ -239,11 +240,11 @@ class _Writer:
         """The check of a test; what only a failure needs is written into its own block."""
         first = None
         if test.first:
-            saved, pairs = dict(self._written), dict(self._pairs)
+            saved = dict(self._written), dict(self._pairs), dict(self._done)
             inner = [image[node] for t in test.first for node in (t.size, t.limit)]
             statements = self.write(inner)
             first = Block(tuple(statements), tuple(self.check(t, image) for t in test.first))
-            self._written, self._pairs = saved, pairs
+            self._written, self._pairs, self._done = saved
         return Check(test.status, self.operand(image[test.size]), self.operand(image[test.limit]), first=first)
 
     def write(self, outputs: Sequence[Node]) -> list[Statement]:
@@ -256,19 +257,24 @@ class _Writer:
             if node.op in ("sin", "cos"):
                 statements += self._pair(node)
             else:
-                statements.append(self._plain(node))
+                statements += self._plain(node)
         for output in outputs:
             self.operand(output)
         return statements
 
-    def _plain(self, node: Node) -> Statement:
+    def _plain(self, node: Node) -> list[Statement]:
+        """The node's statement, or none where the same operation on the same operands stands already."""
         operands = tuple(self.operand(argument) for argument in node.args)
         if node.op == "pow":
             assert isinstance(node.payload, Fraction)
             operands = (*operands, Literal(node.payload))
+        done = self._done.get((node.op, operands))
+        if done is not None:
+            self._written[node] = done
+            return []
         target = self._name(node)
-        self._written[node] = Local(target)
-        return Statement((target,), node.op, operands)  # type: ignore[arg-type]
+        self._written[node] = self._done[node.op, operands] = Local(target)
+        return [Statement((target,), node.op, operands)]  # type: ignore[arg-type]
 
     def _pair(self, node: Node) -> list[Statement]:
         """The sine/cosine pair of an angle, once; its other value needs no statement."""
