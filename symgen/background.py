@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import multiprocessing.connection
+import signal
 import sys
 import traceback
 from collections.abc import Callable
@@ -29,7 +30,7 @@ class Background(Generic[Answer]):
         if sys.platform.startswith("linux"):
             context = multiprocessing.get_context("fork")
             self._pipe, far = context.Pipe()
-            self._process = context.Process(target=_child, args=(work, far), daemon=True)
+            self._process = context.Process(target=_child, args=(work, far, self._pipe), daemon=True)
             self._process.start()
             far.close()
 
@@ -66,11 +67,26 @@ class Background(Generic[Answer]):
         return result
 
 
-def _child(work: Callable[[Receive], Answer], pipe: multiprocessing.connection.Connection) -> None:
+def _child(
+    work: Callable[[Receive], Answer],
+    pipe: multiprocessing.connection.Connection,
+    far: multiprocessing.connection.Connection,
+) -> None:
+    """Works until the answer is sent or the parent is gone; the parent alone decides what an interrupt means.
+
+    A copy of the parent's end left open here would keep `recv` waiting for a parent that was killed.
+    """
+    far.close()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    outcome: tuple[str | None, Answer | None]
     try:
-        pipe.send((None, work(pipe.recv)))
-    except (KeyboardInterrupt, EOFError):
-        # the user or the parent has given up
+        try:
+            outcome = (None, work(pipe.recv))
+        except (EOFError, ConnectionError):
+            return
+        except Exception:
+            outcome = (traceback.format_exc(), None)
+        pipe.send(outcome)
+    except BrokenPipeError:
         return
-    except Exception:
-        pipe.send((traceback.format_exc(), None))

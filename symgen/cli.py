@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
+import threading
 import traceback
 from collections.abc import Callable, Sequence
 from functools import partial
+from io import StringIO, TextIOWrapper
 from pathlib import Path
+from types import FrameType
 
 from symgen import __version__
 from symgen.diagnostics import ModelError, SymgenBug
 from symgen.ir.kernel import Scalar
 from symgen.results import DEFAULT_STATES, PARTS, Options, Part, Result, WrongUseError
-from symgen.terminal import Progress, notice_line, summary_table
+from symgen.terminal import SPELLED, Progress, notice_line, summary_table
 
-DONE, MODEL_WRONG, WRONG_USE, INTERRUPTED = 0, 1, 2, 130
+DONE, MODEL_WRONG, WRONG_USE = 0, 1, 2
+INTERRUPTED, READER_GONE, TERMINATED = 130, 141, 143  # as a shell reports these signals
 _SCALARS: dict[str, tuple[Scalar, ...]] = {
     "float64": ("float64",),
     "float32": ("float32",),
@@ -44,22 +49,38 @@ exit codes: 0 done, 1 the model or its verification is wrong, 2 wrong use or a f
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")
+    _prepare_streams()
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, _terminated)
     command, rest = (given[0], given[1:]) if given and given[0] in _COMMANDS else ("", given)
     try:
-        return _COMMANDS[command](rest) if command else _generate(rest)
+        code = _COMMANDS[command](rest) if command else _generate(rest)
+        sys.stdout.flush()
+        return code
     except KeyboardInterrupt:
         print("\ninterrupted; earlier output is unchanged", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # no second complaint at exit
-        return DONE
+        return READER_GONE
     except WrongUseError as error:
         return _complain(str(error))
     except OSError as error:
-        return _complain(f"{error.filename or 'symgen'}: {error.strerror or error}")
+        place = f"{error.filename}: " if error.filename else ""
+        return _complain(f"{place}{error.strerror or error}")
+
+
+def _prepare_streams() -> None:
+    """Output may be closed, and a terminal may lack characters: neither is a reason to fail."""
+    sys.stdout, sys.stderr = sys.stdout or StringIO(), sys.stderr or StringIO()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors=SPELLED)
+
+
+def _terminated(_signal: int, _frame: FrameType | None) -> None:
+    """Leaves as after any error, so that compilers, processes and temporary folders go too."""
+    raise SystemExit(TERMINATED)
 
 
 def _complain(message: str) -> int:

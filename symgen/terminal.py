@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import codecs
 import sys
+import unicodedata
 from collections.abc import Sequence
 from typing import TextIO
 
@@ -11,22 +13,35 @@ from symgen.results import Summary
 
 _ERROR_NOTE = "  * in units of what rounding the inputs and the result does to it"
 _CLEAR_LINE = "\r\x1b[K"
+SPELLED = "symgen-spelled"
+_SPELLINGS = {"─": "-", "−": "-", "·": "*", "×": "x", "√": "sqrt", "≠": "!=", "≤": "<=", "≥": ">=", "→": "->"}
+_SPELLINGS |= {"\u0303": "~", "\u0307": "_dot", "\u0308": "_ddot"}  # accents that stand behind their letter
 
 
 class Progress:
-    """Tells what is being done: one line that changes on a terminal, plain lines elsewhere, nothing when quiet."""
+    """Tells what is being done: one line that changes on a terminal, nothing when quiet.
+
+    Elsewhere (a log) each stage gets one line: what follows the first comma of a message counts within its stage.
+    """
 
     def __init__(self, label: str, quiet: bool, stream: TextIO | None = None) -> None:
         self._label = label
         self._quiet = quiet
         self._stream = sys.stderr if stream is None else stream
         self._live = self._stream.isatty()
+        self._stage = ""
 
     def __call__(self, message: str) -> None:
         """Shows what starts now."""
-        if not self._quiet:
-            start, end = (_CLEAR_LINE, "") if self._live else ("", "\n")
-            print(f"{start}{self._label}: {message} ...", end=end, file=self._stream, flush=True)
+        if self._quiet:
+            return
+        if self._live:
+            print(f"{_CLEAR_LINE}{self._label}: {message} ...", end="", file=self._stream, flush=True)
+            return
+        stage = message.partition(",")[0]
+        if stage != self._stage:
+            self._stage = stage
+            print(f"{self._label}: {stage} ...", file=self._stream, flush=True)
 
     def done(self) -> None:
         """Removes the changing line."""
@@ -64,3 +79,25 @@ def columns(head: Sequence[str], rows: Sequence[Sequence[str]], alignment: str) 
     ]
     lines.insert(1, "─" * max(len(line) for line in lines))
     return "\n".join("  " + line for line in lines)
+
+
+def _spelled(error: UnicodeError) -> tuple[str, int]:
+    """What an output without a character shows instead: theta for θ, ^2 for a raised 2, or else a question mark."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(map(_spelling, error.object[error.start : error.end])), error.end
+
+
+def _spelling(character: str) -> str:
+    if character in _SPELLINGS:
+        return _SPELLINGS[character]
+    name = unicodedata.name(character, "")
+    if name.startswith("GREEK ") and " LETTER " in name:
+        letter = name.rpartition(" ")[2]
+        return letter.lower() if " SMALL " in name else letter.capitalize()
+    sign = {"<super>": "^", "<sub>": "_"}.get(unicodedata.decomposition(character).partition(" ")[0], "")
+    plain = unicodedata.normalize("NFKD", character)
+    return sign + plain if plain.isascii() else "?"
+
+
+codecs.register_error(SPELLED, _spelled)

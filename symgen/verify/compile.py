@@ -6,6 +6,7 @@ import ctypes
 import math
 import os
 import shutil
+import signal
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -74,7 +75,8 @@ class Compilation:
         command = [*compiler.command, *FLAGS, "-o", str(self._target), str(path), "-lm"]
         self._log = folder / f"{source.stem}.log"
         with self._log.open("wb") as log:
-            self._process = subprocess.Popen(command, stdout=log, stderr=log)
+            # in a group of its own: a driver that is killed alone leaves the compiler proper at work
+            self._process = subprocess.Popen(command, stdout=log, stderr=log, process_group=0)
 
     def library(self) -> ctypes.CDLL:
         """The loaded library; raises CompilationError with the compiler's message."""
@@ -85,7 +87,7 @@ class Compilation:
     def cancel(self) -> None:
         """Stop a compiler that still runs."""
         if self._process.poll() is None:
-            self._process.kill()
+            os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
 
 

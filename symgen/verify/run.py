@@ -73,7 +73,7 @@ def verify(
         versions=_versions(compiler),
         hashes=tuple(_hashes(model, c_sources, python_source)),
         failures=(),
-        notes=("no C compiler: C not verified",) if c_sources and compiler is None else (),
+        notes=("no C compiler was found, the C is not verified: install gcc or clang, or name one in CC",) if c_sources and compiler is None else (),
     )
     try:
         with _compilations(compiler, c_sources) as compilations:

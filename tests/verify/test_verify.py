@@ -95,7 +95,7 @@ def test_one_wrong_sign_in_python_is_found_without_a_compiler(monkeypatch: pytes
 
     monkeypatch.setattr(run, "find_compiler", lambda: None)
     failed = certificate(python=edit)
-    assert failed.notes == ("no C compiler: C not verified",)
+    assert [note for note in failed.notes if "no C compiler was found" in note]
     assert any(failure.startswith("Python float64, inverse_dynamics: error") for failure in failed.failures)
     assert failed.targets == ("Python float64",)
 

@@ -1,0 +1,70 @@
+"""Work in a process of its own: answers, faults, and nothing left behind when the parent goes."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from symgen.background import Background, Receive
+from symgen.diagnostics import SymgenBug
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="processes are forked on Linux only")
+
+PARENT = """
+import os, sys, time
+from symgen.background import Background
+
+def work(receive):
+    print(os.getpid(), flush=True)
+    return receive()
+
+with Background(work):
+    time.sleep(60)
+"""
+
+
+def test_messages_go_in_and_the_answer_comes_out() -> None:
+    def work(receive: Receive) -> int:
+        return int(receive()) + int(receive())
+
+    with Background(work) as background:
+        background.send(1)
+        background.send(2)
+        assert background.answer() == 3
+
+
+def test_a_fault_comes_back_with_its_traceback() -> None:
+    def work(_receive: Receive) -> int:
+        raise OSError("disk on fire")
+
+    with Background(work) as background, pytest.raises(SymgenBug, match="disk on fire"):
+        background.answer()
+
+
+@pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_the_work_ends_with_its_parent(ending: signal.Signals) -> None:
+    parent = subprocess.Popen([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert parent.stdout is not None
+    child = int(parent.stdout.readline())
+    parent.send_signal(ending)
+    _, told = parent.communicate(timeout=10)  # returns once nobody holds the pipes: the child is gone as well
+    assert told.count(b"Traceback") <= 1  # of the parent
+    assert not _runs(child)
+
+
+def _runs(process: int) -> bool:
+    for _ in range(50):
+        try:
+            with open(f"/proc/{process}/stat") as stat:
+                if stat.read().rpartition(")")[2].split()[0] == "Z":
+                    return False
+            os.kill(process, 0)
+        except (FileNotFoundError, ProcessLookupError):
+            return False
+        time.sleep(0.02)
+    return True

@@ -1,0 +1,46 @@
+"""What is printed where there is no terminal, or one without the characters."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+
+from symgen.terminal import SPELLED, Progress
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_log_has_one_line_a_stage() -> None:
+    log = io.StringIO()
+    progress = Progress("car", quiet=False, stream=log)
+    for message in ("deriving", "reference, state 1 of 64", "reference, state 9 of 64", "writing"):
+        progress(message)
+    progress.done()
+    assert log.getvalue() == "car: deriving ...\ncar: reference ...\ncar: writing ...\n"
+
+
+def test_a_terminal_shows_every_step_in_one_line() -> None:
+    terminal = Terminal()
+    progress = Progress("car", quiet=False, stream=terminal)
+    progress("reference, state 1 of 64")
+    progress("reference, state 9 of 64")
+    progress.done()
+    assert "state 9 of 64" in terminal.getvalue()
+    assert "\n" not in terminal.getvalue()
+    assert terminal.getvalue().endswith("\r\x1b[K")
+
+
+@pytest.mark.parametrize(
+    ("text", "ascii_text"),
+    [
+        ("cos² θ sin 2φ", "cos^2 theta sin 2phi"),
+        ("δ = 2 ─ q̇ Θ₁ M̃⁺", "delta = 2 - q_dot Theta_1 M~^+"),
+        ("☃ √ …", "? sqrt ..."),
+    ],
+)
+def test_missing_characters_are_spelled(text: str, ascii_text: str) -> None:
+    assert text.encode("ascii", errors=SPELLED).decode() == ascii_text
