@@ -21,6 +21,7 @@ STARTS = 16
 STEPS = 150
 RESIDUAL = 1e-55  # so that a double zero is still known to 27 digits
 DIFFERENCE = arb(2) ** -128
+ROUNDED = 1e-9
 FLAT = 1e-12  # a gradient below this has no direction
 
 
@@ -39,7 +40,10 @@ class Place:
             if distance == 0:
                 return self.q
             q = onto_manifold(reference.system, start, self.parameters, reference.literals(), 1e-45)
-            return None if q is None else tuple(q)
+            if q is None:
+                # beside a singularity of V itself; a tangent leaves V by less than rounding does
+                return tuple(start) if distance <= ROUNDED else None
+            return tuple(q)
 
 
 def places(reference: Reference, trouble: Trouble, count: int, parameters_too: bool = False) -> list[Place]:
