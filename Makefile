@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PAPER := skate front_car front_car_wheelset rear_car rapkm_2rrr_rr rapkm_two_drives
 
-.PHONY: run test generated stress lock
+.PHONY: run test generated bench stress lock
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -17,6 +17,12 @@ test: $(VENV)/installed
 
 generated: $(VENV)/installed
 	$(BIN)/symgen models/*.yaml
+
+# Run time against error of every model beside other tools: docs/bench, measured on this machine.
+BENCHED := models/*.yaml docs/bench/rapkm_without_payload.yaml
+bench: $(VENV)/installed
+	$(BIN)/symgen bench $(BENCHED) --quiet
+	$(BIN)/python tools/bench_pages.py generated $(BENCHED)
 
 # Numerical stability of every model: docs/stress, measured on this machine.
 stress: $(VENV)/installed

@@ -130,7 +130,7 @@ def _compile(folder: Path, candidate: CCandidate) -> tuple[list[Path], Footprint
             (folder / name).write_text(text, encoding="utf-8")
         source, target = folder / f"unit{number}.c", folder / f"unit{number}.o"
         source.write_text(unit.source, encoding="utf-8")
-        flags = [*FLAGS, "-fstack-usage", f"-DREAL={C_TYPE[candidate.scalar]}", "-Dcasadi_real=REAL"]
+        flags = [*FLAGS, *candidate.flags, "-fstack-usage", f"-DREAL={C_TYPE[candidate.scalar]}", "-Dcasadi_real=REAL"]
         if candidate.scalar == "float32" and not unit.headers:
             flags += SINGLE
         flags += [f"-D{name}={new}" for name, new in unit.renamed.items()]

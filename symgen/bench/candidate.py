@@ -45,6 +45,7 @@ class CCandidate:
     units: tuple[CUnit, ...]
     functions: tuple[str, ...]
     operations: Mapping[str, int] | None = None
+    flags: tuple[str, ...] = ()  # beside those of all candidates
     chosen: bool = False  # what symgen generates, up to the sine and cosine
 
     @property

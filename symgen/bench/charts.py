@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from math import isfinite, log10
 from typing import Any
@@ -17,25 +18,39 @@ LOOKS = {
     "NumPy": (COLOURS[4], "D"),
     "C": (COLOURS[6], "P"),
 }
-PANEL_HEIGHT = 3.1  # inches
-LABEL_SPACING = 0.058  # of a panel's height
+ROW_HEIGHT, FRAME_HEIGHT, FEWEST_ROWS = 0.165, 0.75, 5  # inches; a panel has a row for every name
+TICKS = (1.0, 2.0, 3.0, 5.0, 7.0)  # labelled in every decade of the times
 FIRST_LABEL, LABEL_X = 1.0, 1.04
+PYTHON_TITLE = "Python, float64, all states in one call"
 SMALLEST, LARGEST = 1e-18, 10.0  # errors are drawn within; an exact result has error 0
 
 
 def time_against_error(comparison: Comparison) -> str:
-    """One panel for each scalar type; the same numbers give the same text."""
-    panels = [(scalar, [m for m in comparison.measured if m.scalar == scalar]) for scalar in SCALARS]
+    """A panel for the C of each scalar type and one for Python; the same numbers give the same text."""
+    groups: dict[str, list[Measured]] = {f"C, {scalar}": [] for scalar in SCALARS}
+    groups[PYTHON_TITLE] = []
+    for m in comparison.measured:
+        groups[PYTHON_TITLE if m.language == "Python" else f"C, {m.scalar}"].append(m)
+    panels = [(title, measured) for title, measured in groups.items() if measured]
+    heights = [max(len(measured), FEWEST_ROWS) * ROW_HEIGHT + FRAME_HEIGHT for _, measured in panels]
 
     def draw(figure: Any) -> None:
-        axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
-        for panel, (scalar, measured) in zip(axes, panels, strict=True):
+        axes = figure.subplots(len(panels), 1, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
+        for panel, (title, measured) in zip(axes, panels, strict=True):
             _panel(panel, measured)
-            panel.set_title(f"{comparison.task.quantity}, {scalar}", loc="left", fontsize=9)
-            panel.set_ylabel("relative error: 99 % (mark), largest")
-        axes[-1].set_xlabel("median time of one call in ns; Python: of one state in a batch")
+            panel.set_title(f"{comparison.task.quantity}: {title}", loc="left", fontsize=9)
+        figure.supylabel("relative error: 99 % of the states (mark), largest (line)", fontsize=9)
+        axes[-1].set_xlabel("median time of one state in ns")
 
-    return svg(draw, height=PANEL_HEIGHT * len(panels) + 0.3)
+    return _numbered(svg(draw, height=sum(heights)))
+
+
+def _numbered(text: str) -> str:
+    """Clip regions numbered: their usual names hash the last bits of a layout that are not the same every time."""
+    names = dict.fromkeys(re.findall(r'<clipPath id="(\w+)">', text))
+    for number, name in enumerate(names):
+        text = text.replace(name, f"region{number}")
+    return text
 
 
 def _panel(panel: Any, measured: Sequence[Measured]) -> None:
@@ -47,26 +62,38 @@ def _panel(panel: Any, measured: Sequence[Measured]) -> None:
         panel.plot([m.nanoseconds] * 2, [low, high], color=colour, linewidth=0.8, zorder=2)
         face = colour if m.chosen or m.generator != "symgen" else "white"
         size = 6.5 if m.generator == "symgen" else 5.0
-        panel.plot(
-            [m.nanoseconds], [low], marker, color=colour, markerfacecolor=face, markersize=size, linestyle="none", zorder=3
-        )
-    front = sorted((m for m in measured if m.on_front), key=lambda m: m.nanoseconds)
-    if front:
-        xs, ys = [m.nanoseconds for m in front], [_drawn(m.errors.percentile_99) for m in front]
-        end = max(m.nanoseconds for m in measured) * 1.3
-        panel.step([*xs, end], [*ys, ys[-1]], where="post", color="#555555", linewidth=1.0, linestyle="--", zorder=1)
+        look = {"color": colour, "markerfacecolor": face, "markersize": size, "linestyle": "none", "zorder": 3}
+        panel.plot([m.nanoseconds], [low], marker, **look)
     lowest = min(_drawn(m.errors.percentile_99) for m in measured)
     highest = max(_drawn(m.errors.largest) for m in measured)
     bottom, top = log10(lowest) - 0.4, log10(highest) + 0.4
     panel.set_ylim(10**bottom, 10**top)
+    _time_axis(panel, measured)
+    front = sorted((m for m in measured if m.on_front), key=lambda m: m.nanoseconds)
+    if front:
+        xs, ys = [m.nanoseconds for m in front], [_drawn(m.errors.percentile_99) for m in front]
+        corners = ([xs[0], *xs, panel.get_xlim()[1]], [10**top, *ys, ys[-1]])
+        panel.step(*corners, where="post", color="#555555", linewidth=1.0, linestyle="--", zorder=1)
     _labels(panel, measured, bottom, top)
+
+
+def _time_axis(panel: Any, measured: Sequence[Measured]) -> None:
+    """Numbers, not powers of ten, because all candidates lie within a decade or two."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    times = [m.nanoseconds for m in measured]
+    panel.set_xlim(min(times) / 1.15, max(times) * 1.15)
+    wide = max(times) > 15 * min(times)
+    panel.xaxis.set_major_locator(LogLocator(subs=TICKS[:1] if wide else TICKS))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    panel.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _labels(panel: Any, measured: Sequence[Measured], bottom: float, top: float) -> None:
     """Names in a column beside the panel, in the order of the marks, each tied to its mark."""
     ordered = sorted(measured, key=lambda m: (-_drawn(m.errors.percentile_99), -m.nanoseconds, m.label))
     wanted = [(log10(_drawn(m.errors.percentile_99)) - bottom) / (top - bottom) for m in ordered]
-    for m, height in zip(ordered, spread(wanted, LABEL_SPACING, FIRST_LABEL), strict=True):
+    for m, height in zip(ordered, spread(wanted, 1 / max(len(ordered), FEWEST_ROWS), FIRST_LABEL), strict=True):
         colour, _ = LOOKS.get(m.generator, (COLOURS[5], "x"))
         panel.annotate(
             m.label,

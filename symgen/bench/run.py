@@ -205,10 +205,10 @@ def _python(
 
 
 def _with_front(measured: Sequence[Measured]) -> tuple[Measured, ...]:
-    """Marks what nothing else of its scalar type beats in both time and 99 % error."""
+    """Marks what nothing else of its language and scalar type beats in both time and 99 % error."""
     marked = list(measured)
-    for scalar in SCALARS:
-        places = [k for k, m in enumerate(measured) if m.scalar == scalar]
+    for group in dict.fromkeys((m.language, m.scalar) for m in measured):
+        places = [k for k, m in enumerate(measured) if (m.language, m.scalar) == group]
         for k in pareto_front([(measured[k].nanoseconds, measured[k].errors.percentile_99) for k in places]):
             marked[places[k]] = replace(measured[places[k]], on_front=True)
     return tuple(marked)

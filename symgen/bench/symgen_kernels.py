@@ -91,6 +91,7 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
             f"int {own}(const REAL *, const REAL *, const REAL *, REAL *);\nint {entry}({arguments});\n"
             f"int {entry}({arguments})\n{{\n    (void)x;\n    return {own}(q, qd, p, y);\n}}\n"
         )
-        units = (CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"}), CUnit(adaptor, is_adaptor=True))
+        kept = CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"})
+        units = (kept, CUnit(adaptor, is_adaptor=True))
     operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}
     return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, (function, sincos), operations)

@@ -68,7 +68,8 @@ def workload(
         high.append(heads)
         low.append([float(entry - head) for entry, head in zip(exact, heads, strict=True)])
         if index < UNIT_STATES:
-            units.append(expectations(reference, state, (task.quantity,), scalar, f"{scalar} {index}")[task.quantity].unit)
+            found = expectations(reference, state, (task.quantity,), scalar, f"{scalar} {index}")
+            units.append(found[task.quantity].unit)
     return Workload(scalar, np.array(rows), np.array(high), np.array(low), np.array(units))
 
 

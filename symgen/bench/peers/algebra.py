@@ -54,7 +54,24 @@ def named(engine: Engine, matrix: Matrix) -> Matrix:
 
 
 def cholesky_solve(engine: Engine, S: Matrix, columns: Matrix) -> Matrix:
-    """S⁻¹ applied to each of the columns, for symmetric positive definite S: the square-root-free L D Lᵀ."""
+    """S⁻¹ applied to each of the columns, for symmetric positive definite S = L Lᵀ."""
+    n = len(S)
+    L: Matrix = [[] for _ in range(n)]
+    for j in range(n):
+        L[j].append(engine.name(engine.call("sqrt", [S[j][j] - dot(engine, L[j], L[j])])))
+        for i in range(j + 1, n):
+            L[i].append(engine.name((S[i][j] - dot(engine, L[i][:j], L[j][:j])) / L[j][j]))
+    solutions = []
+    for column in columns:
+        y: list[Symbol] = []
+        for i in range(n):
+            y.append(engine.name((column[i] - dot(engine, L[i][:i], y)) / L[i][i]))
+        solutions.append(_back(engine, L, y, [L[i][i] for i in range(n)]))
+    return solutions
+
+
+def ldl_solve(engine: Engine, S: Matrix, columns: Matrix) -> Matrix:
+    """S⁻¹ applied to each of the columns, for symmetric positive definite S = L D Lᵀ: no roots, fewer divisions."""
     n = len(S)
     L: Matrix = [[] for _ in range(n)]
     D: list[Symbol] = []
@@ -68,18 +85,27 @@ def cholesky_solve(engine: Engine, S: Matrix, columns: Matrix) -> Matrix:
         y: list[Symbol] = []
         for i in range(n):
             y.append(engine.name(column[i] - dot(engine, L[i][:i], y)))
-        x: list[Symbol] = [zero(engine)] * n
-        for i in reversed(range(n)):
-            below = range(i + 1, n)
-            x[i] = engine.name(y[i] / D[i] - dot(engine, [L[j][i] for j in below], [x[j] for j in below]))
-        solutions.append(x)
+        solutions.append(_back(engine, L, [y[i] / D[i] for i in range(n)], None))
     return solutions
+
+
+def _back(engine: Engine, L: Matrix, y: Sequence[Symbol], diagonal: Sequence[Symbol] | None) -> list[Symbol]:
+    """x with Lᵀ x = y; the diagonal of L is 1 where it is not given."""
+    n = len(y)
+    x: list[Symbol] = [zero(engine)] * n
+    for i in reversed(range(n)):
+        below = range(i + 1, n)
+        rest = y[i] - dot(engine, [L[j][i] for j in below], [x[j] for j in below])
+        x[i] = engine.name(rest if diagonal is None else rest / diagonal[i])
+    return x
 
 
 def eliminate(engine: Engine, A: Matrix, columns: Matrix) -> Matrix:
     """A⁻¹ applied to each of the columns by Gaussian elimination along the first pivots that are not known to be 0."""
     n = len(A)
-    A, X = [list(row) for row in A], transposed(columns) if columns else [[] for _ in A]
+    if not n:
+        return [[] for _ in columns]
+    A, X = [list(row) for row in A], transposed(columns)
     for k in range(n):
         pivot = next((i for i in range(k, n) if not engine.is_zero(A[i][k])), None)
         if pivot is None:

@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from math import pi
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi
 
 from symgen.bench.peers.engine import Inputs, Symbol
 
 
-
 class CasadiEngine:
     """Scalars are 1×1 SX; intermediates need no names, because SX shares what is equal."""
 
-    tool = "CasADi"
+    tool: ClassVar[str] = "CasADi"
 
     def __init__(self) -> None:
         self._arrays: dict[str, Any] = {}

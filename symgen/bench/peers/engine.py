@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, Protocol, TypeAlias
+from typing import Any, ClassVar, Protocol, TypeAlias
 
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.model import Model
@@ -17,10 +17,7 @@ Inputs: TypeAlias = dict[str, list[Symbol]]
 class Engine(Protocol):
     """One tool, for the length of one kernel."""
 
-    @property
-    def tool(self) -> str:
-        """The tool's name in tables."""
-        ...
+    tool: ClassVar[str]  # the name in tables
 
     def symbols(self, array: str, length: int) -> list[Symbol]:
         """The entries of an input array."""

@@ -6,15 +6,17 @@ ker B, made from a choice of independent coordinates; `range` is for M that sele
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from symgen.bench.peers.algebra import cholesky_solve, dot, eliminate, named, product, transposed, zero
+from symgen.bench.peers.algebra import cholesky_solve, dot, eliminate, ldl_solve, named, product, transposed, zero
 from symgen.bench.peers.engine import Engine, Matrix, Symbol
 from symgen.bench.peers.mechanics import Mechanics
 
+Solver = Callable[[Engine, Matrix, Matrix], Matrix]
 
-def lean(engine: Engine, s: Mechanics) -> list[Symbol]:
+
+def lean(engine: Engine, s: Mechanics, solve: Solver = cholesky_solve) -> list[Symbol]:
     """(28) with its fixed choice of the first δ inputs; M~ = M − Bᵀ(B Bᵀ)⁻¹B M by columns, N_B never formed."""
     n, m, r = len(s.M), len(s.M[0]), len(s.B)
     delta = n - r
@@ -23,7 +25,7 @@ def lean(engine: Engine, s: Mechanics) -> list[Symbol]:
     projected = [list(row) for row in s.M]
     if columns:
         S = named(engine, product(engine, s.B, transposed(s.B)))
-        solved = cholesky_solve(engine, S, [[row[j] for row in moved] for j in columns])
+        solved = solve(engine, S, [[row[j] for row in moved] for j in columns])
         for j, x in zip(columns, solved, strict=True):
             for i in range(n):
                 projected[i][j] = engine.name(s.M[i][j] - dot(engine, [row[i] for row in s.B], x))
@@ -31,31 +33,34 @@ def lean(engine: Engine, s: Mechanics) -> list[Symbol]:
     first, rest = inputs[:delta], inputs[delta:]
     normal = named(engine, product(engine, first, transposed(first)))
     right = [[engine.name(dot(engine, a, b)) for a in first] for b in [*rest, s.balance]]
-    *R, v = cholesky_solve(engine, normal, right)  # R holds the columns of M~1⁺ M~2
+    *R, v = solve(engine, normal, right)  # R holds the columns of M~1⁺ M~2
     if not R:
         return v
     weight = product(engine, R, transposed(R))
     for k in range(len(R)):
         weight[k][k] = engine.number(Fraction(1)) + weight[k][k]
-    (w,) = cholesky_solve(engine, named(engine, weight), [[dot(engine, column, v) for column in R]])
+    (w,) = solve(engine, named(engine, weight), [[dot(engine, column, v) for column in R]])
     return [v[i] - dot(engine, [column[i] for column in R], w) for i in range(delta)] + w
 
 
-def part(engine: Engine, s: Mechanics, independent: Sequence[int]) -> list[Symbol]:
-    """F from the independent coordinates, A = FᵀM, u = Aᵀ(A Aᵀ)⁻¹Fᵀτ; A u = Fᵀτ is solved directly for m = δ."""
+def part(
+    engine: Engine, s: Mechanics, independent: Sequence[int], solve: Solver = cholesky_solve, direct: bool = False
+) -> list[Symbol]:
+    """F from the independent coordinates, A = FᵀM, u = Aᵀ(A Aᵀ)⁻¹Fᵀτ; `direct`: A u = Fᵀτ where m = δ."""
     n, m = len(s.M), len(s.M[0])
     dependent = [i for i in range(n) if i not in independent]
     B = named(engine, s.B)
-    solved = eliminate(engine, [[row[i] for i in dependent] for row in B], [[row[i] for row in B] for i in independent])
+    square, right_sides = [[row[i] for i in dependent] for row in B], [[row[i] for row in B] for i in independent]
+    solved = eliminate(engine, square, right_sides)
     basis: Matrix = []  # the columns of F
     for i, column in zip(independent, solved, strict=True):
         entries = {k: -x for k, x in zip(dependent, column, strict=True)} | {i: engine.number(Fraction(1))}
         basis.append([entries.get(k, zero(engine)) for k in range(n)])
     A = named(engine, product(engine, basis, s.M))
     right = [engine.name(dot(engine, f, s.balance)) for f in basis]
-    if m == len(basis):
+    if direct and m == len(basis):
         return eliminate(engine, A, [right])[0]
-    (y,) = cholesky_solve(engine, named(engine, product(engine, A, transposed(A))), [right])
+    (y,) = solve(engine, named(engine, product(engine, A, transposed(A))), [right])
     return [dot(engine, [row[j] for row in A], y) for j in range(m)]
 
 
@@ -79,7 +84,7 @@ def range_form(engine: Engine, s: Mechanics, free: Sequence[int]) -> list[Symbol
     B = named(engine, s.B)
     square = [[B[k][i] for k in bound] for i in passive]
     right = [[s.balance[i] for i in passive], *([B[k][i] for i in passive] for k in free)]
-    given, *carried = eliminate(engine, square, right) if passive else [[] for _ in right]
+    given, *carried = eliminate(engine, square, right)
 
     def through(known: Symbol, i: int, multipliers: Sequence[Symbol]) -> Symbol:
         rest = dot(engine, [B[k][i] for k in bound], multipliers)
@@ -90,5 +95,5 @@ def range_form(engine: Engine, s: Mechanics, free: Sequence[int]) -> list[Symbol
         return particular
     Z = [[through(B[k][i], i, column) for i in active] for k, column in zip(free, carried, strict=True)]
     normal = named(engine, product(engine, Z, transposed(Z)))
-    (y,) = cholesky_solve(engine, normal, [[dot(engine, z, particular) for z in Z]])
+    (y,) = ldl_solve(engine, normal, [[dot(engine, z, particular) for z in Z]])
     return [u - dot(engine, [z[j] for z in Z], y) for j, u in enumerate(particular)]

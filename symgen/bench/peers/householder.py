@@ -57,7 +57,7 @@ int %(entry)s(const REAL *q, const REAL *qd, const REAL *qdd, const REAL *p, REA
     return 0;
 }
 """
-_LEAST_NORM = """    /* A u = b with at least as many inputs as rows: A' = Q S, S' y = b, u = Q y by the same reflections. */
+_LEAST_NORM = """    /* A u = b, no fewer inputs than rows: A' = Q S, S' y = b, u = Q y by the same reflections. */
     REAL t[M * (D + M)];
     for (int i = 0; i < D; ++i) {
         for (int j = 0; j < M; ++j) {

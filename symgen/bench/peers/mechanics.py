@@ -40,7 +40,8 @@ def mechanics(engine: Engine, model: Model) -> Mechanics:
 
 def _balance(engine: Engine, model: Model, inputs: Inputs, scope: dict[str, Symbol]) -> list[Symbol]:
     """d/dt ∂T/∂q̇ − ∂T/∂q + ∂U/∂q − Q_a."""
-    kinetic, potential = translate(engine, model.kinetic_energy, scope), translate(engine, model.potential_energy, scope)
+    kinetic = translate(engine, model.kinetic_energy, scope)
+    potential = translate(engine, model.potential_energy, scope)
     applied: dict[str, list[Symbol]] = {}
     for force in model.applied_forces:
         applied.setdefault(force.coordinate, []).append(translate(engine, force.expression, scope))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any, TypeAlias
 
@@ -15,8 +15,8 @@ from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange, differentiate
 
 Build: TypeAlias = Callable[[Engine, Mechanics], list[Symbol]]
-OPTIONAL = ("wrenfold", "symforce", "pinocchio", "jax")
-NOT_WRITTEN = ("symforce", "pinocchio", "jax")
+# Cheaper than the study's Cholesky factors, by about the same for every tool; the one that is cheapest takes them.
+SYMPY_ONLY = ("lean LDLᵀ", "part LDLᵀ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,26 +33,32 @@ def peers(model: Model, task: Task, scalar: Scalar, states: Any) -> Peers:
     if task.quantity != "inverse_dynamics":
         return Peers((_native(model, s, task, scalar),), ())
     forms, left_out = _forms(model, s, states)
-    found = [_native(model, s, task, scalar)]
+    # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
+    entry = f"casadi_native_fpie_{scalar}"
+    inlined = replace(_native(model, s, task, scalar, entry), form="native -fPIE", flags=("-fPIE",))
+    found = [_native(model, s, task, scalar), inlined]
     for engine_type in _engines():
         for form, build in forms.items():
-            found.append(_candidate(engine_type(), model, form, build, scalar))
+            if form not in SYMPY_ONLY or engine_type.tool == "SymPy":
+                found.append(_candidate(engine_type(), model, form, build, scalar))
     found.append(_householder(model, s, scalar))
-    absent = [(name, "not installed") for name in OPTIONAL if name not in NOT_WRITTEN and find_spec(name) is None]
+    absent = [] if find_spec("wrenfold") else [("wrenfold", "not installed")]
     return Peers(tuple(found), (*left_out, *absent))
 
 
 def _forms(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
+    from symgen.bench.peers.algebra import ldl_solve
     from symgen.bench.peers.expert import free_multipliers, independent_coordinates
     from symgen.bench.peers.forms import lean, part, range_form
 
-    forms: dict[str, Build] = {"lean": lean}
+    forms: dict[str, Build] = {"lean": lean, "lean LDLᵀ": lambda engine, system: lean(engine, system, ldl_solve)}
     left_out = []
     independent = independent_coordinates(model, s, states)
     if independent is None:
         left_out.append(("form part", "fewer inputs than degrees of freedom, or too many choices of coordinates"))
     else:
         forms["part"] = lambda engine, system: part(engine, system, independent)
+        forms["part LDLᵀ"] = lambda engine, system: part(engine, system, independent, ldl_solve, direct=True)
     free = free_multipliers(model, s, states)
     if free is None:
         left_out.append(("form range", "the control matrix does not select coordinates"))
@@ -61,11 +67,11 @@ def _forms(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], li
     return forms, left_out
 
 
-def _engines() -> list[Callable[[], Engine]]:
+def _engines() -> list[type[Engine]]:
     from symgen.bench.peers.casadi_engine import CasadiEngine
     from symgen.bench.peers.sympy_engine import SympyEngine
 
-    found: list[Callable[[], Engine]] = [CasadiEngine, SympyEngine]
+    found: list[type[Engine]] = [CasadiEngine, SympyEngine]
     if find_spec("wrenfold") is not None:
         from symgen.bench.peers.wrenfold_engine import WrenfoldEngine
 
@@ -77,7 +83,7 @@ def _candidate(engine: Engine, model: Model, form: str, build: Build, scalar: Sc
     from symgen.bench.peers.casadi_engine import adaptor
     from symgen.bench.peers.mechanics import mechanics
 
-    entry = f"{engine.tool.lower()}_{form}_{scalar}"
+    entry = f"{engine.tool.lower()}_{form}_{scalar}".replace(" LDLᵀ", "_ldl")
     name = f"{entry}_function"
     system = mechanics(engine, model)
     source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
@@ -88,7 +94,7 @@ def _candidate(engine: Engine, model: Model, form: str, build: Build, scalar: Sc
     return CCandidate(engine.tool, form, scalar, entry, units, functions)
 
 
-def _native(model: Model, s: Lagrange, task: Task, scalar: Scalar) -> CCandidate:
+def _native(model: Model, s: Lagrange, task: Task, scalar: Scalar, entry: str = "") -> CCandidate:
     from symgen.bench.peers import native
     from symgen.bench.peers.casadi_engine import adaptor, generated
 
@@ -96,7 +102,7 @@ def _native(model: Model, s: Lagrange, task: Task, scalar: Scalar) -> CCandidate
         value = native.inverse_dynamics(model, s)
     else:
         value = native.forward_dynamics(model, s)[task.quantity == "multipliers"]
-    entry = f"casadi_native_{scalar}"
+    entry = entry or f"casadi_native_{scalar}"
     name = f"{entry}_function"
     third = s.qdd if task.third == "qdd" else s.u
     source, functions = generated(name, [s.q, s.qd, third, s.p], value)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, ClassVar
 
 import sympy
 from sympy.printing.c import C99CodePrinter
@@ -19,7 +19,7 @@ ARRAY_ENTRY = re.compile(r"\b(qdd|qd|q|u|p)_(\d+)\b")
 class SympyEngine:
     """Scalars are SymPy expressions; what `name` is told becomes a symbol of its own."""
 
-    tool = "SymPy"
+    tool: ClassVar[str] = "SymPy"
 
     def __init__(self) -> None:
         self._named: list[tuple[Any, Any]] = []

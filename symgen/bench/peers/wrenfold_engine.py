@@ -5,19 +5,20 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, ClassVar
 
 from wrenfold import code_generation, enumerations, sym, type_info
 
 from symgen.bench.peers.engine import Inputs, Symbol
 
 REAL = enumerations.NumberSet.Real
+_tool: Any = code_generation
 
 
 class WrenfoldEngine:
     """Scalars are wrenfold expressions; it shares what is equal by itself."""
 
-    tool = "wrenfold"
+    tool: ClassVar[str] = "wrenfold"
 
     def symbols(self, array: str, length: int) -> list[Symbol]:
         return [sym.symbol(f"{array}_{i}", REAL) for i in range(length)]
@@ -60,7 +61,7 @@ class WrenfoldEngine:
 
 
 def _generated(name: str, inputs: Inputs, outputs: Sequence[Any]) -> str:
-    description = code_generation.FunctionDescription(name)
+    description = _tool.FunctionDescription(name)
     placeholders = []
     for array, symbols in inputs.items():
         for k, symbol in enumerate(symbols):
@@ -68,4 +69,4 @@ def _generated(name: str, inputs: Inputs, outputs: Sequence[Any]) -> str:
             placeholders.append((symbol, description.add_input_argument(f"{array}_{k}", kind)))
     for k, output in enumerate(outputs):
         description.add_output_argument(f"y_{k}", False, sym.subs(output, placeholders))
-    return str(code_generation.CppGenerator().generate(code_generation.transpile(description)))
+    return str(_tool.CppGenerator().generate(_tool.transpile(description)))

@@ -1,0 +1,82 @@
+"""`symgen bench` from the command line: files, table, missing tools."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from shipped import ROOT
+
+from symgen.bench import build, callgrind, charts, run
+from symgen.bench.candidate import CCandidate, CUnit
+from symgen.cli import main
+
+SKATE = str(ROOT / "models" / "skate.yaml")
+
+
+@pytest.fixture
+def gcc(tool: Callable[[str], str]) -> str:
+    return tool("gcc")
+
+
+@pytest.mark.toolchain
+@pytest.mark.slow
+@pytest.mark.usefixtures("gcc")
+def test_files_and_table(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "PASSES", 3)
+    monkeypatch.setattr(run, "QUANTITIES", ("inverse_dynamics",))
+    monkeypatch.setattr(run, "SCALARS", ("float64",))
+    monkeypatch.setattr(charts, "SCALARS", ("float64",))
+    assert main(["bench", SKATE, "--states", "8", "--out", str(tmp_path)]) == 0
+    told = capsys.readouterr()
+    assert "CasADi native" in told.out
+    assert (tmp_path / "skate" / "bench.svg").read_text(encoding="utf-8").startswith("<?xml")
+    data = json.loads((tmp_path / "skate" / "bench.json").read_text(encoding="utf-8"))
+    (comparison,) = data["comparisons"]
+    assert comparison["states"] == 8
+    rows = {(row["generator"], row["form"], row["scalar"]): row for row in comparison["measured"]}
+    chosen = next(row for row in comparison["measured"] if row["chosen"] and row["scalar"] == "float64")
+    native = rows["CasADi", "native", "float64"]
+    assert chosen["errors"]["largest"] < 1e-12
+    assert chosen["operations"]["sincos"] == 1
+    if callgrind.find_valgrind():
+        assert chosen["instructions"] < native["instructions"] < 400
+    else:
+        assert native["instructions"] is None
+        assert "valgrind" in told.err
+
+
+def test_without_gcc_it_is_wrong_use(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "find_gcc", lambda: None)
+    assert main(["bench", SKATE, "--out", str(tmp_path)]) == 2
+    assert "no gcc" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.toolchain
+@pytest.mark.usefixtures("gcc")
+def test_without_valgrind_instructions_are_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "find_valgrind", lambda: None)
+    monkeypatch.setattr(run, "PASSES", 3)
+    monkeypatch.setattr(run, "QUANTITIES", ("multipliers",))
+    monkeypatch.setattr(build, "FLAGS", ("-O0", *build.FLAGS[1:]))
+    assert main(["bench", SKATE, "--states", "8", "--quiet", "--out", str(tmp_path)]) == 0
+    assert "no valgrind" in capsys.readouterr().err
+    data = json.loads((tmp_path / "skate" / "bench.json").read_text(encoding="utf-8"))
+    assert all(row["instructions"] is None for row in data["comparisons"][0]["measured"])
+
+
+@pytest.mark.toolchain
+@pytest.mark.usefixtures("gcc")
+def test_a_candidate_that_does_not_compile_is_named(tmp_path: Path) -> None:
+    broken = CCandidate("SymPy", "lean", "float64", "entry", (CUnit("int entry(void) { return x; }\n"),), ("entry",))
+    with pytest.raises(build.BuildError, match="SymPy lean"):
+        build._compile(tmp_path / "entry", broken)

@@ -1,0 +1,86 @@
+"""Every peer in every form computes the same u as the 50-digit reference: none is fast because it is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from shipped import NAMES, model
+
+from symgen.bench import build as build_module
+from symgen.bench.build import build, results_of
+from symgen.bench.candidate import Task
+from symgen.bench.peers.numpy_pinv import numpy_pinv
+from symgen.bench.peers.roster import peers
+from symgen.bench.python_timing import run_python
+from symgen.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
+from symgen.bench.workload import admissible_samples, errors_of, workload
+from symgen.verify.reference import Reference
+
+pytestmark = pytest.mark.toolchain
+STATES = 12
+DRIVEN = tuple(name for name in NAMES if model(name).inputs)
+ACCURATE = 1e-9  # far above what a fixed choice of coordinates loses at these states, far below a wrong formula
+
+
+@pytest.fixture(autouse=True)
+def gcc(tool: Callable[[str], str], monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.setattr(build_module, "FLAGS", ("-O0", *build_module.FLAGS[1:]))  # errors do not need the optimiser
+    return tool("gcc")
+
+
+def quiet(_: str) -> None:
+    pass
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_inverse_dynamics_of_every_peer(name: str, tmp_path: Path) -> None:
+    described = model(name)
+    reference = Reference(described)
+    task = Task("inverse_dynamics", "qdd", described.m)
+    samples = admissible_samples(reference, STATES, (task.quantity,))
+    load = workload(reference, samples, task, "float64", quiet)
+    found = peers(described, task, "float64", load.states)
+    own = symgen_candidates(described, programs_of(described, task, ("float64",)), "float64")
+    candidates = [*found.candidates, *own]
+    built = build(tmp_path, described, task, candidates, {"float64": load})
+    results = results_of(built, tmp_path, candidates, task)
+    errors = {c.label: errors_of(load, results[c.entry]).largest for c in candidates}
+    errors["NumPy pinv"] = errors_of(load, run_python(described, numpy_pinv(described), load)[0]).largest
+    assert {label: error for label, error in errors.items() if not error < ACCURATE} == {}
+    assert {"CasADi native", "CasADi lean", "SymPy lean", "SymPy lean LDLᵀ", "C Householder QR"} <= errors.keys()
+    assert all(built.footprints[c.entry].code > 50 for c in candidates)
+
+
+@pytest.mark.parametrize("quantity", ["forward_dynamics", "multipliers"])
+@pytest.mark.parametrize("name", ["front_car", "slider_crank"])
+def test_forward_dynamics_and_multipliers(name: str, quantity: str, tmp_path: Path) -> None:
+    described = model(name)
+    reference = Reference(described)
+    task = Task(quantity, "u", described.n if quantity == "forward_dynamics" else described.r)
+    load = workload(reference, admissible_samples(reference, STATES, (quantity,)), task, "float64", quiet)
+    candidates = peers(described, task, "float64", load.states).candidates
+    built = build(tmp_path, described, task, candidates, {"float64": load})
+    results = results_of(built, tmp_path, candidates, task)
+    assert [c.label for c in candidates] == ["CasADi native"]
+    assert all(errors_of(load, results[c.entry]).largest < ACCURATE for c in candidates)
+    python = symgen_python(described, programs_of(described, task, ("float64",)), task)
+    assert errors_of(load, run_python(described, python, load)[0]).largest < ACCURATE
+
+
+def test_a_wrong_kernel_has_a_large_error() -> None:
+    described = model("skate")
+    reference = Reference(described)
+    task = Task("inverse_dynamics", "qdd", described.m)
+    load = workload(reference, admissible_samples(reference, STATES, (task.quantity,)), task, "float64", quiet)
+    exact = errors_of(load, load.high)
+    assert exact.largest < 2**-53
+    assert exact.failed == 0
+    off = errors_of(load, load.high * (1 + 1e-6))
+    assert off.median == pytest.approx(1e-6)
+    assert off.largest_in_units > 1e3
+    broken = load.high.copy()
+    broken[3, 0] = float("nan")
+    assert errors_of(load, broken).failed == 1
+    assert errors_of(load, broken).largest == float("inf")
