@@ -11,7 +11,7 @@ from flint import arb, arb_mat
 
 from symgen.stress.determinants import Trouble
 from symgen.verify.reference import Reference
-from symgen.verify.reference_linear import column, identity, norm, right_pseudoinverse, solve
+from symgen.verify.reference_linear import column, identity, norm, solve
 from symgen.verify.reference_manifold import onto_manifold, starts
 from symgen.verify.reference_system import default_parameters
 from symgen.verify.reference_tape import precision
@@ -22,6 +22,9 @@ STEPS = 150
 RESIDUAL = 1e-55  # so that a double zero is still known to 27 digits
 DIFFERENCE = arb(2) ** -128
 ROUNDED = 1e-9
+RANK_GAP = 1e-20  # places are known to 27 digits at least
+DIRECTIONS = 4
+NEAR = 1e-2
 FLAT = 1e-12  # a gradient below this has no direction
 
 
@@ -147,32 +150,50 @@ def _direction(
     """Along V where the functions change most, else a random direction; None where V has no tangent."""
     n = reference.system.n
     before = trouble.values(q, parameters)
-    random_one = [arb(generator.gauss(0, 1)) for _ in range(n)]
+    random_ones = [[arb(generator.gauss(0, 1)) for _ in range(n)] for _ in range(DIRECTIONS)]
     weights = [arb(generator.gauss(0, 1)) for _ in before]
     gradient = []
     for j in range(n):
         moved = trouble.values([*q[:j], q[j] + DIFFERENCE, *q[j + 1 :]], parameters)
         gradient.append(sum((w * (b - a).mid() for w, a, b in zip(weights, before, moved, strict=True)), arb(0)))
     largest = max(abs(float(x / DIFFERENCE)) for x in gradient)
-    for candidate in ([x / DIFFERENCE for x in gradient] if largest > FLAT else None, random_one):
-        if candidate is None:
-            continue
-        tangent = _along_manifold(reference, q, parameters, column(candidate))
-        if tangent is None:
-            continue
+    steepest = [[x / DIFFERENCE for x in gradient]] if largest > FLAT else []
+    for candidate in (*steepest, *random_ones):
+        tangent = _along_manifold(reference, q, parameters, candidate)
         size = norm(tangent)
-        if size > FLAT:
-            return tuple((x / size).mid() for x in tangent.entries())
+        if not size > FLAT:
+            continue
+        direction = tuple((x / size).mid() for x in tangent.entries())
+        # at a singularity of V itself not every tangent leads along it
+        if Place(tuple(q), tuple(parameters), direction).at(reference, NEAR) is not None:
+            return direction
     return None
 
 
-def _along_manifold(reference: Reference, q: Sequence[Any], parameters: Sequence[Any], direction: Any) -> Any | None:
+def _along_manifold(
+    reference: Reference, q: Sequence[Any], parameters: Sequence[Any], direction: Sequence[Any]
+) -> Any:
+    """The part of a direction that the geometric rows do not see, at the rank that they have there."""
     if not reference.system.r_geometric:
-        return direction
+        return column(direction)
     _, jacobian = reference.system.geometry(q, parameters, reference.literals())
-    jacobian = jacobian.mid()
-    try:
-        inverse = right_pseudoinverse(jacobian, reference.ranks.geometric)
-    except ZeroDivisionError:
-        return direction  # at a singularity of V itself: Newton's method decides
-    return direction - inverse * (jacobian * direction)
+    rest = column(direction)
+    for row in independent_rows(jacobian):
+        rest = rest - row * (row.transpose() * rest)[0, 0]
+    return rest.mid()
+
+
+def independent_rows(jacobian: Any) -> list[Any]:
+    """An orthonormal basis of the rows (columns n x 1), by Gram-Schmidt with the largest remaining row first."""
+    rows = [column([arb(x.mid()) for x in row]) for row in jacobian.tolist()]
+    scale = max((norm(row) for row in rows), default=0.0)
+    basis: list[Any] = []
+    while rows:
+        row = max(rows, key=norm)
+        size = norm(row)
+        if not size > RANK_GAP * scale:
+            break
+        unit = (row * (1 / arb(size))).mid()
+        basis.append(unit)
+        rows = [(other - unit * (unit.transpose() * other)[0, 0]).mid() for other in rows if other is not row]
+    return basis
