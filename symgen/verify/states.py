@@ -6,7 +6,7 @@ import random
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import comb, isfinite
+from math import comb, isfinite, sqrt
 from typing import Any
 
 from symgen.ir.kernel import Scalar
@@ -21,6 +21,7 @@ LONGEST_SECONDS = 20.0
 REGULAR = 1e-3
 SAMPLING_BITS = 128
 DRIFT = 1e-3
+TYPICAL_POINTS = 8
 
 
 class VerificationError(Exception):
@@ -89,6 +90,7 @@ def _candidates(
     system = reference.system
     points = starts(system, generator, 6 * count + 60)
     literals = reference.literals()
+    typical = _row_lengths(reference, points[:TYPICAL_POINTS], _parameters(reference, generator, vary=False))
     last: list[Any] | None = None
     kept = {True: 0, False: 0}
     for index, point in enumerate(points):
@@ -101,12 +103,30 @@ def _candidates(
         if q is None:
             continue
         in_range = _in_ranges(reference, q)
-        sample = _sample(reference, quantities, [float(x) for x in q], parameters, kept[in_range], generator)
+        sample = _sample(reference, quantities, [float(x) for x in q], parameters, typical, kept[in_range], generator)
         if sample is None:
             continue
         last = q
         kept[in_range] += 1
         yield sample, in_range
+
+
+def _row_lengths(reference: Reference, points: Sequence[Sequence[float]], parameters: Sequence[float]) -> list[float]:
+    """The largest length of each row of B over some points, on V or off it."""
+    lengths = [0.0] * reference.model.r
+    for q in points:
+        try:
+            rows = reference.matrices(_at_rest(reference, q, parameters), ["constraint_jacobian"], SAMPLING_BITS)
+        except ReferenceValueError:
+            continue
+        found = [sqrt(sum(float(x) ** 2 for x in row)) for row in rows["constraint_jacobian"].tolist()]
+        lengths = [max(pair) if isfinite(pair[1]) else pair[0] for pair in zip(lengths, found, strict=True)]
+    return lengths
+
+
+def _at_rest(reference: Reference, q: Sequence[float], parameters: Sequence[float]) -> State:
+    n, m = reference.model.n, reference.model.m
+    return State(tuple(q), (0.0,) * n, (0.0,) * n, (0.0,) * m, tuple(parameters))
 
 
 def _parameters(reference: Reference, generator: random.Random, vary: bool) -> list[float]:
@@ -132,6 +152,7 @@ def _sample(
     quantities: Sequence[str],
     q: Sequence[float],
     parameters: Sequence[float],
+    typical: Sequence[float],
     index: int,
     generator: random.Random,
 ) -> Sample | None:
@@ -150,6 +171,10 @@ def _sample(
     try:
         values = {name: _floats(matrix) for name, matrix in reference.matrices(state, needed, SAMPLING_BITS).items()}
         if not all(map(isfinite, values["singularity"])) or min(values["singularity"]) < REGULAR:
+            return None
+        # the measures compare directions of rows only; a row that all but vanishes is a drop of rank, too
+        lengths = _row_lengths(reference, [q], parameters)
+        if any(length < REGULAR * usual for length, usual in zip(lengths, typical, strict=True)):
             return None
         if admissible:
             state = replace(state, qd=values["admissible_velocity"], qdd=values["admissible_acceleration"])

@@ -52,6 +52,25 @@ def test_dependent_constraints_get_states_without_drift() -> None:
         assert norm(residual) < 1e-14
 
 
+def test_no_state_where_a_row_of_the_jacobian_all_but_vanishes() -> None:
+    # three parallel cranks: Newton's method is drawn to all of them in line, where the singularity measures stay large
+    reference = Reference(
+        build(
+            "parallelogram",
+            "a b c d",
+            "a_dot**2 + b_dot**2 + c_dot**2 + d_dot**2",
+            geometric=(
+                "cos(a) + 2*cos(d) - 2 - cos(b)",
+                "sin(a) + 2*sin(d) - sin(b)",
+                "cos(a) + cos(d) - 1 - cos(c)",
+                "sin(a) + sin(d) - sin(c)",
+            ),
+        )
+    )
+    samples = sample_states(reference, ["constraint_jacobian"], 32)
+    assert min(abs(float(sample.state.q[0])) for sample in samples) > 1e-4
+
+
 def test_rounding_to_float32_is_exact_in_float32() -> None:
     (sample, *_) = sample_states(Reference(double_pendulum()), ["mass_matrix"], 8)
     for value in rounded(sample, "float32").state.q:
