@@ -80,7 +80,8 @@ def derive_quantities(model: Model, outputs: Sequence[str]) -> Derivations:
         candidates = {way: derive(BY_NAME[name], derivation) for way, derivation in derivations.items()}
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
         best = min(costs, key=lambda way: costs[way])
-        if 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
+        # minors of rows that depend on each other become small together: multiplied out, their squares would cancel
+        if generic.rank == generic.r and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
             chosen, kept = candidates["minors"], derivations["minors"].common_speeds
             shorter = replace(chosen, outputs=mechanics.factoring.shorten(chosen.outputs, kept))
             costs["factored"] = cost(scalars(shorter)).weight
