@@ -136,7 +136,7 @@ def _projected(context: Context) -> list[Block]:
             "Measured velocities and accelerations need not satisfy the constraints; they are projected first, {} "
             "and {} (Remark 9).",
             equals(qd, juxtaposed(NB, _measured(qd))),
-            equals(qdd, plus(juxtaposed(NB, _measured(qdd)), juxtaposed(NB_dot, _measured(qd)))),
+            equals(qdd, plus(juxtaposed(NB, _measured(qdd)), juxtaposed(NB_dot, qd))),
         ),
     ]
 

@@ -148,17 +148,27 @@ def _constraints(context: Context) -> list[Block]:
         return [paragraph("There are no constraints, {}: every velocity is admissible.", equals(small_r, ZERO))]
     blocks: list[Block] = []
     intros = {
-        "geometric": "Geometric constraints, paper (4), define the configuration space:",
-        "nonholonomic": "Constraints linear in the rates, paper (1), restrict the velocities:",
+        "geometric": (
+            "A geometric constraint, paper (4), defines the configuration space:",
+            "Geometric constraints, paper (4), define the configuration space:",
+        ),
+        "nonholonomic": (
+            "A constraint linear in the rates, paper (1), restricts the velocities:",
+            "Constraints linear in the rates, paper (1), restrict the velocities:",
+        ),
     }
-    for kind, intro in intros.items():
+    for kind, (singular, plural) in intros.items():
         rows = [row for row in model.constraints if row.kind == kind]
         if rows:
+            intro = singular if len(rows) == 1 else plural
             equations = tuple(equation(expression_layout(row.expression), ZERO) for row in rows)
             blocks += [paragraph(intro), displayed(equations, f"constraints_{kind}")]
     names: list[InlineCode | str] = []
     for row in model.constraints:
         names += [", ", InlineCode(row.name)] if names else [InlineCode(row.name)]
+    if len(names) == 1:
+        blocks.append(paragraph("In the file it is called {}.", *names))
+        return blocks
     pattern = "In the file they are called " + "{}" * len(names)
     blocks.append(
         paragraph(f"{pattern}; their order is that of the rows of {{}} and of the multipliers {{}}.", *names, B, lam)

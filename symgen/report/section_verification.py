@@ -7,6 +7,7 @@ from symgen.report.context import Context, sentence
 from symgen.report.document import Block, Figure, InlineCode, Section, Table, Text
 from symgen.report.prose import paragraph, say
 
+SMALLEST_SHOWN = 1e-3
 
 def verification(context: Context) -> tuple[Section, ...]:
     """Errors of every kernel, invariants, and what was measured with what."""
@@ -48,13 +49,19 @@ def _errors(measured: Verification) -> Table:
         (
             (InlineCode(row.quantity),),
             say("{}", row.target),
-            *(say("{}", f"{value:.2g}") for value in (row.median, row.percentile_99, row.largest)),
-            _power(row.relative),
+            *(say("{}", _units(value)) for value in (row.median, row.percentile_99, row.largest)),
+            # beside a reference of 1e-50 for what is zero a relative error says nothing
+            say("–") if 0 < row.largest < SMALLEST_SHOWN else _power(row.relative),
         )
         for row in measured.errors
     )
     headings = ("Kernel", "Target", "Median", "99 %", "Largest", "Relative")
     return Table(tuple(say("{}", heading) for heading in headings), rows, (1, 0, 0, 0, 0, 0))
+
+
+def _units(value: float) -> str:
+    """An error in its unit: two digits, and no powers of ten."""
+    return "< 0.001" if 0 < value < SMALLEST_SHOWN else f"{value:.2g}"
 
 
 def _power(value: float) -> Text:

@@ -39,6 +39,7 @@ def report(text: str) -> str:
     ("text", "sentences"),
     [
         (NO_INPUTS, ("There are no inputs", "Without inputs there is no inverse dynamics", "no inputs.")),
+        (NO_INPUTS, ("A geometric constraint, paper", "A constraint linear in the rates, paper")),
         (DEPENDENT, ("the constraints depend on each other", "the multipliers are not unique")),
         (RIVALS, ("redundantly under-actuated", "Moore–Penrose inverse at this rank", "the residual tells")),
     ],
