@@ -14,6 +14,7 @@ from math import lcm
 from typing import TypeAlias
 
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.walk import parts
 
 LARGEST_MULTIPLE = 12
 """Multiples of an angle beyond this are not expanded by addition theorems; the whole argument is then an atom."""
@@ -162,24 +163,12 @@ def choose_basis(preferred: Iterable[Argument], others: Iterable[Argument]) -> A
     for base in bases:
         if base not in in_atoms:
             accept(((base, units[base]),))
-    vectors = {base: tuple(parts.get(i, 0) for i in range(len(atoms))) for base, parts in in_atoms.items()}
+    vectors = {base: tuple(shares.get(i, 0) for i in range(len(atoms))) for base, shares in in_atoms.items()}
     return AngleBasis(tuple(atoms), vectors, units)
 
 
 def trigonometric_arguments(expression: Expression) -> Iterable[Expression]:
     """The arguments of every sin, cos and tan in the tree, in order of appearance."""
-    match expression:
-        case Negation(operand):
-            yield from trigonometric_arguments(operand)
-        case Binary(_, left, right):
-            yield from trigonometric_arguments(left)
-            yield from trigonometric_arguments(right)
-        case Power(base, _):
-            yield from trigonometric_arguments(base)
-        case Call(function, arguments):
-            if function in ("sin", "cos", "tan"):
-                yield arguments[0]
-            for argument in arguments:
-                yield from trigonometric_arguments(argument)
-        case _:
-            pass
+    for part in parts(expression):
+        if isinstance(part, Call) and part.function in ("sin", "cos", "tan"):
+            yield part.arguments[0]

@@ -17,6 +17,7 @@ from symgen.closedform.angles import (
 from symgen.closedform.quotient import Quotient, polynomial
 from symgen.closedform.ring import Opaque, TrigRing
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.walk import parts
 
 ONE = Number(Fraction(1))
 
@@ -55,7 +56,7 @@ class Translator:
                 split = read_argument(argument, self.definitions.get)
                 found.append(split)
                 pending += [base for base, _ in split.combination]
-            for part in _parts(expression):
+            for part in parts(expression):
                 if isinstance(part, Name) and part.name in self.definitions:
                     pending.append(self.definitions[part.name])
                 atom = opaque_atom(part)
@@ -172,24 +173,6 @@ class Translator:
                 total = total + self.constant(factor) * inner
             self._slopes[key] = total
         return self._slopes[key]
-
-
-def _parts(expression: Expression) -> Iterable[Expression]:
-    """The expression and all its sub-expressions."""
-    yield expression
-    match expression:
-        case Negation(operand):
-            yield from _parts(operand)
-        case Binary(_, left, right):
-            yield from _parts(left)
-            yield from _parts(right)
-        case Power(base, _):
-            yield from _parts(base)
-        case Call(_, arguments):
-            for argument in arguments:
-                yield from _parts(argument)
-        case _:
-            pass
 
 
 def opaque_atom(expression: Expression) -> Opaque | None:

@@ -15,19 +15,23 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
 }  # fmt: skip
 
 
-def names_in(expression: Expression) -> Iterator[Name]:
-    """Every occurrence of a name, from left to right."""
+def parts(expression: Expression) -> Iterator[Expression]:
+    """The expression and all its sub-expressions, from left to right."""
+    yield expression
     match expression:
-        case Name():
-            yield expression
         case Negation(operand=inner) | Power(base=inner):
-            yield from names_in(inner)
+            yield from parts(inner)
         case Binary(left=left, right=right):
-            yield from names_in(left)
-            yield from names_in(right)
+            yield from parts(left)
+            yield from parts(right)
         case Call(arguments=arguments):
             for argument in arguments:
-                yield from names_in(argument)
+                yield from parts(argument)
+
+
+def names_in(expression: Expression) -> Iterator[Name]:
+    """Every occurrence of a name, from left to right."""
+    return (part for part in parts(expression) if isinstance(part, Name))
 
 
 def evaluate(expression: Expression, values: Mapping[str, float]) -> float:

@@ -46,6 +46,7 @@ from symgen.verify.tolerance import Expectation, expectations
 Progress: TypeAlias = Callable[[str], None]
 Expected: TypeAlias = Sequence[Mapping[str, Expectation]]
 LONGEST_EXCERPT = 2000
+NO_COMPILER = "no C compiler was found, the C is not verified: install gcc or clang, or name one in CC"
 
 
 def verify(
@@ -73,7 +74,7 @@ def verify(
         versions=_versions(compiler),
         hashes=tuple(_hashes(model, c_sources, python_source)),
         failures=(),
-        notes=("no C compiler was found, the C is not verified: install gcc or clang, or name one in CC",) if c_sources and compiler is None else (),
+        notes=(NO_COMPILER,) if c_sources and compiler is None else (),
     )
     try:
         with _compilations(compiler, c_sources) as compilations:
