@@ -149,9 +149,21 @@ class Sweeper:
         )
         statuses = tuple(StatusCount(name, scalar, *counts) for (name, scalar), counts in self._counts.items())
         exceeded = [(self._families[one.family], one) for one in series if one.form == SYMGEN and one.breaks]
-        limits = tuple(_sentence(family, one) + _reason(family, one) for family, one in exceeded if _known(family, one))
-        failures = (_sentence(family, one) for family, one in exceeded if not _known(family, one))
+        reasons = [self._reason(family, one) for family, one in exceeded]
+        sentences = [_sentence(family, one) for family, one in exceeded]
+        limits = tuple(f"{text}; {why}" for text, why in zip(sentences, reasons, strict=True) if why)
+        failures = (text for text, why in zip(sentences, reasons, strict=True) if not why)
         return Sweep(series, statuses, (*failures, *self._failures), limits)
+
+    def _reason(self, family: Family, one: Series) -> str:
+        """Why errors beyond the tolerance are to be expected, or nothing."""
+        if family.kind == "mass ratios" and one.quantity in ("forward_dynamics", "multipliers"):
+            return "loses with the condition of G"
+        if all(e.normwise for e in one.errors if not e.units <= FACTOR):
+            return "within eps times the condition of B and FᵀM"
+        if family.kind == "constraint" and self._reference.ranks.constraints < self._reference.system.r:
+            return "where rows depend on each other, what a result is beside V is a matter of definition"
+        return ""
 
     def _singular(self, index: int) -> bool:
         return self._families[index].kind in ("parameter", "input", "constraint")
@@ -344,18 +356,6 @@ class Sweeper:
                 self._failures.append(
                     f"{name}, {where}: status {outcome.status} at measures {_texts(counting)}, above {high:.2g}"
                 )
-
-
-def _known(family: Family, one: Series) -> bool:
-    return _by_masses(family, one) or all(e.normwise for e in one.errors if not e.units <= FACTOR)
-
-
-def _by_masses(family: Family, one: Series) -> bool:
-    return family.kind == "mass ratios" and one.quantity in ("forward_dynamics", "multipliers")
-
-
-def _reason(family: Family, one: Series) -> str:
-    return "; loses with the condition of G" if _by_masses(family, one) else "; within eps times that of B and FᵀM"
 
 
 def _sentence(family: Family, one: Series) -> str:
