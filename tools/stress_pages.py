@@ -13,6 +13,7 @@ from symgen.stress.pages import page
 
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / "docs" / "stress"
+IN_FULL = "rapkm_2rrr_rr"  # the model whose forms are drawn quantity by quantity
 
 
 def main(generated: Path, names: list[str]) -> None:
@@ -23,6 +24,8 @@ def main(generated: Path, names: list[str]) -> None:
     for name in names:
         for chart in sorted((generated / name).glob("stress*.svg")):
             kind = chart.name.removeprefix("stress").removesuffix("svg").strip(".")
+            if not kind and name != IN_FULL:
+                continue  # the tables of the page say as much
             target = f"{name}.{kind or 'forms'}.svg"
             shutil.copyfile(chart, TARGET / target)
             charts.setdefault(name, []).append(target)
