@@ -15,7 +15,7 @@ from symgen.bench.callgrind import count_instructions, find_valgrind
 from symgen.bench.candidate import CCandidate, PythonCandidate, Task
 from symgen.bench.pareto import pareto_front
 from symgen.bench.peers.numpy_pinv import numpy_pinv
-from symgen.bench.peers.roster import peers
+from symgen.bench.peers.roster import in_single, peers
 from symgen.bench.python_timing import run_python
 from symgen.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
 from symgen.bench.workload import Errors, Workload, admissible_samples, errors_of, workload
@@ -133,13 +133,12 @@ def _compare(
     programs = programs_of(model, task, SCALARS)
     full_rank = reference.ranks.constraints == model.r
     left_out: tuple[tuple[str, str], ...] = () if full_rank else (("peers", "the constraints depend on each other"),)
-    candidates: list[CCandidate] = []
-    for scalar in SCALARS:
-        candidates += symgen_candidates(model, programs, scalar)
-        if full_rank:
-            found = peers(model, task, scalar, loads["float64"].states[:200])
-            candidates += found.candidates
-            left_out = found.left_out
+    candidates = [c for scalar in SCALARS for c in symgen_candidates(model, programs, scalar)]
+    if full_rank:
+        found = peers(model, task, loads["float64"].states[:200])
+        left_out = found.left_out
+        candidates += found.candidates
+        candidates += [in_single(candidate) for candidate in found.candidates if "float32" in SCALARS]
     with tempfile.TemporaryDirectory(prefix="symgen-bench-") as folder:
         progress(f"compiling {task.quantity}, {len(candidates)} kernels")
         built = build(Path(folder), model, task, candidates, loads)

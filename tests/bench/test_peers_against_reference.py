@@ -41,7 +41,7 @@ def test_inverse_dynamics_of_every_peer(name: str, tmp_path: Path) -> None:
     task = Task("inverse_dynamics", "qdd", described.m)
     samples = admissible_samples(reference, STATES, (task.quantity,))
     load = workload(reference, samples, task, "float64", quiet)
-    found = peers(described, task, "float64", load.states)
+    found = peers(described, task, load.states)
     own = symgen_candidates(described, programs_of(described, task, ("float64",)), "float64")
     candidates = [*found.candidates, *own]
     built = build(tmp_path, described, task, candidates, {"float64": load})
@@ -60,7 +60,7 @@ def test_forward_dynamics_and_multipliers(name: str, quantity: str, tmp_path: Pa
     reference = Reference(described)
     task = Task(quantity, "u", described.n if quantity == "forward_dynamics" else described.r)
     load = workload(reference, admissible_samples(reference, STATES, (quantity,)), task, "float64", quiet)
-    candidates = peers(described, task, "float64", load.states).candidates
+    candidates = peers(described, task, load.states).candidates
     built = build(tmp_path, described, task, candidates, {"float64": load})
     results = results_of(built, tmp_path, candidates, task)
     assert [c.label for c in candidates] == ["CasADi native"]

@@ -10,7 +10,6 @@ from typing import Any, TypeAlias
 from symgen.bench.candidate import CCandidate, CUnit, Task
 from symgen.bench.peers.engine import Engine, Symbol
 from symgen.bench.peers.mechanics import Mechanics
-from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange, differentiate
 
@@ -21,29 +20,42 @@ SYMPY_ONLY = ("lean LDLᵀ", "part LDLᵀ")
 
 @dataclass(frozen=True, slots=True)
 class Peers:
-    """The candidates of one scalar type, and (name, reason) of what was left out."""
+    """The candidates in float64, and (name, reason) of what was left out."""
 
     candidates: tuple[CCandidate, ...]
     left_out: tuple[tuple[str, str], ...]
 
 
-def peers(model: Model, task: Task, scalar: Scalar, states: Any) -> Peers:
+def peers(model: Model, task: Task, states: Any) -> Peers:
     """Peers for full-rank B; `states` (k, 2 n + third + P) are what an expert would look at to choose coordinates."""
     s = differentiate(model)
     if task.quantity != "inverse_dynamics":
-        return Peers((_native(model, s, task, scalar),), ())
+        return Peers((_native(model, s, task),), ())
     forms, left_out = _forms(model, s, states)
     # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
-    entry = f"casadi_native_fpie_{scalar}"
-    inlined = replace(_native(model, s, task, scalar, entry), form="native -fPIE", flags=("-fPIE",))
-    found = [_native(model, s, task, scalar), inlined]
+    inlined = replace(_native(model, s, task, "native_fpie"), form="native -fPIE", flags=("-fPIE",))
+    found = [_native(model, s, task), inlined]
     for engine_type in _engines():
         for form, build in forms.items():
             if form not in SYMPY_ONLY or engine_type.tool == "SymPy":
-                found.append(_candidate(engine_type(), model, form, build, scalar))
-    found.append(_householder(model, s, scalar))
+                found.append(_candidate(engine_type(), model, form, build))
+    found.append(_householder(model, s))
     absent = [] if find_spec("wrenfold") else [("wrenfold", "not installed")]
     return Peers(tuple(found), (*left_out, *absent))
+
+
+def in_single(candidate: CCandidate) -> CCandidate:
+    """The same C for float32: sources differ in `REAL` and in the type that their names end in."""
+
+    def single(text: str) -> str:
+        return text.replace("_float64", "_float32")
+
+    units = tuple(
+        replace(unit, source=single(unit.source), renamed={single(a): single(b) for a, b in unit.renamed.items()})
+        for unit in candidate.units
+    )
+    functions = tuple(map(single, candidate.functions))
+    return replace(candidate, scalar="float32", entry=single(candidate.entry), units=units, functions=functions)
 
 
 def _forms(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
@@ -79,22 +91,22 @@ def _engines() -> list[type[Engine]]:
     return found
 
 
-def _candidate(engine: Engine, model: Model, form: str, build: Build, scalar: Scalar) -> CCandidate:
+def _candidate(engine: Engine, model: Model, form: str, build: Build) -> CCandidate:
     from symgen.bench.peers.casadi_engine import adaptor
     from symgen.bench.peers.mechanics import mechanics
 
-    entry = f"{engine.tool.lower()}_{form}_{scalar}".replace(" LDLᵀ", "_ldl")
-    name = f"{entry}_function"
+    entry = f"{engine.tool.lower()}_{form}_float64".replace(" LDLᵀ", "_ldl")
+    name = f"function_of_{entry}"
     system = mechanics(engine, model)
     source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
     if needs_adaptor:
         units: tuple[CUnit, ...] = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
     else:
         units = (CUnit(source, renamed={name: entry}),)
-    return CCandidate(engine.tool, form, scalar, entry, units, functions)
+    return CCandidate(engine.tool, form, "float64", entry, units, functions)
 
 
-def _native(model: Model, s: Lagrange, task: Task, scalar: Scalar, entry: str = "") -> CCandidate:
+def _native(model: Model, s: Lagrange, task: Task, name: str = "native") -> CCandidate:
     from symgen.bench.peers import native
     from symgen.bench.peers.casadi_engine import adaptor, generated
 
@@ -102,17 +114,17 @@ def _native(model: Model, s: Lagrange, task: Task, scalar: Scalar, entry: str = 
         value = native.inverse_dynamics(model, s)
     else:
         value = native.forward_dynamics(model, s)[task.quantity == "multipliers"]
-    entry = entry or f"casadi_native_{scalar}"
-    name = f"{entry}_function"
+    entry = f"casadi_{name}_float64"
+    name = f"casadi_{name}_function_float64"
     third = s.qdd if task.third == "qdd" else s.u
     source, functions = generated(name, [s.q, s.qd, third, s.p], value)
     units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
-    return CCandidate("CasADi", "native", scalar, entry, units, functions)
+    return CCandidate("CasADi", "native", "float64", entry, units, functions)
 
 
-def _householder(model: Model, s: Lagrange, scalar: Scalar) -> CCandidate:
+def _householder(model: Model, s: Lagrange) -> CCandidate:
     from symgen.bench.peers.householder import householder_units
 
-    entry = f"c_householder_{scalar}"
+    entry = "c_householder_float64"
     units, functions = householder_units(model, s, entry)
-    return CCandidate("C", "Householder QR", scalar, entry, units, functions)
+    return CCandidate("C", "Householder QR", "float64", entry, units, functions)
