@@ -214,6 +214,9 @@ def _check_record(shape: Record, node: MappingNode) -> Iterator[Mistake]:
             yield Mistake(f"`{key.value[:60]}` is no key of {shape.what}", QUOTING, key.span)
         else:
             remedy = did_you_mean(key.value, known, f"the keys are {', '.join(known)}")
+            if isinstance(value, ScalarNode) and not value.value.strip() and remedy.startswith("the keys"):
+                # most likely the rest of a description behind its comma
+                remedy = f"{remedy}; {QUOTING}"
             yield Mistake(f"`{key.value}` is no key of {shape.what}", remedy, key.span)
     for field in shape.fields:
         if field.required and node.get(field.key) is None:

@@ -84,6 +84,7 @@ SHAPE = {
     "input_on_a_joint": GOOD + "inputs: {T: {joint: a}}\n",
     "comma_in_flow": GOOD + "inputs: {T: {acts_on: {a: atan2(x, l)}}}\n",
     "comma_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, from the vertical"),
+    "comma_and_one_word_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, absolute"),
     "report": GOOD + "report: long\n",
     "model_name_is_a_path": GOOD.replace("carriage", "../../x"),
     "model_name_reserved": GOOD.replace("carriage", "while"),
