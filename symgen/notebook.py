@@ -103,7 +103,7 @@ class Derived:
         return (
             f"{model.name}: {model.n} coordinates ({names}), {model.r} constraints, {model.m} inputs\n"
             "  .sympy[name]   closed form of a quantity\n"
-            "  .casadi[name]  function of q, qd, qdd, u and parameters p\n"
+            "  .casadi[name]  function of those of q, qd, qdd, u that it needs, and of the parameters p\n"
             "  .parameters    default values of p"
         )
 
