@@ -117,7 +117,8 @@ def _constraint_decisions(
     if generic.r and all(entry.constant is not None for row in mechanics.constraint_jacobian for entry in row):
         decisions.append(Decision("rates of B and N_B", "the constraint Jacobian is constant"))
     if dependent:
-        why = f"the rows {', '.join(dependent)} depend on each other: rank {generic.rank} of {generic.r}; none is dropped"
+        rows = ", ".join(dependent)
+        why = f"the rows {rows} depend on each other: rank {generic.rank} of {generic.r}; none is dropped"
         decisions.append(Decision("a unique set of multipliers", why))
     return decisions
 
