@@ -26,8 +26,15 @@ inputs: {F: {unit: N, acts_on: {x: 1}}}
 """
 
 
-def test_powers_of_two_change_no_bit_of_the_inputs(tmp_path: Path) -> None:
-    found, failures = scaling(reference("slider_crank"), Kernels(model("slider_crank"), tmp_path, STRESSED), tmp_path)
+@pytest.fixture(scope="module")
+def slider_crank(tmp_path_factory: pytest.TempPathFactory) -> tuple[Kernels, Path]:
+    folder = tmp_path_factory.mktemp("kernels")
+    names = ("constraint_residual", "energy", "admissible_velocity", "projected_configuration")
+    return Kernels(model("slider_crank"), folder, (*PIECES, *STRESSED, *names)), folder
+
+
+def test_powers_of_two_change_no_bit_of_the_inputs(slider_crank: tuple[Kernels, Path], tmp_path: Path) -> None:
+    found, failures = scaling(reference("slider_crank"), slider_crank[0], tmp_path)
     assert failures == ()
     changes = {"lengths", "masses", "times", "all three", "m in mm", "rad in deg"}
     assert {one.change for one in found} == changes
@@ -48,10 +55,8 @@ def test_no_odd_number_gives_an_odd_result_with_status_0(tmp_path: Path) -> None
 
 
 @pytest.mark.toolchain
-def test_projections_keep_a_long_run_on_the_constraints(tmp_path: Path) -> None:
-    kernels = Kernels(model("slider_crank"), tmp_path, (*PIECES, *STRESSED, "constraint_residual", "energy",
-                                                        "admissible_velocity", "projected_configuration"))
-    (free, projected), _ = long_runs(reference("slider_crank"), kernels, tmp_path, 10_000)
+def test_projections_keep_a_long_run_on_the_constraints(slider_crank: tuple[Kernels, Path]) -> None:
+    (free, projected), _ = long_runs(reference("slider_crank"), *slider_crank, 10_000)
     assert free.complaint == projected.complaint == ""
     assert len(free.time) == 200
     assert max(free.tracking) < 1e-3
