@@ -123,6 +123,10 @@ def _verify(arguments: list[str]) -> int:
     parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
     _add_generation_options(parser)
     given = parser.parse_args(arguments)
+    from symgen.verify.compile import find_compiler
+
+    if find_compiler() is None:
+        raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")
     options = Options(parts=("c", "python"), states=given.states)
     return _each_model(
         given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)

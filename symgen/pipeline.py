@@ -27,6 +27,7 @@ from symgen.ir.kernel import Program, Scalar
 from symgen.ir.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
+from symgen.model.names import did_you_mean
 from symgen.results import LargestError, Options, Result, Summary, WrongUseError
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     """
     progress("reading the model")
     model = load_model(path)
-    outputs = _outputs(path, model, options)
+    outputs = _outputs(model, options)
     wanted = "report" in options.parts
     with Background(lambda receive: _report(model, receive)) if wanted else nullcontext() as reporting:
         progress("deriving")
@@ -88,7 +89,7 @@ def explain(path: Path, quantity: str | None, progress: Progress) -> str:
     from symgen.report.gather import gather
 
     if quantity is not None and quantity not in BY_NAME:
-        raise WrongUseError(f"unknown quantity {quantity!r}; symgen explain MODEL.yaml lists them")
+        raise _unknown_quantity(quantity)
     progress("reading the model")
     model = load_model(path)
     progress("deriving")
@@ -101,11 +102,16 @@ def explain(path: Path, quantity: str | None, progress: Progress) -> str:
     return overview(report) if quantity is None else quantity_text(report, quantity)
 
 
-def _outputs(path: Path, model: Model, options: Options) -> tuple[str, ...]:
+def _outputs(model: Model, options: Options) -> tuple[str, ...]:
     outputs = options.outputs or model.outputs
     if unknown := [name for name in outputs if name != "all" and name not in BY_NAME]:
-        raise WrongUseError(f"unknown quantity {unknown[0]!r}; symgen explain {path} lists those of this model")
+        raise _unknown_quantity(unknown[0])
     return outputs
+
+
+def _unknown_quantity(name: str) -> WrongUseError:
+    remedy = did_you_mean(name, [*BY_NAME], "symgen explain MODEL.yaml lists those of a model")
+    return WrongUseError(f"unknown quantity {name!r}; {remedy}")
 
 
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> _Derived:

@@ -109,6 +109,16 @@ def test_verify_writes_the_certificate_of_what_is_on_disk(
     assert asked[0] == Options(parts=("c", "python"))
 
 
+def test_verify_needs_a_compiler(
+    asked: list[Options], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert code("verify", SKATE) == 2
+    assert "install gcc or clang" in capsys.readouterr().err
+    assert not asked
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -222,3 +232,5 @@ def test_explain_one_quantity(capsys: pytest.CaptureFixture[str]) -> None:
 def test_unknown_output_is_wrong_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert code(SKATE, "--out", str(tmp_path), "--outputs", "nonsense", "--no-verify", "--quiet") == 2
     assert "unknown quantity 'nonsense'" in capsys.readouterr().err
+    assert code(SKATE, "--out", str(tmp_path), "--outputs", "mas_matrix", "--no-verify", "--quiet") == 2
+    assert "did you mean `mass_matrix`?" in capsys.readouterr().err
