@@ -165,7 +165,8 @@ def _model(result: Mapping[str, Any], charts: Sequence[str]) -> list[str]:
     for comparison in result["comparisons"]:
         rows = [_cells(row) for row in sorted(comparison["measured"], key=_place)]
         head = ["", "", "ns", "instructions", "operations", "code", "stack", "median", "99 %", "largest", "units"]
-        parts.append(f"{comparison['quantity']}, {comparison['states']} states\n\n{_table(head, rows)}")
+        title = f"{comparison['quantity']}, {comparison['states']} states"
+        parts.append(f"<details><summary>{title}</summary>\n\n{_table(head, rows)}\n</details>\n")
         parts += [f"Not measured: {name} ({why}).\n" for name, why in comparison["left_out"].items()]
     return parts
 

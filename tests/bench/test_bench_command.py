@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 from shipped import ROOT
 
-from symgen.bench import build, callgrind, charts, run
+from symgen.bench import build, callgrind, charts, command, run
 from symgen.bench.candidate import CCandidate, CUnit
+from symgen.bench.peers import roster
+from symgen.bench.peers.casadi_engine import CasadiEngine
 from symgen.cli import main
 
 SKATE = str(ROOT / "models" / "skate.yaml")
@@ -31,6 +33,7 @@ def test_files_and_table(
     monkeypatch.setattr(run, "QUANTITIES", ("inverse_dynamics",))
     monkeypatch.setattr(run, "SCALARS", ("float64",))
     monkeypatch.setattr(charts, "SCALARS", ("float64",))
+    monkeypatch.setattr(roster, "_engines", lambda: [CasadiEngine])
     assert main(["bench", SKATE, "--states", "8", "--out", str(tmp_path)]) == 0
     told = capsys.readouterr()
     assert "CasADi native" in told.out
@@ -68,6 +71,7 @@ def test_without_valgrind_instructions_are_left_out(
     monkeypatch.setattr(run, "PASSES", 3)
     monkeypatch.setattr(run, "QUANTITIES", ("multipliers",))
     monkeypatch.setattr(build, "FLAGS", ("-O0", *build.FLAGS[1:]))
+    monkeypatch.setattr(command, "time_against_error", lambda _: "")
     assert main(["bench", SKATE, "--states", "8", "--quiet", "--out", str(tmp_path)]) == 0
     assert "no valgrind" in capsys.readouterr().err
     data = json.loads((tmp_path / "skate" / "bench.json").read_text(encoding="utf-8"))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from shipped import NAMES, model
+from shipped import NAMES, ROOT, model
 
 from symgen.bench import build as build_module
 from symgen.bench.build import build, results_of
@@ -16,11 +16,13 @@ from symgen.bench.peers.roster import peers
 from symgen.bench.python_timing import run_python
 from symgen.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
 from symgen.bench.workload import admissible_samples, errors_of, workload
+from symgen.model.load import load_model
+from symgen.model.model import Model
 from symgen.verify.reference import Reference
 
 pytestmark = pytest.mark.toolchain
 STATES = 12
-DRIVEN = tuple(name for name in NAMES if model(name).inputs)
+DRIVEN = tuple(name for name in NAMES if model(name).inputs and name != "front_car_wheelset")
 ACCURATE = 1e-9  # far above what a fixed choice of coordinates loses at these states, far below a wrong formula
 
 
@@ -34,16 +36,25 @@ def quiet(_: str) -> None:
     pass
 
 
-@pytest.mark.parametrize("name", DRIVEN)
+def under_actuated(folder: Path) -> Model:
+    """The double pendulum without its second drive."""
+    text = (ROOT / "models" / "double_pendulum.yaml").read_text(encoding="utf-8")
+    path = folder / "model.yaml"
+    path.write_text("\n".join(line for line in text.splitlines() if not line.startswith("  elbow:")), encoding="utf-8")
+    return load_model(path)
+
+
+@pytest.mark.parametrize("name", [*DRIVEN, "under-actuated"])
 def test_inverse_dynamics_of_every_peer(name: str, tmp_path: Path) -> None:
-    described = model(name)
+    described = under_actuated(tmp_path) if name == "under-actuated" else model(name)
     reference = Reference(described)
     task = Task("inverse_dynamics", "qdd", described.m)
     samples = admissible_samples(reference, STATES, (task.quantity,))
     load = workload(reference, samples, task, "float64", quiet)
     found = peers(described, task, load.states)
-    own = symgen_candidates(described, programs_of(described, task, ("float64",)), "float64")
-    candidates = [*found.candidates, *own]
+    candidates = list(found.candidates)
+    if described.n <= 4:  # the other models' kernels are verified elsewhere, but not with the library's sine
+        candidates += symgen_candidates(described, programs_of(described, task, ("float64",)), "float64")
     built = build(tmp_path, described, task, candidates, {"float64": load})
     results = results_of(built, tmp_path, candidates, task)
     errors = {c.label: errors_of(load, results[c.entry]).largest for c in candidates}

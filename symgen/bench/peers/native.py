@@ -22,7 +22,8 @@ def inverse_dynamics(model: Model, s: Lagrange) -> Any:
     B = s.jacobian
     N = casadi.SX.eye(n) - (B.T @ casadi.inv(B @ B.T) @ B if r else 0)
     projected = N @ s.control
-    first, rest = projected[:, :delta], projected[:, delta:]
+    split = min(m, delta)
+    first, rest = projected[:, :split], projected[:, split:]
     inverse = casadi.inv(first.T @ first) @ first.T
     if m > delta:
         R = inverse @ rest
