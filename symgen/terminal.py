@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import codecs
+import os
+import shutil
 import sys
 import unicodedata
 from collections.abc import Sequence
@@ -13,6 +15,7 @@ from symgen.results import Summary
 
 _ERROR_NOTE = "  * in units of what rounding the inputs and the result does to it"
 _CLEAR_LINE = "\r\x1b[K"
+USUAL_WIDTH = 80
 SPELLED = "symgen-spelled"
 _SPELLINGS = {"─": "-", "−": "-", "·": "*", "×": "x", "√": "sqrt", "≠": "!=", "≤": "<=", "≥": ">=", "→": "->"}
 _SPELLINGS |= {"\u0303": "~", "\u0307": "_dot", "\u0308": "_ddot"}  # accents that stand behind their letter
@@ -36,7 +39,8 @@ class Progress:
         if self._quiet:
             return
         if self._live:
-            print(f"{_CLEAR_LINE}{self._label}: {message} ...", end="", file=self._stream, flush=True)
+            room = _width(self._stream) - 1  # a line that wraps could not be cleared
+            print(_CLEAR_LINE + f"{self._label}: {message} ..."[:room], end="", file=self._stream, flush=True)
             return
         stage = message.partition(",")[0]
         if stage != self._stage:
@@ -47,6 +51,14 @@ class Progress:
         """Removes the changing line."""
         if not self._quiet and self._live:
             print(_CLEAR_LINE, end="", file=self._stream, flush=True)
+
+
+def _width(terminal: TextIO) -> int:
+    """Columns of the terminal itself: standard output may lead elsewhere."""
+    try:
+        return os.get_terminal_size(terminal.fileno()).columns or USUAL_WIDTH
+    except OSError:
+        return shutil.get_terminal_size((USUAL_WIDTH, 24)).columns
 
 
 def summary_table(name: str, summary: Summary) -> str:

@@ -34,6 +34,13 @@ def test_a_terminal_shows_every_step_in_one_line() -> None:
     assert terminal.getvalue().endswith("\r\x1b[K")
 
 
+def test_a_narrow_terminal_does_not_wrap(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "20")
+    terminal = Terminal()
+    Progress("car", quiet=False, stream=terminal)("reference, state 1 of 64")
+    assert terminal.getvalue() == "\r\x1b[Kcar: reference, sta"
+
+
 @pytest.mark.parametrize(
     ("text", "ascii_text"),
     [
