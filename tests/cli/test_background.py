@@ -16,8 +16,10 @@ from symgen.diagnostics import SymgenBug
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="processes are forked on Linux only")
 
 PARENT = """
-import os, sys, time
+import os, signal, time
 from symgen.background import Background
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run behind a shell's `&`
 
 def work(receive):
     print(os.getpid(), flush=True)
