@@ -166,7 +166,8 @@ def main() -> int:
             stale.append("README.md")
         if (ROOT / "docs/quantities.md").read_text(encoding="utf-8") != quantities():
             stale.append("docs/quantities.md")
-        print(*(f"{name} is stale: run python tools/fill_readme.py" for name in stale), sep="\n", end="\n" if stale else "")
+        for name in stale:
+            print(f"{name} is stale: run python tools/fill_readme.py")
         return 1 if stale else 0
     readme.write_text(filled(text, DETERMINISTIC | MEASURED), encoding="utf-8")
     (ROOT / "docs/quantities.md").write_text(quantities(), encoding="utf-8")

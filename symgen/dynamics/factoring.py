@@ -32,7 +32,7 @@ class Factoring:
         """The sums that are factors of two components or more: what a vector is a multiple of."""
         seen: dict[Scalar, int] = {}
         for component in components:
-            _, powers = self._graph.monomial(component)
+            _, powers = self._graph.products.monomial(component)
             for factor, power in powers.items():
                 if power > 0 and factor.op in ("add", "sub") and not self.fixed(factor):
                     seen[factor] = seen.get(factor, 0) + 1

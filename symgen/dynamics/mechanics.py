@@ -201,12 +201,6 @@ class Mechanics:
         """The columns of M."""
         return tuple(tuple(row[k] for row in self.control_matrix) for k in range(self.m))
 
-    def control_matrix_dot(self, velocity: Vector) -> Matrix:
-        """M_dot along a velocity."""
-        flat = [entry for row in self.control_matrix for entry in row]
-        rates = iter(derivative_along(self.graph, flat, dict(zip(self.q, velocity, strict=True))))
-        return tuple(tuple(next(rates) for _ in range(self.m)) for _ in range(self.n))
-
     @cached_property
     def applied_balance(self) -> Vector:
         """f = M u - C q_dot - Q + Q_a, the right-hand side of G q_ddot + B^T lambda = f."""

@@ -109,7 +109,7 @@ def _constraint_decisions(
     if free:
         decisions.append(Decision(f"constraint terms of {', '.join(free)}", "no constraint touches these coordinates"))
     if len(blocks) > 1:
-        sizes = "; ".join(f"{', '.join(rows)} on {', '.join(columns)}" for rows, columns in blocks)
+        sizes = "; ".join(f"{', '.join(rows)} on {', '.join(columns) or 'no coordinate'}" for rows, columns in blocks)
         why = f"the rows fall into {len(blocks)} blocks: {sizes}"
         decisions.append(Decision("coupling between constraint blocks", why))
     if generic.r and not mechanics.constraint_residual:

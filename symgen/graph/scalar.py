@@ -14,13 +14,9 @@ from math import isqrt
 from typing import TypeAlias
 
 from symgen.graph.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
+from symgen.graph.products import Products
 
 Number: TypeAlias = "Scalar | int | Fraction"
-
-Monomial: TypeAlias = "tuple[Fraction, dict[Scalar, int]]"
-
-# Products of more factors than this are not taken apart.
-MOST_FACTORS = 12
 
 # pi to 70 digits: literals are rounded once, from this value, to the scalar type of a program.
 PI = Fraction(31415926535897932384626433832795028841971693993751058209749445923078164, 10**70)
@@ -83,7 +79,7 @@ class Graph:
 
     def __init__(self) -> None:
         self._nodes: dict[tuple[object, ...], Scalar] = {}
-        self._monomials: dict[Scalar, Monomial] = {}
+        self.products = Products(self)
         self._by_value: dict[int, Scalar] = {}
         self._angles: dict[int, tuple[int, int]] = {}
         self.zero = self.const(0)
@@ -190,7 +186,7 @@ class Graph:
         for x, y in ((a, b), (b, a)):
             if x.op == "sub" and x.args[1] is y:
                 return x.args[0]
-        if (combined := self._combine(a, b, 1)) is not None:
+        if (combined := self.products.combined(a, b, 1)) is not None:
             return combined
         if a.serial > b.serial:
             a, b = b, a
@@ -218,7 +214,7 @@ class Graph:
             return self.neg(b.args[1] if b.args[0] is a else b.args[0])
         if b.op == "sub" and b.args[0] is a:
             return b.args[1]
-        if (combined := self._combine(a, b, -1)) is not None:
+        if (combined := self.products.combined(a, b, -1)) is not None:
             return combined
         return self._node("sub", (a, b))
 
@@ -310,8 +306,11 @@ class Graph:
                 return first
             if (value := first.constant) is not None:
                 return self.const(abs(value))
-        if name == "ratio_or_zero" and first.is_zero:
-            return first
+        if name == "ratio_or_zero":
+            if first.is_zero or args[1].is_zero:
+                return self.zero
+            if args[1].constant is not None:
+                return self.div(first, args[1])
         return self._node(name, args)
 
     def trig(self, name: str, argument: Scalar) -> Scalar:
@@ -349,78 +348,3 @@ class Graph:
             elif not node.is_zero:
                 form[node] = form.get(node, 0) + count
         return {leaf: count for leaf, count in form.items() if count}
-
-    def monomial(self, a: Scalar) -> Monomial:
-        """`a` as coefficient times powers of factors, whatever the order in which they were multiplied."""
-        known = self._monomials.get(a)
-        if known is not None:
-            return known
-        if (value := a.constant) is not None:
-            result: Monomial = (value, {})
-        elif a.op == "neg":
-            coefficient, powers = self.monomial(a.args[0])
-            result = (-coefficient, powers)
-        elif a.op in ("mul", "div"):
-            sign = 1 if a.op == "mul" else -1
-            (k1, left), (k2, right) = self.monomial(a.args[0]), self.monomial(a.args[1])
-            if len(left) + len(right) > MOST_FACTORS or (sign < 0 and k2 == 0):
-                result = (Fraction(1), {a: 1})
-            else:
-                powers = dict(left)
-                for factor, count in right.items():
-                    powers[factor] = powers.get(factor, 0) + sign * count
-                result = (k1 * k2 if sign > 0 else k1 / k2, {f: c for f, c in powers.items() if c})
-        else:
-            result = (Fraction(1), {a: 1})
-        self._monomials[a] = result
-        return result
-
-    def _combine(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
-        """a + sign * b where the two are products that differ in constants or in a pair of sines and cosines only."""
-        (k1, left), (k2, right) = self.monomial(a), self.monomial(b)
-        if left == right:
-            return self.mul(self.const((k1 + sign * k2) / k1), a)
-        if abs(k1) != abs(k2):
-            return None
-        lost = [f for f, c in left.items() for _ in range(c - right.get(f, 0))]
-        gained = [f for f, c in right.items() for _ in range(c - left.get(f, 0))]
-        if len(lost) != 2 or len(gained) != 2 or not all(f.op in ("sin", "cos") for f in (*lost, *gained)):
-            return None
-        angle = self._addition_theorem(lost, gained, sign if k1 == k2 else -sign)
-        if angle is None:
-            return None
-        rest = {f: c - lost.count(f) for f, c in left.items() if c != lost.count(f)}
-        return self.mul(self.const(k1), self.mul(self._product(rest), angle))
-
-    def _product(self, powers: dict[Scalar, int]) -> Scalar:
-        factors = sorted(powers.items(), key=lambda entry: entry[0].serial)
-        above = [factor for factor, count in factors for _ in range(count)]
-        below = [factor for factor, count in factors for _ in range(-count)]
-        product = self.one
-        for factor in above:
-            product = self.mul(product, factor)
-        for factor in below:
-            product = self.div(product, factor)
-        return product
-
-    def _addition_theorem(self, lost: list[Scalar], gained: list[Scalar], sign: int) -> Scalar | None:
-        """t1 t2 + sign * t3 t4 with t sines and cosines of the same two angles, as one sine or cosine."""
-        p, q = sorted(lost, key=lambda f: f.args[0].serial)
-        v, w = sorted(gained, key=lambda f: f.args[0].serial)
-        x, y = p.args[0], q.args[0]
-        if (v.args[0], w.args[0]) != (x, y):
-            return None
-        if x is y:
-            # c c + s s; differences are cosines of 2x, an angle of their own
-            return self.one if sign > 0 and p.op == q.op and v.op == w.op else None
-        match (p.op, q.op, v.op, w.op):
-            case ("cos", "cos", "sin", "sin"):
-                return self.trig("cos", self.sub(x, y) if sign > 0 else self.add(x, y))
-            case ("sin", "sin", "cos", "cos"):
-                return self.trig("cos", self.sub(x, y)) if sign > 0 else self.neg(self.trig("cos", self.add(x, y)))
-            case ("sin", "cos", "cos", "sin"):
-                return self.trig("sin", self.add(x, y) if sign > 0 else self.sub(x, y))
-            case ("cos", "sin", "sin", "cos"):
-                return self.trig("sin", self.add(x, y) if sign > 0 else self.sub(y, x))
-            case _:
-                return None

@@ -1,0 +1,95 @@
+"""Products compared by their factors: what cancels, what collects, and the addition theorem."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from symgen.graph.scalar import Graph, Scalar
+
+Monomial: TypeAlias = "tuple[Fraction, dict[Scalar, int]]"
+
+# Products of more factors than this are not taken apart.
+MOST_FACTORS = 12
+
+
+class Products:
+    """The products of one graph, taken apart once each."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._known: dict[Scalar, Monomial] = {}
+
+    def monomial(self, a: Scalar) -> Monomial:
+        """`a` as coefficient times powers of factors, whatever the order in which they were multiplied."""
+        known = self._known.get(a)
+        if known is not None:
+            return known
+        if (value := a.constant) is not None:
+            result: Monomial = (value, {})
+        elif a.op == "neg":
+            coefficient, powers = self.monomial(a.args[0])
+            result = (-coefficient, powers)
+        elif a.op in ("mul", "div"):
+            sign = 1 if a.op == "mul" else -1
+            (k1, left), (k2, right) = self.monomial(a.args[0]), self.monomial(a.args[1])
+            if len(left) + len(right) > MOST_FACTORS or (sign < 0 and k2 == 0):
+                result = (Fraction(1), {a: 1})
+            else:
+                powers = dict(left)
+                for factor, count in right.items():
+                    powers[factor] = powers.get(factor, 0) + sign * count
+                result = (k1 * k2 if sign > 0 else k1 / k2, {f: c for f, c in powers.items() if c})
+        else:
+            result = (Fraction(1), {a: 1})
+        self._known[a] = result
+        return result
+
+    def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
+        """a + sign * b where the two are products that differ in constants or in a pair of sines and cosines only."""
+        (k1, left), (k2, right) = self.monomial(a), self.monomial(b)
+        if left == right:
+            return a * ((k1 + sign * k2) / k1)
+        if abs(k1) != abs(k2):
+            return None
+        lost = [f for f, c in left.items() for _ in range(c - right.get(f, 0))]
+        gained = [f for f, c in right.items() for _ in range(c - left.get(f, 0))]
+        if len(lost) != 2 or len(gained) != 2 or not all(f.op in ("sin", "cos") for f in (*lost, *gained)):
+            return None
+        angle = self._addition_theorem(lost, gained, sign if k1 == k2 else -sign)
+        if angle is None:
+            return None
+        rest = {f: c - lost.count(f) for f, c in left.items() if c != lost.count(f)}
+        return k1 * (self._product(rest) * angle)
+
+    def _product(self, powers: dict[Scalar, int]) -> Scalar:
+        factors = sorted(powers.items(), key=lambda entry: entry[0].serial)
+        product = self._graph.product(factor for factor, count in factors for _ in range(count))
+        for factor, count in factors:
+            for _ in range(-count):
+                product = product / factor
+        return product
+
+    def _addition_theorem(self, lost: list[Scalar], gained: list[Scalar], sign: int) -> Scalar | None:
+        """t1 t2 + sign * t3 t4 with t sines and cosines of the same two angles, as one sine or cosine."""
+        graph = self._graph
+        p, q = sorted(lost, key=lambda f: f.args[0].serial)
+        v, w = sorted(gained, key=lambda f: f.args[0].serial)
+        x, y = p.args[0], q.args[0]
+        if (v.args[0], w.args[0]) != (x, y):
+            return None
+        if x is y:
+            # c c + s s; differences are cosines of 2x, an angle of their own
+            return graph.one if sign > 0 and p.op == q.op and v.op == w.op else None
+        match (p.op, q.op, v.op, w.op):
+            case ("cos", "cos", "sin", "sin"):
+                return graph.trig("cos", x - y if sign > 0 else x + y)
+            case ("sin", "sin", "cos", "cos"):
+                return graph.trig("cos", x - y) if sign > 0 else -graph.trig("cos", x + y)
+            case ("sin", "cos", "cos", "sin"):
+                return graph.trig("sin", x + y if sign > 0 else x - y)
+            case ("cos", "sin", "sin", "cos"):
+                return graph.trig("sin", x + y if sign > 0 else y - x)
+            case _:
+                return None
