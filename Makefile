@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PAPER := skate front_car front_car_wheelset rear_car rapkm_2rrr_rr rapkm_two_drives
 
-.PHONY: run test generated bench stress lock
+.PHONY: run test generated bench stress docs lock
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -28,6 +28,10 @@ bench: $(VENV)/installed
 stress: $(VENV)/installed
 	$(BIN)/symgen stress models/*.yaml --quiet; status=$$?; \
 	    $(BIN)/python tools/stress_pages.py generated models/*.yaml && exit $$status
+
+# The marked blocks of README.md and the generated pages of docs/, with times measured on this machine.
+docs: $(VENV)/installed
+	$(BIN)/python tools/fill_readme.py
 
 # One lock for every platform and Python from 3.11 on; editables is what the build backend needs for `pip install -e`.
 lock: $(VENV)/installed

@@ -43,7 +43,7 @@
  * actuator_bias                         9     23      0      0      2      0
  * forward_dynamics                     27     55      3      0      2      0
  * energy                                9     27      0      0      2      0
- * singularity                           0      0      1      0      0      0
+ * singularity                           0      0      0      0      0      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

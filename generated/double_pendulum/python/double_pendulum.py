@@ -41,7 +41,7 @@ actuator_mass_matrix                  6     16      0      0      1      0
 actuator_bias                         9     23      0      0      2      0
 forward_dynamics                     27     55      3      0      2      0
 energy                                9     27      0      0      2      0
-singularity                           0      0      1      0      0      0
+singularity                           0      0      0      0      0      0
 (changes of sign are not counted)
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -134,10 +134,6 @@ def _result(quantity, status, batch, shape, entries):
     return result.reshape(batch + shape)
 
 
-def _ratio_or_zero(numerator, denominator):
-    return np.where(denominator != 0.0, np.divide(numerator, denominator), 0.0)
-
-
 def _sincos(x):
     """Sine and cosine, the same bits on every IEEE platform."""
     turns = x * 0.6366197723675814
@@ -177,19 +173,13 @@ def _sincos(x):
     ci = zc - 0.5
     cz = z * ci
     cos_r = 1.0 + cz
-    quarter = k * 0.25
-    pushed = quarter + 6755399441055744.0
-    whole = pushed - 6755399441055744.0
-    four = whole * 4.0
+    pushed = k + 2.7021597764222976e+16
+    four = pushed - 2.7021597764222976e+16
     m = k - four
-    m2 = m * m
-    fade = 4.0 - m2
-    odd = m * fade
-    turn = odd * 0.3333333333333333
-    bend = 7.0 - m2
-    even = m2 * bend
-    sixth = even * 0.16666666666666666
-    keep = 1.0 - sixth
+    size = np.abs(m)
+    keep = 1.0 - size
+    fade = 2.0 - size
+    turn = m * fade
     ss = keep * sin_r
     sc = turn * cos_r
     sine = ss + sc
@@ -216,34 +206,34 @@ def mass_matrix(q, p=PARAMETERS):
         J_2 = np.float64(p.J_2)
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
-        t2 = c_1 * c_1
-        t3 = m_1 * t2
-        t4 = J_1 + t3
-        t5 = 0.5 * t4
-        t6 = l_1 * l_1
-        t7 = m_2 * t6
-        t8 = 0.5 * t7
-        t9 = t5 + t8
-        t10 = 2.0 * t9
-        t11 = 0.5 * J_2
-        t12 = c_2 * c_2
-        t13 = m_2 * t12
-        t14 = 0.5 * t13
-        t15 = t11 + t14
-        t16 = 2.0 * t15
-        t17 = l_1 * c_2
-        t18, t19 = _sincos(q_2)
-        t20 = t17 * t19
+        t2, t3 = _sincos(q_2)
+        t4 = c_1 * c_1
+        t5 = m_1 * t4
+        t6 = J_1 + t5
+        t7 = 0.5 * t6
+        t8 = l_1 * l_1
+        t9 = m_2 * t8
+        t10 = 0.5 * t9
+        t11 = t7 + t10
+        t12 = 2.0 * t11
+        t13 = 0.5 * J_2
+        t14 = c_2 * c_2
+        t15 = m_2 * t14
+        t16 = 0.5 * t15
+        t17 = t13 + t16
+        t18 = 2.0 * t17
+        t19 = l_1 * c_2
+        t20 = t19 * t3
         t21 = m_2 * t20
         t22 = 2.0 * t21
-        t23 = t16 + t22
-        t24 = t10 + t23
-        t25 = t21 + t16
+        t23 = t18 + t22
+        t24 = t12 + t23
+        t25 = t21 + t18
         entries = (
             t24,
             t25,
             t25,
-            t16,
+            t18,
         )
         return _result("mass_matrix", status, batch, (2, 2), entries)
 
@@ -264,15 +254,15 @@ def coriolis_matrix(q, qd, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
-        t2 = l_1 * c_2
-        t3, t4 = _sincos(q_2)
-        t5 = t2 * t3
+        t2, t3 = _sincos(q_2)
+        t4 = l_1 * c_2
+        t5 = t4 * t2
         t6 = m_2 * t5
         t7 = q_2_dot * t6
         t8 = -t7
-        t9 = m_2 * t2
+        t9 = m_2 * t4
         turn_2 = q_1_dot + q_2_dot
-        t10 = turn_2 * t3
+        t10 = turn_2 * t2
         t11 = t9 * t10
         t12 = -t11
         t13 = q_1_dot * t6
@@ -301,17 +291,17 @@ def coriolis_force(q, qd, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
-        t2 = l_1 * c_2
-        t3 = m_2 * t2
-        t4, t5 = _sincos(q_2)
-        t6 = q_2_dot * t4
+        t2, t3 = _sincos(q_2)
+        t4 = l_1 * c_2
+        t5 = m_2 * t4
+        t6 = q_2_dot * t2
         t7 = 2.0 * q_1_dot
         t8 = q_2_dot + t7
         t9 = t6 * t8
-        t10 = t3 * t9
+        t10 = t5 * t9
         t11 = -t10
         t12 = q_1_dot * q_1_dot
-        t13 = t2 * t4
+        t13 = t4 * t2
         t14 = m_2 * t13
         t15 = t12 * t14
         entries = (
@@ -341,20 +331,20 @@ def potential_force(q, p=PARAMETERS):
         t2 = np.abs(q_1)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3 = m_2 * g
-        t4 = c_2 * t3
-        t5, t6 = _sincos(angle_2)
-        t7 = t4 * t5
-        t8 = l_1 * t3
-        t9 = c_1 * m_1
-        t10 = g * t9
-        t11 = t8 + t10
-        t12, t13 = _sincos(q_1)
-        t14 = t11 * t12
-        t15 = t7 + t14
+        t3, t4 = _sincos(angle_2)
+        t5, t6 = _sincos(q_1)
+        t7 = m_2 * g
+        t8 = c_2 * t7
+        t9 = t8 * t3
+        t10 = l_1 * t7
+        t11 = c_1 * m_1
+        t12 = g * t11
+        t13 = t10 + t12
+        t14 = t13 * t5
+        t15 = t9 + t14
         entries = (
             t15,
-            t7,
+            t9,
         )
         return _result("potential_force", status, batch, (2,), entries)
 
@@ -512,34 +502,34 @@ def projected_mass_matrix(q, p=PARAMETERS):
         J_2 = np.float64(p.J_2)
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
-        t2 = c_1 * c_1
-        t3 = m_1 * t2
-        t4 = J_1 + t3
-        t5 = 0.5 * t4
-        t6 = l_1 * l_1
-        t7 = m_2 * t6
-        t8 = 0.5 * t7
-        t9 = t5 + t8
-        t10 = 2.0 * t9
-        t11 = 0.5 * J_2
-        t12 = c_2 * c_2
-        t13 = m_2 * t12
-        t14 = 0.5 * t13
-        t15 = t11 + t14
-        t16 = 2.0 * t15
-        t17 = l_1 * c_2
-        t18, t19 = _sincos(q_2)
-        t20 = t17 * t19
+        t2, t3 = _sincos(q_2)
+        t4 = c_1 * c_1
+        t5 = m_1 * t4
+        t6 = J_1 + t5
+        t7 = 0.5 * t6
+        t8 = l_1 * l_1
+        t9 = m_2 * t8
+        t10 = 0.5 * t9
+        t11 = t7 + t10
+        t12 = 2.0 * t11
+        t13 = 0.5 * J_2
+        t14 = c_2 * c_2
+        t15 = m_2 * t14
+        t16 = 0.5 * t15
+        t17 = t13 + t16
+        t18 = 2.0 * t17
+        t19 = l_1 * c_2
+        t20 = t19 * t3
         t21 = m_2 * t20
         t22 = 2.0 * t21
-        t23 = t16 + t22
-        t24 = t10 + t23
-        t25 = t21 + t16
+        t23 = t18 + t22
+        t24 = t12 + t23
+        t25 = t21 + t18
         entries = (
             t24,
             t25,
             t25,
-            t16,
+            t18,
         )
         return _result("projected_mass_matrix", status, batch, (2, 2), entries)
 
@@ -560,15 +550,15 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
-        t2 = l_1 * c_2
-        t3, t4 = _sincos(q_2)
-        t5 = t2 * t3
+        t2, t3 = _sincos(q_2)
+        t4 = l_1 * c_2
+        t5 = t4 * t2
         t6 = m_2 * t5
         t7 = q_2_dot * t6
         t8 = -t7
-        t9 = m_2 * t2
+        t9 = m_2 * t4
         turn_2 = q_1_dot + q_2_dot
-        t10 = turn_2 * t3
+        t10 = turn_2 * t2
         t11 = t9 * t10
         t12 = -t11
         t13 = q_1_dot * t6
@@ -601,20 +591,20 @@ def projected_potential_force(q, p=PARAMETERS):
         t2 = np.abs(q_1)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3 = m_2 * g
-        t4 = c_2 * t3
-        t5, t6 = _sincos(angle_2)
-        t7 = t4 * t5
-        t8 = l_1 * t3
-        t9 = c_1 * m_1
-        t10 = g * t9
-        t11 = t8 + t10
-        t12, t13 = _sincos(q_1)
-        t14 = t11 * t12
-        t15 = t7 + t14
+        t3, t4 = _sincos(angle_2)
+        t5, t6 = _sincos(q_1)
+        t7 = m_2 * g
+        t8 = c_2 * t7
+        t9 = t8 * t3
+        t10 = l_1 * t7
+        t11 = c_1 * m_1
+        t12 = g * t11
+        t13 = t10 + t12
+        t14 = t13 * t5
+        t15 = t9 + t14
         entries = (
             t15,
-            t7,
+            t9,
         )
         return _result("projected_potential_force", status, batch, (2,), entries)
 
@@ -659,34 +649,34 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         J_2 = np.float64(p.J_2)
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
-        t2 = c_1 * c_1
-        t3 = m_1 * t2
-        t4 = J_1 + t3
-        t5 = 0.5 * t4
-        t6 = l_1 * l_1
-        t7 = m_2 * t6
-        t8 = 0.5 * t7
-        t9 = t5 + t8
-        t10 = 2.0 * t9
-        t11 = 0.5 * J_2
-        t12 = c_2 * c_2
-        t13 = m_2 * t12
-        t14 = 0.5 * t13
-        t15 = t11 + t14
-        t16 = 2.0 * t15
-        t17 = l_1 * c_2
-        t18, t19 = _sincos(q_2)
-        t20 = t17 * t19
+        t2, t3 = _sincos(q_2)
+        t4 = c_1 * c_1
+        t5 = m_1 * t4
+        t6 = J_1 + t5
+        t7 = 0.5 * t6
+        t8 = l_1 * l_1
+        t9 = m_2 * t8
+        t10 = 0.5 * t9
+        t11 = t7 + t10
+        t12 = 2.0 * t11
+        t13 = 0.5 * J_2
+        t14 = c_2 * c_2
+        t15 = m_2 * t14
+        t16 = 0.5 * t15
+        t17 = t13 + t16
+        t18 = 2.0 * t17
+        t19 = l_1 * c_2
+        t20 = t19 * t3
         t21 = m_2 * t20
         t22 = 2.0 * t21
-        t23 = t16 + t22
-        t24 = t10 + t23
-        t25 = t21 + t16
+        t23 = t18 + t22
+        t24 = t12 + t23
+        t25 = t21 + t18
         entries = (
             t24,
             t25,
             t25,
-            t16,
+            t18,
         )
         return _result("minimal_mass_matrix", status, batch, (2, 2), entries)
 
@@ -707,15 +697,15 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
-        t2 = l_1 * c_2
-        t3, t4 = _sincos(q_2)
-        t5 = t2 * t3
+        t2, t3 = _sincos(q_2)
+        t4 = l_1 * c_2
+        t5 = t4 * t2
         t6 = m_2 * t5
         t7 = q_2_dot * t6
         t8 = -t7
-        t9 = m_2 * t2
+        t9 = m_2 * t4
         turn_2 = q_1_dot + q_2_dot
-        t10 = turn_2 * t3
+        t10 = turn_2 * t2
         t11 = t9 * t10
         t12 = -t11
         t13 = q_1_dot * t6
@@ -748,20 +738,20 @@ def minimal_potential_force(q, p=PARAMETERS):
         t2 = np.abs(q_1)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3 = m_2 * g
-        t4 = c_2 * t3
-        t5, t6 = _sincos(angle_2)
-        t7 = t4 * t5
-        t8 = l_1 * t3
-        t9 = c_1 * m_1
-        t10 = g * t9
-        t11 = t8 + t10
-        t12, t13 = _sincos(q_1)
-        t14 = t11 * t12
-        t15 = t7 + t14
+        t3, t4 = _sincos(angle_2)
+        t5, t6 = _sincos(q_1)
+        t7 = m_2 * g
+        t8 = c_2 * t7
+        t9 = t8 * t3
+        t10 = l_1 * t7
+        t11 = c_1 * m_1
+        t12 = g * t11
+        t13 = t10 + t12
+        t14 = t13 * t5
+        t15 = t9 + t14
         entries = (
             t15,
-            t7,
+            t9,
         )
         return _result("minimal_potential_force", status, batch, (2,), entries)
 
@@ -881,72 +871,72 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         g = np.float64(p.g)
         d_1 = np.float64(p.d_1)
         d_2 = np.float64(p.d_2)
-        t1 = np.abs(q_2)
-        t2 = np.abs(q_1)
+        t1 = np.abs(q_1)
+        t2 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(q_2)
-        t5 = 2.0 * q_1_ddot
-        t6 = q_2_ddot + t5
-        t7 = t4 * t6
-        t8 = q_2_dot * t3
-        t9 = 2.0 * q_1_dot
-        t10 = q_2_dot + t9
-        t11 = t8 * t10
-        t12 = t7 - t11
-        t13 = l_1 * t12
-        t14, t15 = _sincos(q_1)
-        t16 = t4 * t14
-        t17 = t3 * t15
-        t18 = t16 + t17
-        t19 = g * t18
-        t20 = t13 + t19
-        t21 = m_2 * t20
-        t22 = c_2 * t21
-        t23 = 0.5 * J_2
-        t24 = c_2 * c_2
-        t25 = m_2 * t24
-        t26 = 0.5 * t25
-        t27 = t23 + t26
-        t28 = 2.0 * t27
-        t29 = c_1 * c_1
-        t30 = m_1 * t29
-        t31 = J_1 + t30
-        t32 = 0.5 * t31
-        t33 = l_1 * l_1
-        t34 = m_2 * t33
-        t35 = 0.5 * t34
-        t36 = t32 + t35
-        t37 = 2.0 * t36
-        t38 = t28 + t37
-        t39 = q_1_ddot * t38
-        t40 = m_2 * g
-        t41 = l_1 * t40
-        t42 = c_1 * m_1
-        t43 = g * t42
-        t44 = t41 + t43
-        t45 = t44 * t14
-        t46 = q_1_dot * d_1
-        t47 = q_2_ddot * t27
-        t48 = 2.0 * t47
-        t49 = t46 + t48
-        t50 = t45 + t49
-        t51 = t39 + t50
-        t52 = t22 + t51
-        t53 = q_1_dot * q_1_dot
-        t54 = t53 * t3
-        t55 = q_1_ddot * t4
-        t56 = t54 + t55
-        t57 = l_1 * t56
-        t58 = t19 + t57
-        t59 = m_2 * t58
-        t60 = c_2 * t59
-        t61 = q_2_dot * d_2
-        t62 = 2.0 * q_2_ddot
-        t63 = t5 + t62
-        t64 = t27 * t63
-        t65 = t61 + t64
-        t66 = t60 + t65
+        t3, t4 = _sincos(q_1)
+        t5, t6 = _sincos(q_2)
+        t7 = 0.5 * J_2
+        t8 = c_2 * c_2
+        t9 = m_2 * t8
+        t10 = 0.5 * t9
+        t11 = t7 + t10
+        t12 = 2.0 * t11
+        t13 = c_1 * c_1
+        t14 = m_1 * t13
+        t15 = J_1 + t14
+        t16 = 0.5 * t15
+        t17 = l_1 * l_1
+        t18 = m_2 * t17
+        t19 = 0.5 * t18
+        t20 = t16 + t19
+        t21 = 2.0 * t20
+        t22 = t12 + t21
+        t23 = q_1_ddot * t22
+        t24 = m_2 * g
+        t25 = l_1 * t24
+        t26 = c_1 * m_1
+        t27 = g * t26
+        t28 = t25 + t27
+        t29 = t28 * t3
+        t30 = q_1_dot * d_1
+        t31 = q_2_ddot * t11
+        t32 = 2.0 * t31
+        t33 = t30 + t32
+        t34 = t29 + t33
+        t35 = t23 + t34
+        t36 = 2.0 * q_1_ddot
+        t37 = q_2_ddot + t36
+        t38 = t6 * t37
+        t39 = q_2_dot * t5
+        t40 = 2.0 * q_1_dot
+        t41 = q_2_dot + t40
+        t42 = t39 * t41
+        t43 = t38 - t42
+        t44 = l_1 * t43
+        t45 = t6 * t3
+        t46 = t5 * t4
+        t47 = t45 + t46
+        t48 = g * t47
+        t49 = t44 + t48
+        t50 = m_2 * t49
+        t51 = c_2 * t50
+        t52 = t35 + t51
+        t53 = q_2_dot * d_2
+        t54 = 2.0 * q_2_ddot
+        t55 = t36 + t54
+        t56 = t11 * t55
+        t57 = t53 + t56
+        t58 = q_1_dot * q_1_dot
+        t59 = t58 * t5
+        t60 = q_1_ddot * t6
+        t61 = t59 + t60
+        t62 = l_1 * t61
+        t63 = t62 + t48
+        t64 = m_2 * t63
+        t65 = c_2 * t64
+        t66 = t57 + t65
         entries = (
             t52,
             t66,
@@ -1004,34 +994,34 @@ def actuator_mass_matrix(q, p=PARAMETERS):
         J_2 = np.float64(p.J_2)
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
-        t2 = c_1 * c_1
-        t3 = m_1 * t2
-        t4 = J_1 + t3
-        t5 = 0.5 * t4
-        t6 = l_1 * l_1
-        t7 = m_2 * t6
-        t8 = 0.5 * t7
-        t9 = t5 + t8
-        t10 = 2.0 * t9
-        t11 = 0.5 * J_2
-        t12 = c_2 * c_2
-        t13 = m_2 * t12
-        t14 = 0.5 * t13
-        t15 = t11 + t14
-        t16 = 2.0 * t15
-        t17 = l_1 * c_2
-        t18, t19 = _sincos(q_2)
-        t20 = t17 * t19
+        t2, t3 = _sincos(q_2)
+        t4 = c_1 * c_1
+        t5 = m_1 * t4
+        t6 = J_1 + t5
+        t7 = 0.5 * t6
+        t8 = l_1 * l_1
+        t9 = m_2 * t8
+        t10 = 0.5 * t9
+        t11 = t7 + t10
+        t12 = 2.0 * t11
+        t13 = 0.5 * J_2
+        t14 = c_2 * c_2
+        t15 = m_2 * t14
+        t16 = 0.5 * t15
+        t17 = t13 + t16
+        t18 = 2.0 * t17
+        t19 = l_1 * c_2
+        t20 = t19 * t3
         t21 = m_2 * t20
         t22 = 2.0 * t21
-        t23 = t16 + t22
-        t24 = t10 + t23
-        t25 = t21 + t16
+        t23 = t18 + t22
+        t24 = t12 + t23
+        t25 = t21 + t18
         entries = (
             t24,
             t25,
             t25,
-            t16,
+            t18,
         )
         return _result("actuator_mass_matrix", status, batch, (2, 2), entries)
 
@@ -1084,12 +1074,12 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t26 = t24 + t25
         t27 = t18 + t26
         t28 = q_2_dot * d_2
-        t29 = t3 * t6
-        t30 = t14 + t29
-        t31 = g * t30
-        t32 = q_1_dot * q_1_dot
-        t33 = t32 * t3
-        t34 = l_1 * t33
+        t29 = q_1_dot * q_1_dot
+        t30 = t29 * t3
+        t31 = l_1 * t30
+        t32 = t3 * t6
+        t33 = t14 + t32
+        t34 = g * t33
         t35 = t31 + t34
         t36 = m_2 * t35
         t37 = c_2 * t36
@@ -1126,108 +1116,108 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         g = np.float64(p.g)
         d_1 = np.float64(p.d_1)
         d_2 = np.float64(p.d_2)
-        t1 = np.abs(q_2)
-        t2 = np.abs(q_1)
+        t1 = np.abs(q_1)
+        t2 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3 = l_1 * c_2
-        t4, t5 = _sincos(q_2)
-        t6 = t3 * t5
-        t7 = m_2 * t6
-        t8 = 0.5 * J_2
-        t9 = c_2 * c_2
-        t10 = m_2 * t9
-        t11 = 0.5 * t10
-        t12 = t8 + t11
-        t13 = 2.0 * t12
-        t14 = t7 + t13
-        t15 = t7 + t14
-        t16 = c_1 * c_1
-        t17 = m_1 * t16
-        t18 = J_1 + t17
-        t19 = 0.5 * t18
-        t20 = l_1 * l_1
-        t21 = m_2 * t20
-        t22 = 0.5 * t21
-        t23 = t19 + t22
-        t24 = 2.0 * t23
-        t25 = t15 + t24
-        t26 = np.abs(t25)
-        t27 = np.abs(m_2)
-        t28 = np.abs(l_1)
-        t29 = np.abs(c_2)
-        t30 = t28 * t29
-        t31 = t27 * t30
-        t32 = np.abs(J_2)
-        t33 = 0.5 * t32
-        t34 = t29 * t29
-        t35 = t27 * t34
-        t36 = 0.5 * t35
-        t37 = t33 + t36
-        t38 = 2.0 * t37
-        t39 = t31 + t38
-        t40 = t31 + t39
-        t41 = np.abs(J_1)
-        t42 = np.abs(m_1)
-        t43 = np.abs(c_1)
-        t44 = t43 * t43
-        t45 = t42 * t44
-        t46 = t41 + t45
-        t47 = 0.5 * t46
-        t48 = t28 * t28
-        t49 = t27 * t48
-        t50 = 0.5 * t49
-        t51 = t47 + t50
-        t52 = 2.0 * t51
-        t53 = t40 + t52
-        t54 = t53 * 1.7763568394002505e-15
-        t55 = t14 / t25
-        t56 = t14 * t55
-        t57 = t13 - t56
-        t58 = np.abs(t57)
-        t59 = t37 * 1.7763568394002505e-15
-        t60 = 2.0 * t59
-        t61 = q_1_dot * d_1
-        t62 = m_2 * g
-        t63 = c_2 * t62
-        t64, t65 = _sincos(q_1)
-        t66 = t5 * t64
-        t67 = t4 * t65
-        t68 = t66 + t67
-        t69 = t63 * t68
-        t70 = l_1 * t62
-        t71 = c_1 * m_1
-        t72 = g * t71
-        t73 = t70 + t72
-        t74 = t73 * t64
+        t3, t4 = _sincos(q_1)
+        t5, t6 = _sincos(q_2)
+        t7 = l_1 * c_2
+        t8 = t7 * t6
+        t9 = m_2 * t8
+        t10 = 0.5 * J_2
+        t11 = c_2 * c_2
+        t12 = m_2 * t11
+        t13 = 0.5 * t12
+        t14 = t10 + t13
+        t15 = 2.0 * t14
+        t16 = t9 + t15
+        t17 = t9 + t16
+        t18 = c_1 * c_1
+        t19 = m_1 * t18
+        t20 = J_1 + t19
+        t21 = 0.5 * t20
+        t22 = l_1 * l_1
+        t23 = m_2 * t22
+        t24 = 0.5 * t23
+        t25 = t21 + t24
+        t26 = 2.0 * t25
+        t27 = t17 + t26
+        t28 = np.abs(t27)
+        t29 = np.abs(m_2)
+        t30 = np.abs(l_1)
+        t31 = np.abs(c_2)
+        t32 = t30 * t31
+        t33 = t29 * t32
+        t34 = np.abs(J_2)
+        t35 = 0.5 * t34
+        t36 = t31 * t31
+        t37 = t29 * t36
+        t38 = 0.5 * t37
+        t39 = t35 + t38
+        t40 = 2.0 * t39
+        t41 = t33 + t40
+        t42 = t33 + t41
+        t43 = np.abs(J_1)
+        t44 = np.abs(m_1)
+        t45 = np.abs(c_1)
+        t46 = t45 * t45
+        t47 = t44 * t46
+        t48 = t43 + t47
+        t49 = 0.5 * t48
+        t50 = t30 * t30
+        t51 = t29 * t50
+        t52 = 0.5 * t51
+        t53 = t49 + t52
+        t54 = 2.0 * t53
+        t55 = t42 + t54
+        t56 = t55 * 1.7763568394002505e-15
+        t57 = t16 / t27
+        t58 = t16 * t57
+        t59 = t15 - t58
+        t60 = np.abs(t59)
+        t61 = t39 * 1.7763568394002505e-15
+        t62 = 2.0 * t61
+        t63 = q_1_dot * d_1
+        t64 = m_2 * g
+        t65 = l_1 * t64
+        t66 = c_1 * m_1
+        t67 = g * t66
+        t68 = t65 + t67
+        t69 = t68 * t3
+        t70 = c_2 * t64
+        t71 = t6 * t3
+        t72 = t5 * t4
+        t73 = t71 + t72
+        t74 = t70 * t73
         t75 = t69 + t74
         turn_2 = q_1_dot + q_2_dot
         t76 = m_2 * turn_2
-        t77 = q_2_dot * t4
-        t78 = t3 * t77
+        t77 = q_2_dot * t5
+        t78 = t7 * t77
         t79 = t76 * t78
         t80 = q_1_dot * t78
         t81 = m_2 * t80
         t82 = t79 + t81
         t83 = t75 - t82
-        t84 = t61 + t83
+        t84 = t63 + t83
         t85 = shoulder - t84
-        t86 = t85 / t25
+        t86 = t85 / t27
         t87 = q_2_dot * d_2
         t88 = q_1_dot * t76
-        t89 = t3 * t88
-        t90 = t4 * t89
+        t89 = t7 * t88
+        t90 = t5 * t89
         t91 = t90 - t81
-        t92 = t91 + t69
+        t92 = t91 + t74
         t93 = t87 + t92
         t94 = elbow - t93
-        t95 = t85 * t55
+        t95 = t57 * t85
         t96 = t94 - t95
-        t97 = t96 / t57
-        t98 = t55 * t97
+        t97 = t96 / t59
+        t98 = t57 * t97
         t99 = t86 - t98
-        status = _first(status, ~np.asarray(t26 > t54), 5)
-        status = _first(status, ~np.asarray(t58 > t60), 5)
+        status = _first(status, ~np.asarray(t28 > t56), 5)
+        status = _first(status, ~np.asarray(t60 > t62), 5)
         entries = (
             t99,
             t97,
@@ -1259,38 +1249,38 @@ def energy(q, qd, p=PARAMETERS):
         t2 = np.abs(q_1)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3 = c_1 * c_1
-        t4 = m_1 * t3
-        t5 = J_1 + t4
-        t6 = q_1_dot * q_1_dot
-        t7 = t5 * t6
-        t8 = 0.5 * t7
+        t3, t4 = _sincos(q_2)
+        t5, t6 = _sincos(q_1)
+        t7 = c_1 * c_1
+        t8 = m_1 * t7
+        t9 = J_1 + t8
+        t10 = q_1_dot * q_1_dot
+        t11 = t9 * t10
+        t12 = 0.5 * t11
         turn_2 = q_1_dot + q_2_dot
-        t9 = turn_2 * turn_2
-        t10 = J_2 * t9
-        t11 = 0.5 * t10
-        t12 = t8 + t11
-        t13 = l_1 * l_1
-        t14 = t6 * t13
-        t15 = l_1 * c_2
-        t16, t17 = _sincos(q_2)
-        t18 = t15 * t17
-        t19 = q_1_dot * t18
-        t20 = turn_2 * t19
-        t21 = 2.0 * t20
-        t22 = t14 + t21
-        t23 = c_2 * c_2
-        t24 = t9 * t23
-        t25 = t22 + t24
-        t26 = m_2 * t25
-        t27 = 0.5 * t26
-        t28 = t12 + t27
-        t29 = c_1 * m_1
-        t30, t31 = _sincos(q_1)
-        t32 = t29 * t31
-        t33 = l_1 * t31
-        t34 = t17 * t31
-        t35 = t16 * t30
+        t13 = turn_2 * turn_2
+        t14 = J_2 * t13
+        t15 = 0.5 * t14
+        t16 = t12 + t15
+        t17 = l_1 * l_1
+        t18 = t10 * t17
+        t19 = l_1 * c_2
+        t20 = t19 * t4
+        t21 = q_1_dot * t20
+        t22 = turn_2 * t21
+        t23 = 2.0 * t22
+        t24 = t18 + t23
+        t25 = c_2 * c_2
+        t26 = t13 * t25
+        t27 = t24 + t26
+        t28 = m_2 * t27
+        t29 = 0.5 * t28
+        t30 = t16 + t29
+        t31 = c_1 * m_1
+        t32 = t31 * t6
+        t33 = l_1 * t6
+        t34 = t4 * t6
+        t35 = t3 * t5
         t36 = t34 - t35
         t37 = c_2 * t36
         t38 = t33 + t37
@@ -1299,7 +1289,7 @@ def energy(q, qd, p=PARAMETERS):
         t41 = g * t40
         t42 = -t41
         entries = (
-            t28,
+            t30,
             t42,
         )
         return _result("energy", status, batch, (2,), entries)
@@ -1312,10 +1302,9 @@ def singularity(q, p=PARAMETERS):
     )
     status = np.zeros((), dtype=np.int64)
     with np.errstate(all="ignore"):
-        t1 = _ratio_or_zero(1.0, 1.0)
         entries = (
             1.0,
-            t1,
+            1.0,
         )
         return _result("singularity", status, batch, (2,), entries)
 

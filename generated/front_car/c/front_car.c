@@ -51,19 +51,13 @@ static void front_car_sincos(const double x, double *sine, double *cosine) {
     const double ci = zc - 0.5;
     const double cz = z * ci;
     const double cos_r = 1.0 + cz;
-    const double quarter = k * 0.25;
-    const double pushed = quarter + 6755399441055744.0;
-    const double whole = pushed - 6755399441055744.0;
-    const double four = whole * 4.0;
+    const double pushed = k + 2.7021597764222976e+16;
+    const double four = pushed - 2.7021597764222976e+16;
     const double m = k - four;
-    const double m2 = m * m;
-    const double fade = 4.0 - m2;
-    const double odd = m * fade;
-    const double turn = odd * 0.3333333333333333;
-    const double bend = 7.0 - m2;
-    const double even = m2 * bend;
-    const double sixth = even * 0.16666666666666666;
-    const double keep = 1.0 - sixth;
+    const double size = fabs(m);
+    const double keep = 1.0 - size;
+    const double fade = 2.0 - size;
+    const double turn = m * fade;
     const double ss = keep * sin_r;
     const double sc = turn * cos_r;
     const double sine_ = ss + sc;
@@ -86,26 +80,26 @@ front_car_params front_car_default_params(void) {
 
 front_car_status front_car_mass_matrix(const double q[4], const front_car_params *p, double G[16]) {
     const double theta = q[2];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const double t2 = m_1 + m_2;
-    double t3, t4;
-    front_car_sincos(theta, &t3, &t4);
+    double t2, t3;
+    front_car_sincos(theta, &t2, &t3);
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double t4 = m_1 + m_2;
+    const double L = p->L;
     const double t5 = L * m_2;
-    const double t6 = t3 * t5;
+    const double t6 = t2 * t5;
     const double t7 = -t6;
-    const double t8 = t4 * t5;
+    const double t8 = t3 * t5;
     const double t9 = L * L;
     const double t10 = m_2 * t9;
+    const double Theta_1 = p->Theta_1;
     const double t11 = Theta_1 + t10;
-    double rest = t2 - t2;
+    const double Theta_2 = p->Theta_2;
+    double rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
     rest += t11 - t11;
@@ -113,12 +107,12 @@ front_car_status front_car_mass_matrix(const double q[4], const front_car_params
     if (!(rest >= 0.0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G[0] = t2;
+    G[0] = t4;
     G[1] = 0.0;
     G[2] = t7;
     G[3] = 0.0;
     G[4] = 0.0;
-    G[5] = t2;
+    G[5] = t4;
     G[6] = t8;
     G[7] = 0.0;
     G[8] = t7;
@@ -134,16 +128,16 @@ front_car_status front_car_mass_matrix(const double q[4], const front_car_params
 
 front_car_status front_car_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C[16]) {
     const double theta = q[2];
-    const double theta_dot = qd[2];
-    const double L = p->L;
-    const double m_2 = p->m_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t2, t3;
     front_car_sincos(theta, &t2, &t3);
+    const double L = p->L;
+    const double m_2 = p->m_2;
     const double t4 = L * m_2;
+    const double theta_dot = qd[2];
     const double t5 = theta_dot * t4;
     const double t6 = t3 * t5;
     const double t7 = -t6;
@@ -175,22 +169,22 @@ front_car_status front_car_coriolis_matrix(const double q[4], const double qd[4]
 
 front_car_status front_car_coriolis_force(const double q[4], const double qd[4], const front_car_params *p, double C_qd[4]) {
     const double theta = q[2];
-    const double theta_dot = qd[2];
-    const double L = p->L;
-    const double m_2 = p->m_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const double t2 = L * m_2;
-    const double t3 = theta_dot * t2;
-    double t4, t5;
-    front_car_sincos(theta, &t4, &t5);
-    const double t6 = theta_dot * t5;
-    const double t7 = t3 * t6;
+    double t2, t3;
+    front_car_sincos(theta, &t2, &t3);
+    const double L = p->L;
+    const double m_2 = p->m_2;
+    const double t4 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t5 = theta_dot * t4;
+    const double t6 = theta_dot * t3;
+    const double t7 = t5 * t6;
     const double t8 = -t7;
-    const double t9 = theta_dot * t4;
-    const double t10 = t3 * t9;
+    const double t9 = theta_dot * t2;
+    const double t10 = t5 * t9;
     const double t11 = -t10;
     double rest = t8 - t8;
     rest += t11 - t11;
@@ -227,9 +221,8 @@ front_car_status front_car_applied_force(const double q[4], const double qd[4], 
 
 front_car_status front_car_constraint_jacobian(const double q[4], const front_car_params *p, double B[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -239,20 +232,21 @@ front_car_status front_car_constraint_jacobian(const double q[4], const front_ca
     }
     double t3, t4;
     front_car_sincos(theta, &t3, &t4);
-    const double t5 = -t4;
-    double t6, t7;
-    front_car_sincos(phi, &t6, &t7);
-    const double t8 = t3 * t7;
-    const double t9 = t4 * t6;
+    double t5, t6;
+    front_car_sincos(phi, &t5, &t6);
+    const double t7 = -t4;
+    const double t8 = t3 * t6;
+    const double t9 = t4 * t5;
     const double t10 = t8 + t9;
-    const double t11 = t4 * t7;
-    const double t12 = t3 * t6;
+    const double t11 = t4 * t6;
+    const double t12 = t3 * t5;
     const double t13 = t11 - t12;
     const double t14 = -t13;
-    const double t15 = L * t7;
+    const double L = p->L;
+    const double t15 = L * t6;
     const double t16 = -t15;
     double rest = t3 - t3;
-    rest += t5 - t5;
+    rest += t7 - t7;
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
@@ -260,7 +254,7 @@ front_car_status front_car_constraint_jacobian(const double q[4], const front_ca
         return FRONT_CAR_NOT_FINITE;
     }
     B[0] = t3;
-    B[1] = t5;
+    B[1] = t7;
     B[2] = 0.0;
     B[3] = 0.0;
     B[4] = t10;
@@ -272,11 +266,8 @@ front_car_status front_car_constraint_jacobian(const double q[4], const front_ca
 
 front_car_status front_car_constraint_jacobian_dot(const double q[4], const double qd[4], const front_car_params *p, double B_dot[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -286,31 +277,34 @@ front_car_status front_car_constraint_jacobian_dot(const double q[4], const doub
     }
     double t3, t4;
     front_car_sincos(theta, &t3, &t4);
-    const double t5 = theta_dot * t4;
-    const double t6 = theta_dot * t3;
-    double t7, t8;
-    front_car_sincos(phi, &t7, &t8);
-    const double t9 = t4 * t8;
-    const double t10 = t3 * t7;
-    const double t11 = t9 - t10;
-    const double t12 = theta_dot + phi_dot;
-    const double t13 = t11 * t12;
-    const double t14 = t3 * t8;
-    const double t15 = t4 * t7;
+    double t5, t6;
+    front_car_sincos(phi, &t5, &t6);
+    const double theta_dot = qd[2];
+    const double t7 = theta_dot * t4;
+    const double t8 = theta_dot * t3;
+    const double phi_dot = qd[3];
+    const double t9 = theta_dot + phi_dot;
+    const double t10 = t4 * t6;
+    const double t11 = t3 * t5;
+    const double t12 = t10 - t11;
+    const double t13 = t9 * t12;
+    const double t14 = t3 * t6;
+    const double t15 = t4 * t5;
     const double t16 = t14 + t15;
-    const double t17 = t16 * t12;
-    const double t18 = phi_dot * t7;
+    const double t17 = t9 * t16;
+    const double t18 = phi_dot * t5;
+    const double L = p->L;
     const double t19 = L * t18;
-    double rest = t5 - t5;
-    rest += t6 - t6;
+    double rest = t7 - t7;
+    rest += t8 - t8;
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    B_dot[0] = t5;
-    B_dot[1] = t6;
+    B_dot[0] = t7;
+    B_dot[1] = t8;
     B_dot[2] = 0.0;
     B_dot[3] = 0.0;
     B_dot[4] = t13;
@@ -321,10 +315,9 @@ front_car_status front_car_constraint_jacobian_dot(const double q[4], const doub
 }
 
 front_car_status front_car_constraint_pseudoinverse(const double q[4], const front_car_params *p, double B_pinv[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -334,14 +327,15 @@ front_car_status front_car_constraint_pseudoinverse(const double q[4], const fro
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -349,19 +343,19 @@ front_car_status front_car_constraint_pseudoinverse(const double q[4], const fro
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = 1.0 / t14;
     const double t19 = t8 * t9;
-    const double t20 = t7 * t4;
-    const double t21 = t6 * t3;
+    const double t20 = t6 * t4;
+    const double t21 = t5 * t3;
     const double t22 = t20 - t21;
-    const double t23 = t22 * t3;
+    const double t23 = t3 * t22;
     const double t24 = t19 - t23;
     const double t25 = t18 * t24;
-    const double t26 = t7 * t3;
+    const double t26 = t6 * t3;
     const double t27 = t18 * t26;
-    const double t28 = t6 * t4;
-    const double t29 = t28 + t26;
-    const double t30 = t29 * t3;
-    const double t31 = t8 * t12;
-    const double t32 = t30 + t31;
+    const double t28 = t8 * t12;
+    const double t29 = t5 * t4;
+    const double t30 = t29 + t26;
+    const double t31 = t3 * t30;
+    const double t32 = t28 + t31;
     const double t33 = t18 * t32;
     const double t34 = -t33;
     const double t35 = t18 * t21;
@@ -395,9 +389,8 @@ front_car_status front_car_constraint_pseudoinverse(const double q[4], const fro
 
 front_car_status front_car_nullspace_projector(const double q[4], const front_car_params *p, double N_B[16]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -406,15 +399,16 @@ front_car_status front_car_nullspace_projector(const double q[4], const front_ca
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    front_car_sincos(theta, &t3, &t4);
+    double t5, t6;
+    front_car_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -424,12 +418,12 @@ front_car_status front_car_nullspace_projector(const double q[4], const front_ca
     const double t19 = t13 * t18;
     const double t20 = t9 * t12;
     const double t21 = t18 * t20;
-    const double t22 = t3 * t12;
+    const double t22 = t5 * t12;
     const double t23 = t18 * t22;
     const double t24 = t10 * t18;
-    const double t25 = t3 * t9;
+    const double t25 = t5 * t9;
     const double t26 = t18 * t25;
-    const double t27 = t5 * t18;
+    const double t27 = t7 * t18;
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
@@ -462,12 +456,9 @@ front_car_status front_car_nullspace_projector(const double q[4], const front_ca
 }
 
 front_car_status front_car_nullspace_projector_dot(const double q[4], const double qd[4], const front_car_params *p, double N_B_dot[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -477,14 +468,15 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -493,14 +485,16 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t18 / t19;
-    const double t21 = t7 * t4;
-    const double t22 = t6 * t4;
+    const double t21 = t6 * t4;
+    const double t22 = t5 * t4;
     const double t23 = 2.0 * t15;
-    const double t24 = 2.0 * t5;
+    const double t24 = 2.0 * t7;
     const double t25 = t23 + t24;
     const double t26 = t22 * t25;
+    const double theta_dot = qd[2];
     const double t27 = theta_dot * t26;
-    const double t28 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t28 = phi_dot * t6;
     const double t29 = t3 * t28;
     const double t30 = 2.0 * t29;
     const double t31 = t27 + t30;
@@ -512,14 +506,14 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
     const double t37 = t4 * t36;
     const double t38 = t4 * t37;
     const double t39 = 2.0 + t38;
-    const double t40 = t7 * t39;
-    const double t41 = t7 * t40;
-    const double t42 = t5 + t15;
+    const double t40 = t6 * t39;
+    const double t41 = t6 * t40;
+    const double t42 = t7 + t15;
     const double t43 = t41 - t42;
     const double t44 = t4 * t43;
     const double t45 = theta_dot * t44;
-    const double t46 = phi_dot * t6;
-    const double t47 = t7 * t46;
+    const double t46 = phi_dot * t5;
+    const double t47 = t6 * t46;
     const double t48 = t3 * t47;
     const double t49 = 2.0 * t48;
     const double t50 = t45 - t49;
@@ -527,7 +521,7 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
     const double t52 = t20 * t51;
     const double t53 = t4 * t28;
     const double t54 = t18 * t53;
-    const double t55 = t6 * t3;
+    const double t55 = t5 * t3;
     const double t56 = t55 * t42;
     const double t57 = theta_dot * t56;
     const double t58 = t54 - t57;
@@ -543,7 +537,7 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
     const double t68 = t65 - t67;
     const double t69 = t22 * t68;
     const double t70 = t20 * t69;
-    const double t71 = t7 * t3;
+    const double t71 = t6 * t3;
     const double t72 = t71 * t42;
     const double t73 = theta_dot * t72;
     const double t74 = t4 * t46;
@@ -589,14 +583,9 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
 }
 
 front_car_status front_car_weighted_pseudoinverse(const double q[4], const front_car_params *p, double B_G_pinv[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -606,27 +595,30 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
+    const double t21 = t6 * t20;
     const double t22 = t3 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
+    const double t25 = t5 * t20;
     const double t26 = t3 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
@@ -634,10 +626,12 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
     const double t34 = t3 * t33;
     const double t35 = t3 * t34;
     const double t36 = t30 + t35;
+    const double Theta_2 = p->Theta_2;
     const double t37 = Theta_2 * t36;
     const double t38 = fabs(t37);
     const double t39 = fabs(Theta_1);
@@ -648,7 +642,7 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t44 = t39 + t43;
     const double t45 = fabs(Theta_2);
     const double t46 = t44 * t45;
-    const double t47 = t5 * t46;
+    const double t47 = t7 * t46;
     const double t48 = fabs(m_1);
     const double t49 = t48 + t40;
     const double t50 = t49 * t45;
@@ -657,16 +651,16 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t53 = t13 * t50;
     const double t54 = t52 + t53;
     const double t55 = t54 * 3.552713678800501e-15;
-    const double t56 = t7 * t3;
+    const double t56 = t6 * t3;
     const double t57 = t18 + t32;
     const double t58 = t57 - t33;
     const double t59 = t4 * t58;
     const double t60 = t4 * t59;
-    const double t61 = m_2 * t5;
+    const double t61 = m_2 * t7;
     const double t62 = t60 + t61;
     const double t63 = t56 * t62;
     const double t64 = Theta_2 * t63;
-    const double t65 = t6 * t4;
+    const double t65 = t5 * t4;
     const double t66 = t65 * t37;
     const double t67 = t64 + t66;
     const double t68 = L * t67;
@@ -674,7 +668,7 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t70 = t56 * t37;
     const double t71 = t69 - t70;
     const double t72 = t4 * t71;
-    const double t73 = t6 * t3;
+    const double t73 = t5 * t3;
     const double t74 = t3 * t73;
     const double t75 = t37 * t74;
     const double t76 = t72 + t75;
@@ -692,7 +686,7 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t88 = t78 * t87;
     const double t89 = t73 * t62;
     const double t90 = Theta_2 * t89;
-    const double t91 = t7 * t4;
+    const double t91 = t6 * t4;
     const double t92 = t91 * t37;
     const double t93 = t90 - t92;
     const double t94 = L * t93;
@@ -706,12 +700,12 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t102 = t78 * t101;
     const double t103 = t73 * t86;
     const double t104 = t78 * t103;
-    const double t105 = t5 * t31;
+    const double t105 = t7 * t31;
     const double t106 = (-2.0) + t105;
     const double t107 = t81 + t106;
     const double t108 = m_2 * t107;
     const double t109 = t18 - t33;
-    const double t110 = t5 * t109;
+    const double t110 = t7 * t109;
     const double t111 = t108 + t110;
     const double t112 = t4 * t111;
     const double t113 = t4 * t112;
@@ -721,7 +715,7 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t117 = t115 + t116;
     const double t118 = L / t77;
     const double t119 = t117 * t118;
-    const double t120 = t5 * t82;
+    const double t120 = t7 * t82;
     const double t121 = Theta_2 * t120;
     const double t122 = t121 - t37;
     const double t123 = t4 * t122;
@@ -754,13 +748,8 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
 
 front_car_status front_car_weighted_nullspace_projector(const double q[4], const front_car_params *p, double N_BG[16]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -769,39 +758,44 @@ front_car_status front_car_weighted_nullspace_projector(const double q[4], const
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    front_car_sincos(theta, &t3, &t4);
+    double t5, t6;
+    front_car_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
-    const double t22 = t3 * t21;
+    const double t21 = t4 * t20;
+    const double t22 = t5 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
-    const double t26 = t3 * t25;
+    const double t25 = t3 * t20;
+    const double t26 = t5 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
     const double t29 = t12 * t28;
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
-    const double t34 = t3 * t33;
-    const double t35 = t3 * t34;
+    const double t34 = t5 * t33;
+    const double t35 = t5 * t34;
     const double t36 = t30 + t35;
+    const double Theta_2 = p->Theta_2;
     const double t37 = Theta_2 * t36;
     const double t38 = fabs(t37);
     const double t39 = fabs(Theta_1);
@@ -812,7 +806,7 @@ front_car_status front_car_weighted_nullspace_projector(const double q[4], const
     const double t44 = t39 + t43;
     const double t45 = fabs(Theta_2);
     const double t46 = t44 * t45;
-    const double t47 = t5 * t46;
+    const double t47 = t7 * t46;
     const double t48 = fabs(m_1);
     const double t49 = t48 + t40;
     const double t50 = t49 * t45;
@@ -823,21 +817,21 @@ front_car_status front_car_weighted_nullspace_projector(const double q[4], const
     const double t55 = t54 * 3.552713678800501e-15;
     const double t56 = Theta_2 * t31;
     const double t57 = t56 / t37;
-    const double t58 = t7 * t4;
+    const double t58 = t4 * t6;
     const double t59 = t18 * t58;
-    const double t60 = t6 * t3;
+    const double t60 = t3 * t5;
     const double t61 = m_2 * t60;
     const double t62 = t59 - t61;
     const double t63 = t58 * t62;
     const double t64 = t57 * t63;
-    const double t65 = t7 * t3;
+    const double t65 = t4 * t5;
     const double t66 = m_2 * t65;
-    const double t67 = t6 * t4;
+    const double t67 = t3 * t6;
     const double t68 = t18 * t67;
     const double t69 = t66 + t68;
     const double t70 = t58 * t69;
     const double t71 = t57 * t70;
-    const double t72 = t3 * t58;
+    const double t72 = t5 * t58;
     const double t73 = L * Theta_2;
     const double t74 = t33 * t73;
     const double t75 = t74 / t37;
@@ -846,16 +840,16 @@ front_car_status front_car_weighted_nullspace_projector(const double q[4], const
     const double t78 = t57 * t77;
     const double t79 = t67 * t69;
     const double t80 = t57 * t79;
-    const double t81 = t3 * t67;
+    const double t81 = t5 * t67;
     const double t82 = t81 * t75;
     const double t83 = t73 / t37;
-    const double t84 = t3 * t62;
+    const double t84 = t5 * t62;
     const double t85 = t83 * t84;
-    const double t86 = t3 * t69;
+    const double t86 = t5 * t69;
     const double t87 = t83 * t86;
     const double t88 = Theta_2 * t33;
     const double t89 = t88 / t37;
-    const double t90 = t5 * t89;
+    const double t90 = t7 * t89;
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
@@ -896,7 +890,6 @@ front_car_status front_car_weighted_nullspace_projector(const double q[4], const
 front_car_status front_car_control_matrix(const double q[4], const front_car_params *p, double M[8]) {
     const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
     const double t1 = theta + phi;
     const double t2 = fabs(t1);
     const double t3 = fabs(phi);
@@ -910,6 +903,7 @@ front_car_status front_car_control_matrix(const double q[4], const front_car_par
     front_car_sincos(t1, &t4, &t5);
     double t6, t7;
     front_car_sincos(phi, &t6, &t7);
+    const double L = p->L;
     const double t8 = L * t6;
     double rest = t5 - t5;
     rest += t4 - t4;
@@ -929,10 +923,9 @@ front_car_status front_car_control_matrix(const double q[4], const front_car_par
 }
 
 front_car_status front_car_projected_control_matrix(const double q[4], const front_car_params *p, double M_tilde[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -942,24 +935,25 @@ front_car_status front_car_projected_control_matrix(const double q[4], const fro
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = L * L;
-    const double t19 = t7 * t18;
+    const double t19 = t6 * t18;
     const double t20 = t4 * t19;
     const double t21 = t20 / t14;
-    const double t22 = t6 * t18;
+    const double t22 = t5 * t18;
     const double t23 = t4 * t22;
     const double t24 = t23 / t14;
     const double t25 = L * t3;
@@ -986,64 +980,8 @@ front_car_status front_car_projected_control_matrix(const double q[4], const fro
 
 front_car_status front_car_projected_control_pseudoinverse(const double q[4], const front_car_params *p, double M_tilde_pinv[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
-    const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    if (!(100000.0 >= t2)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    const double t3 = fabs(L);
-    const double t4 = t3 * 3.552713678800501e-15;
-    double t5, t6;
-    front_car_sincos(theta, &t5, &t6);
-    double t7, t8;
-    front_car_sincos(phi, &t7, &t8);
-    const double t9 = t6 * t8;
-    const double t10 = t5 * t8;
-    const double t11 = t7 / L;
-    if (!(t3 > t4)) {
-        const double t12 = t7 * t7;
-        const double t13 = L * t8;
-        const double t14 = t5 * t13;
-        const double t15 = t14 * t14;
-        const double t16 = t12 + t15;
-        const double t17 = t6 * t13;
-        const double t18 = t17 * t17;
-        const double t19 = t16 + t18;
-        const double t20 = t13 * t13;
-        const double t21 = 1.0 + t20;
-        const double t22 = t21 * 1.262177448353619e-29;
-        if (!(t19 > t22)) {
-            return FRONT_CAR_CONSTRAINT_RANK;
-        }
-        return FRONT_CAR_ACTUATION_RANK;
-    }
-    double rest = t9 - t9;
-    rest += t10 - t10;
-    rest += t11 - t11;
-    if (!(rest >= 0.0)) {
-        return FRONT_CAR_NOT_FINITE;
-    }
-    M_tilde_pinv[0] = t9;
-    M_tilde_pinv[1] = t10;
-    M_tilde_pinv[2] = t11;
-    M_tilde_pinv[3] = 0.0;
-    M_tilde_pinv[4] = 0.0;
-    M_tilde_pinv[5] = 0.0;
-    M_tilde_pinv[6] = 0.0;
-    M_tilde_pinv[7] = 1.0;
-    return FRONT_CAR_OK;
-}
-
-front_car_status front_car_orthogonal_complement(const double q[4], const front_car_params *p, double F_B[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double t1 = fabs(theta);
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1055,6 +993,61 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
     front_car_sincos(theta, &t3, &t4);
     double t5, t6;
     front_car_sincos(phi, &t5, &t6);
+    const double L = p->L;
+    const double t7 = fabs(L);
+    const double t8 = t4 * t6;
+    const double t9 = t3 * t6;
+    const double t10 = t5 / L;
+    if (!(t7 > 0.0)) {
+        const double t11 = t5 * t5;
+        const double t12 = L * t6;
+        const double t13 = t3 * t12;
+        const double t14 = t13 * t13;
+        const double t15 = t11 + t14;
+        const double t16 = t4 * t12;
+        const double t17 = t16 * t16;
+        const double t18 = t15 + t17;
+        const double t19 = t12 * t12;
+        const double t20 = 1.0 + t19;
+        const double t21 = t20 * 1.262177448353619e-29;
+        if (!(t18 > t21)) {
+            return FRONT_CAR_CONSTRAINT_RANK;
+        }
+        return FRONT_CAR_ACTUATION_RANK;
+    }
+    double rest = t8 - t8;
+    rest += t9 - t9;
+    rest += t10 - t10;
+    if (!(rest >= 0.0)) {
+        return FRONT_CAR_NOT_FINITE;
+    }
+    M_tilde_pinv[0] = t8;
+    M_tilde_pinv[1] = t9;
+    M_tilde_pinv[2] = t10;
+    M_tilde_pinv[3] = 0.0;
+    M_tilde_pinv[4] = 0.0;
+    M_tilde_pinv[5] = 0.0;
+    M_tilde_pinv[6] = 0.0;
+    M_tilde_pinv[7] = 1.0;
+    return FRONT_CAR_OK;
+}
+
+front_car_status front_car_orthogonal_complement(const double q[4], const front_car_params *p, double F_B[8]) {
+    const double theta = q[2];
+    const double t1 = fabs(theta);
+    const double phi = q[3];
+    const double t2 = fabs(phi);
+    if (!(100000.0 >= t1)) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    if (!(100000.0 >= t2)) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    double t3, t4;
+    front_car_sincos(theta, &t3, &t4);
+    double t5, t6;
+    front_car_sincos(phi, &t5, &t6);
+    const double L = p->L;
     const double t7 = L * t6;
     const double t8 = t4 * t7;
     const double t9 = fabs(t8);
@@ -1095,14 +1088,9 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
 }
 
 front_car_status front_car_projected_mass_matrix(const double q[4], const front_car_params *p, double G_tilde[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1112,14 +1100,15 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1128,11 +1117,14 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t18 / t19;
-    const double t21 = t7 * t7;
+    const double t21 = t6 * t6;
     const double t22 = t4 * t21;
     const double t23 = t4 * t22;
+    const double m_2 = p->m_2;
     const double t24 = m_2 * t18;
+    const double Theta_1 = p->Theta_1;
     const double t25 = Theta_1 + t24;
+    const double m_1 = p->m_1;
     const double t26 = m_1 + m_2;
     const double t27 = t26 * t18;
     const double t28 = t27 - t25;
@@ -1141,29 +1133,29 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     const double t31 = t25 + t30;
     const double t32 = t23 * t31;
     const double t33 = t20 * t32;
-    const double t34 = t6 * t7;
+    const double t34 = t5 * t6;
     const double t35 = t4 * t34;
     const double t36 = t4 * t35;
     const double t37 = t36 * t31;
     const double t38 = t20 * t37;
     const double t39 = L / t19;
-    const double t40 = t7 * t4;
+    const double t40 = t6 * t4;
     const double t41 = t3 * t40;
     const double t42 = t41 * t31;
     const double t43 = t39 * t42;
-    const double t44 = t6 * t6;
+    const double t44 = t5 * t5;
     const double t45 = t4 * t44;
     const double t46 = t4 * t45;
     const double t47 = t46 * t31;
     const double t48 = t20 * t47;
-    const double t49 = t6 * t4;
+    const double t49 = t5 * t4;
     const double t50 = t3 * t49;
     const double t51 = t50 * t31;
     const double t52 = t39 * t51;
     const double t53 = t4 * t4;
     const double t54 = t53 + (-2.0);
     const double t55 = t25 * t54;
-    const double t56 = t5 * t27;
+    const double t56 = t7 * t27;
     const double t57 = t55 + t56;
     const double t58 = t4 * t57;
     const double t59 = t4 * t58;
@@ -1173,6 +1165,7 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
+    const double Theta_2 = p->Theta_2;
     double rest = t33 - t33;
     rest += t38 - t38;
     rest += t43 - t43;
@@ -1203,17 +1196,9 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
 }
 
 front_car_status front_car_projected_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C_tilde[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1223,14 +1208,15 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1241,46 +1227,53 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t20 = t14 * t19;
     const double t21 = t14 * t20;
     const double t22 = t18 / t21;
-    const double t23 = t7 * t4;
-    const double t24 = x_dot * t7;
-    const double t25 = y_dot * t6;
+    const double t23 = t6 * t4;
+    const double x_dot = qd[0];
+    const double t24 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t25 = y_dot * t5;
     const double t26 = t24 + t25;
     const double t27 = t4 * t26;
     const double t28 = L * t27;
+    const double theta_dot = qd[2];
     const double t29 = theta_dot * t3;
     const double t30 = t28 + t29;
-    const double t31 = t5 * t18;
+    const double t31 = t7 * t18;
     const double t32 = t4 * t4;
     const double t33 = t32 + (-2.0);
     const double t34 = t14 + t33;
     const double t35 = t31 + t34;
-    const double t36 = t7 * t35;
+    const double t36 = t6 * t35;
+    const double m_2 = p->m_2;
     const double t37 = m_2 * t36;
-    const double t38 = t6 * t4;
+    const double t38 = t5 * t4;
     const double t39 = t3 * t38;
+    const double m_1 = p->m_1;
     const double t40 = m_1 + m_2;
     const double t41 = t40 * t18;
     const double t42 = t39 * t41;
     const double t43 = t37 - t42;
     const double t44 = t4 * t43;
     const double t45 = m_2 * t18;
+    const double Theta_1 = p->Theta_1;
     const double t46 = Theta_1 + t45;
     const double t47 = t40 + t46;
-    const double t48 = t6 * t3;
+    const double t48 = t5 * t3;
     const double t49 = t3 * t48;
     const double t50 = t3 * t49;
     const double t51 = t47 * t50;
     const double t52 = t44 - t51;
     const double t53 = t4 * t52;
-    const double t54 = t5 + t15;
+    const double t54 = t7 + t15;
     const double t55 = 1.0 - t54;
-    const double t56 = t7 * t55;
+    const double t56 = t6 * t55;
     const double t57 = m_2 * t56;
     const double t58 = t53 + t57;
     const double t59 = t30 * t58;
     const double t60 = 2.0 * t40;
     const double t61 = t46 - t60;
-    const double t62 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t62 = phi_dot * t6;
     const double t63 = t3 * t62;
     const double t64 = t14 * t63;
     const double t65 = t61 * t64;
@@ -1290,7 +1283,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t69 = 2.0 - t32;
     const double t70 = t4 * t30;
     const double t71 = t69 * t70;
-    const double t72 = t6 * t71;
+    const double t72 = t5 * t71;
     const double t73 = t14 * t62;
     const double t74 = t72 + t73;
     const double t75 = t3 * t74;
@@ -1309,26 +1302,26 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t88 = t40 * t87;
     const double t89 = t88 - t46;
     const double t90 = t3 * t89;
-    const double t91 = t7 * t90;
+    const double t91 = t6 * t90;
     const double t92 = m_2 * t38;
     const double t93 = t91 + t92;
     const double t94 = t4 * t93;
     const double t95 = (-2.0) + t31;
-    const double t96 = t6 * t95;
+    const double t96 = t5 * t95;
     const double t97 = m_2 * t96;
     const double t98 = t94 + t97;
     const double t99 = t4 * t98;
-    const double t100 = t7 * t3;
+    const double t100 = t6 * t3;
     const double t101 = t100 * t47;
     const double t102 = t99 + t101;
     const double t103 = t4 * t102;
-    const double t104 = t5 * t14;
+    const double t104 = t7 * t14;
     const double t105 = 1.0 - t104;
-    const double t106 = t6 * t105;
+    const double t106 = t5 * t105;
     const double t107 = m_2 * t106;
     const double t108 = t103 + t107;
     const double t109 = t30 * t108;
-    const double t110 = phi_dot * t6;
+    const double t110 = phi_dot * t5;
     const double t111 = t3 * t110;
     const double t112 = t14 * t111;
     const double t113 = t61 * t112;
@@ -1372,18 +1365,18 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t151 = t40 * t150;
     const double t152 = t46 + t151;
     const double t153 = t3 * t152;
-    const double t154 = t6 * t153;
+    const double t154 = t5 * t153;
     const double t155 = m_2 * t23;
     const double t156 = t154 + t155;
     const double t157 = t4 * t156;
-    const double t158 = t7 * t95;
+    const double t158 = t6 * t95;
     const double t159 = m_2 * t158;
     const double t160 = t157 + t159;
     const double t161 = t4 * t160;
     const double t162 = t48 * t47;
     const double t163 = t161 - t162;
     const double t164 = t4 * t163;
-    const double t165 = t7 * t105;
+    const double t165 = t6 * t105;
     const double t166 = m_2 * t165;
     const double t167 = t164 + t166;
     const double t168 = t30 * t167;
@@ -1414,7 +1407,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t193 = t40 * t192;
     const double t194 = t46 * t69;
     const double t195 = t193 + t194;
-    const double t196 = t6 * t195;
+    const double t196 = t5 * t195;
     const double t197 = m_2 * t117;
     const double t198 = t196 + t197;
     const double t199 = t4 * t198;
@@ -1422,7 +1415,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t201 = m_2 * t200;
     const double t202 = t199 + t201;
     const double t203 = t4 * t202;
-    const double t204 = t6 * t47;
+    const double t204 = t5 * t47;
     const double t205 = t203 - t204;
     const double t206 = t4 * t205;
     const double t207 = t100 * t105;
@@ -1436,10 +1429,10 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t215 = L * t214;
     const double t216 = t4 * t32;
     const double t217 = t4 * t216;
-    const double t218 = 3.0 * t5;
+    const double t218 = 3.0 * t7;
     const double t219 = t217 + t218;
     const double t220 = t30 * t219;
-    const double t221 = t6 * t220;
+    const double t221 = t5 * t220;
     const double t222 = t4 * t62;
     const double t223 = t14 * t222;
     const double t224 = t221 - t223;
@@ -1449,7 +1442,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t228 = t46 * t227;
     const double t229 = t215 + t228;
     const double t230 = t4 * t229;
-    const double t231 = t6 * t30;
+    const double t231 = t5 * t30;
     const double t232 = t46 * t231;
     const double t233 = t230 - t232;
     const double t234 = t4 * t233;
@@ -1461,7 +1454,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t240 = t32 + t95;
     const double t241 = t40 * t240;
     const double t242 = t239 + t241;
-    const double t243 = t7 * t242;
+    const double t243 = t6 * t242;
     const double t244 = m_2 * t39;
     const double t245 = t243 + t244;
     const double t246 = t4 * t245;
@@ -1469,7 +1462,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t248 = m_2 * t247;
     const double t249 = t246 + t248;
     const double t250 = t4 * t249;
-    const double t251 = t7 * t47;
+    const double t251 = t6 * t47;
     const double t252 = t250 + t251;
     const double t253 = t4 * t252;
     const double t254 = t48 * t105;
@@ -1483,7 +1476,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t262 = L * t261;
     const double t263 = t14 * t110;
     const double t264 = 2.0 * t263;
-    const double t265 = t7 * t220;
+    const double t265 = t6 * t220;
     const double t266 = t4 * t110;
     const double t267 = t14 * t266;
     const double t268 = t265 + t267;
@@ -1492,7 +1485,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t271 = t46 * t270;
     const double t272 = t262 + t271;
     const double t273 = t4 * t272;
-    const double t274 = t7 * t30;
+    const double t274 = t6 * t30;
     const double t275 = t46 * t274;
     const double t276 = t273 + t275;
     const double t277 = t4 * t276;
@@ -1562,14 +1555,9 @@ front_car_status front_car_projected_applied_force(const double q[4], const doub
 }
 
 front_car_status front_car_minimal_mass_matrix(const double q[4], const front_car_params *p, double G_bar[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1578,29 +1566,33 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_sincos(theta, &t3, &t4);
+    front_car_sincos(phi, &t3, &t4);
     double t5, t6;
-    front_car_sincos(phi, &t5, &t6);
-    const double t7 = L * t6;
-    const double t8 = t4 * t7;
+    front_car_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = L * t4;
+    const double t8 = t6 * t7;
     const double t9 = fabs(t8);
     const double t10 = fabs(L);
     const double t11 = t10 * 3.552713678800501e-15;
     const double t12 = L * L;
+    const double m_2 = p->m_2;
     const double t13 = m_2 * t12;
+    const double Theta_1 = p->Theta_1;
     const double t14 = Theta_1 + t13;
+    const double m_1 = p->m_1;
     const double t15 = m_1 + m_2;
     const double t16 = t15 * t12;
     const double t17 = t16 - t14;
-    const double t18 = t6 * t17;
-    const double t19 = t6 * t18;
+    const double t18 = t4 * t17;
+    const double t19 = t4 * t18;
     const double t20 = t14 + t19;
     const double t21 = t8 * t8;
     const double t22 = 1.0 / t21;
     const double t23 = t20 * t22;
     if (!(t9 > t11)) {
-        const double t24 = t5 * t5;
-        const double t25 = t3 * t7;
+        const double t24 = t3 * t3;
+        const double t25 = t5 * t7;
         const double t26 = t25 * t25;
         const double t27 = t24 + t26;
         const double t28 = t27 + t21;
@@ -1612,6 +1604,7 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
         }
         return FRONT_CAR_CONSTRAINT_RANK;
     }
+    const double Theta_2 = p->Theta_2;
     double rest = t23 - t23;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0)) {
@@ -1625,15 +1618,9 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
 }
 
 front_car_status front_car_minimal_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C_bar[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1643,14 +1630,15 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1659,11 +1647,14 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     const double t18 = fabs(t12);
     const double t19 = fabs(L);
     const double t20 = t19 * 3.552713678800501e-15;
-    const double t21 = t6 * t4;
+    const double t21 = t5 * t4;
     const double t22 = t3 * t21;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t23 = m_1 + m_2;
     const double t24 = L * L;
     const double t25 = m_2 * t24;
+    const double Theta_1 = p->Theta_1;
     const double t26 = Theta_1 + t25;
     const double t27 = t23 + t26;
     const double t28 = t22 * t27;
@@ -1680,23 +1671,25 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     const double t39 = t21 * t38;
     const double t40 = t26 * t39;
     const double t41 = t36 + t40;
+    const double theta_dot = qd[2];
     const double t42 = theta_dot * t41;
-    const double t43 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t43 = phi_dot * t6;
     const double t44 = t3 * t43;
     const double t45 = (-1.0) + t24;
     const double t46 = t44 * t45;
     const double t47 = t26 * t46;
     const double t48 = t42 + t47;
     const double t49 = t4 * t48;
-    const double t50 = theta_dot * t6;
+    const double t50 = theta_dot * t5;
     const double t51 = t26 * t50;
     const double t52 = t49 + t51;
     const double t53 = t4 * t52;
     const double t54 = t26 * t44;
     const double t55 = t53 + t54;
-    const double t56 = t7 * t24;
-    const double t57 = t7 * t56;
-    const double t58 = t7 * t57;
+    const double t56 = t6 * t24;
+    const double t57 = t6 * t56;
+    const double t58 = t6 * t57;
     const double t59 = t4 * t58;
     const double t60 = t4 * t59;
     const double t61 = t4 * t60;
@@ -1742,9 +1735,8 @@ front_car_status front_car_minimal_applied_force(const double q[4], const double
 
 front_car_status front_car_minimal_control_matrix(const double q[4], const front_car_params *p, double M_bar[4]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1756,6 +1748,7 @@ front_car_status front_car_minimal_control_matrix(const double q[4], const front
     front_car_sincos(theta, &t3, &t4);
     double t5, t6;
     front_car_sincos(phi, &t5, &t6);
+    const double L = p->L;
     const double t7 = L * t6;
     const double t8 = t4 * t7;
     const double t9 = fabs(t8);
@@ -1790,14 +1783,9 @@ front_car_status front_car_minimal_control_matrix(const double q[4], const front
 }
 
 front_car_status front_car_admissible_velocity(const double q[4], const double qd[4], const front_car_params *p, double qd_admissible[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1807,31 +1795,35 @@ front_car_status front_car_admissible_velocity(const double q[4], const double q
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = L / t14;
-    const double t19 = x_dot * t7;
-    const double t20 = y_dot * t6;
+    const double x_dot = qd[0];
+    const double t19 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t20 = y_dot * t5;
     const double t21 = t19 + t20;
     const double t22 = t4 * t21;
     const double t23 = L * t22;
+    const double theta_dot = qd[2];
     const double t24 = theta_dot * t3;
     const double t25 = t23 + t24;
-    const double t26 = t7 * t4;
+    const double t26 = t6 * t4;
     const double t27 = t25 * t26;
     const double t28 = t18 * t27;
-    const double t29 = t6 * t4;
+    const double t29 = t5 * t4;
     const double t30 = t25 * t29;
     const double t31 = t18 * t30;
     const double t32 = 1.0 / t14;
@@ -1840,6 +1832,7 @@ front_car_status front_car_admissible_velocity(const double q[4], const double q
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
+    const double phi_dot = qd[3];
     double rest = t28 - t28;
     rest += t31 - t31;
     rest += t34 - t34;
@@ -1855,18 +1848,9 @@ front_car_status front_car_admissible_velocity(const double q[4], const double q
 }
 
 front_car_status front_car_admissible_acceleration(const double q[4], const double qd[4], const double qdd[4], const front_car_params *p, double qdd_admissible[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double x_ddot = qdd[0];
-    const double y_ddot = qdd[1];
-    const double theta_ddot = qdd[2];
-    const double phi_ddot = qdd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1876,45 +1860,52 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    const double t18 = y_ddot * t7;
+    const double y_ddot = qdd[1];
+    const double t18 = y_ddot * t6;
     const double t19 = t14 * t18;
     const double t20 = t14 * t19;
-    const double t21 = x_dot * t7;
-    const double t22 = y_dot * t6;
+    const double x_dot = qd[0];
+    const double t21 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t22 = y_dot * t5;
     const double t23 = t21 + t22;
     const double t24 = t4 * t23;
     const double t25 = L * t24;
+    const double theta_dot = qd[2];
     const double t26 = theta_dot * t3;
     const double t27 = t25 + t26;
     const double t28 = t8 * t3;
     const double t29 = t27 * t28;
     const double t30 = t27 * t29;
     const double t31 = t20 - t30;
-    const double t32 = t6 * t31;
-    const double t33 = x_ddot * t7;
-    const double t34 = t7 * t33;
+    const double t32 = t5 * t31;
+    const double x_ddot = qdd[0];
+    const double t33 = x_ddot * t6;
+    const double t34 = t6 * t33;
     const double t35 = t14 * t34;
     const double t36 = t14 * t35;
     const double t37 = t32 + t36;
     const double t38 = t4 * t37;
     const double t39 = L * t38;
-    const double t40 = theta_ddot * t7;
+    const double theta_ddot = qdd[2];
+    const double t40 = theta_ddot * t6;
     const double t41 = t14 * t40;
     const double t42 = t14 * t41;
-    const double t43 = t6 * t3;
+    const double t43 = t5 * t3;
     const double t44 = t3 * t43;
     const double t45 = t27 * t44;
     const double t46 = t27 * t45;
@@ -1922,7 +1913,8 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t48 = t3 * t47;
     const double t49 = t39 + t48;
     const double t50 = t4 * t49;
-    const double t51 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t51 = phi_dot * t6;
     const double t52 = t3 * t51;
     const double t53 = t14 * t52;
     const double t54 = t27 * t53;
@@ -1931,11 +1923,11 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t57 = t14 * t56;
     const double t58 = L / t57;
     const double t59 = t55 * t58;
-    const double t60 = y_ddot * t6;
+    const double t60 = y_ddot * t5;
     const double t61 = t33 + t60;
     const double t62 = t56 * t61;
-    const double t63 = t6 * t62;
-    const double t64 = t7 * t4;
+    const double t63 = t5 * t62;
+    const double t64 = t6 * t4;
     const double t65 = t3 * t64;
     const double t66 = t27 * t65;
     const double t67 = t27 * t66;
@@ -1943,10 +1935,10 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t69 = t63 + t68;
     const double t70 = t4 * t69;
     const double t71 = L * t70;
-    const double t72 = theta_ddot * t6;
+    const double t72 = theta_ddot * t5;
     const double t73 = t14 * t72;
     const double t74 = t14 * t73;
-    const double t75 = t7 * t3;
+    const double t75 = t6 * t3;
     const double t76 = t3 * t75;
     const double t77 = t27 * t76;
     const double t78 = t27 * t77;
@@ -1954,7 +1946,7 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t80 = t3 * t79;
     const double t81 = t71 + t80;
     const double t82 = t4 * t81;
-    const double t83 = phi_dot * t6;
+    const double t83 = phi_dot * t5;
     const double t84 = t3 * t83;
     const double t85 = t14 * t84;
     const double t86 = t27 * t85;
@@ -1976,6 +1968,7 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
+    const double phi_ddot = qdd[3];
     double rest = t59 - t59;
     rest += t88 - t88;
     rest += t101 - t101;
@@ -2011,19 +2004,9 @@ front_car_status front_car_projected_configuration(const double q[4], const fron
 }
 
 front_car_status front_car_inverse_dynamics(const double q[4], const double qd[4], const double qdd[4], const front_car_params *p, double u[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double x_ddot = qdd[0];
-    const double y_ddot = qdd[1];
-    const double theta_ddot = qdd[2];
-    const double phi_ddot = qdd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -2031,62 +2014,71 @@ front_car_status front_car_inverse_dynamics(const double q[4], const double qd[4
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const double t3 = fabs(L);
-    const double t4 = t3 * 3.552713678800501e-15;
-    const double t5 = 1.0 / L;
-    double t6, t7;
-    front_car_sincos(phi, &t6, &t7);
-    double t8, t9;
-    front_car_sincos(theta, &t8, &t9);
-    const double t10 = y_ddot * t9;
-    const double t11 = x_ddot * t8;
-    const double t12 = t10 - t11;
-    const double t13 = t6 * t12;
-    const double t14 = theta_dot * theta_dot;
-    const double t15 = t7 * t14;
-    const double t16 = L * t15;
-    const double t17 = t13 - t16;
-    const double t18 = m_2 * t17;
-    const double t19 = m_1 + m_2;
-    const double t20 = x_ddot * t9;
-    const double t21 = y_ddot * t8;
-    const double t22 = t20 + t21;
-    const double t23 = t7 * t22;
-    const double t24 = t19 * t23;
-    const double t25 = t18 + t24;
-    const double t26 = L * t25;
-    const double t27 = L * L;
-    const double t28 = m_2 * t27;
-    const double t29 = Theta_1 + t28;
-    const double t30 = theta_ddot * t6;
-    const double t31 = t29 * t30;
-    const double t32 = t26 + t31;
-    const double t33 = t5 * t32;
-    const double t34 = phi_ddot * Theta_2;
-    if (!(t3 > t4)) {
-        const double t35 = t6 * t6;
-        const double t36 = L * t7;
-        const double t37 = t8 * t36;
-        const double t38 = t37 * t37;
-        const double t39 = t35 + t38;
-        const double t40 = t9 * t36;
-        const double t41 = t40 * t40;
-        const double t42 = t39 + t41;
-        const double t43 = t36 * t36;
-        const double t44 = 1.0 + t43;
-        const double t45 = t44 * 1.262177448353619e-29;
-        if (!(t42 > t45)) {
+    double t3, t4;
+    front_car_sincos(phi, &t3, &t4);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = fabs(L);
+    const double t8 = 1.0 / L;
+    const double y_ddot = qdd[1];
+    const double t9 = y_ddot * t6;
+    const double x_ddot = qdd[0];
+    const double t10 = x_ddot * t5;
+    const double t11 = t9 - t10;
+    const double t12 = t3 * t11;
+    const double theta_dot = qd[2];
+    const double t13 = theta_dot * theta_dot;
+    const double t14 = t4 * t13;
+    const double t15 = L * t14;
+    const double t16 = t12 - t15;
+    const double m_2 = p->m_2;
+    const double t17 = m_2 * t16;
+    const double m_1 = p->m_1;
+    const double t18 = m_1 + m_2;
+    const double t19 = x_ddot * t6;
+    const double t20 = y_ddot * t5;
+    const double t21 = t19 + t20;
+    const double t22 = t4 * t21;
+    const double t23 = t18 * t22;
+    const double t24 = t17 + t23;
+    const double t25 = L * t24;
+    const double t26 = L * L;
+    const double t27 = m_2 * t26;
+    const double Theta_1 = p->Theta_1;
+    const double t28 = Theta_1 + t27;
+    const double theta_ddot = qdd[2];
+    const double t29 = theta_ddot * t3;
+    const double t30 = t28 * t29;
+    const double t31 = t25 + t30;
+    const double t32 = t8 * t31;
+    const double phi_ddot = qdd[3];
+    const double Theta_2 = p->Theta_2;
+    const double t33 = phi_ddot * Theta_2;
+    if (!(t7 > 0.0)) {
+        const double t34 = t3 * t3;
+        const double t35 = L * t4;
+        const double t36 = t5 * t35;
+        const double t37 = t36 * t36;
+        const double t38 = t34 + t37;
+        const double t39 = t6 * t35;
+        const double t40 = t39 * t39;
+        const double t41 = t38 + t40;
+        const double t42 = t35 * t35;
+        const double t43 = 1.0 + t42;
+        const double t44 = t43 * 1.262177448353619e-29;
+        if (!(t41 > t44)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    double rest = t33 - t33;
-    rest += t34 - t34;
+    double rest = t32 - t32;
+    rest += t33 - t33;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    u[0] = t33;
-    u[1] = t34;
+    u[0] = t32;
+    u[1] = t33;
     return FRONT_CAR_OK;
 }
 
@@ -2105,11 +2097,6 @@ front_car_status front_car_inverse_dynamics_residual(const double q[4], const do
 front_car_status front_car_actuator_velocity(const double q[4], const double qd[4], const front_car_params *p, double nu[2]) {
     const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = theta + phi;
     const double t2 = fabs(t1);
     const double t3 = fabs(phi);
@@ -2121,14 +2108,19 @@ front_car_status front_car_actuator_velocity(const double q[4], const double qd[
     }
     double t4, t5;
     front_car_sincos(t1, &t4, &t5);
-    const double t6 = x_dot * t5;
-    const double t7 = y_dot * t4;
-    const double t8 = t6 + t7;
-    double t9, t10;
-    front_car_sincos(phi, &t9, &t10);
-    const double t11 = L * t9;
+    double t6, t7;
+    front_car_sincos(phi, &t6, &t7);
+    const double x_dot = qd[0];
+    const double t8 = x_dot * t5;
+    const double y_dot = qd[1];
+    const double t9 = y_dot * t4;
+    const double t10 = t8 + t9;
+    const double L = p->L;
+    const double t11 = L * t6;
+    const double theta_dot = qd[2];
     const double t12 = theta_dot * t11;
-    const double t13 = t8 + t12;
+    const double t13 = t10 + t12;
+    const double phi_dot = qd[3];
     double rest = t13 - t13;
     rest += phi_dot - phi_dot;
     if (!(rest >= 0.0)) {
@@ -2140,57 +2132,56 @@ front_car_status front_car_actuator_velocity(const double q[4], const double qd[
 }
 
 front_car_status front_car_actuator_mass_matrix(const double q[4], const front_car_params *p, double G_nu[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const double t2 = fabs(L);
-    const double t3 = t2 * 3.552713678800501e-15;
-    const double t4 = L * L;
-    const double t5 = m_2 * t4;
-    const double t6 = Theta_1 + t5;
-    double t7, t8;
-    front_car_sincos(phi, &t7, &t8);
-    const double t9 = m_1 + m_2;
-    const double t10 = t9 * t4;
-    const double t11 = t10 - t6;
-    const double t12 = t8 * t11;
-    const double t13 = t8 * t12;
-    const double t14 = t6 + t13;
-    const double t15 = 1.0 / t4;
-    const double t16 = t14 * t15;
-    if (!(t2 > t3)) {
-        const double t17 = t7 * t7;
-        double t18, t19;
-        front_car_sincos(theta, &t18, &t19);
-        const double t20 = L * t8;
-        const double t21 = t18 * t20;
-        const double t22 = t21 * t21;
-        const double t23 = t17 + t22;
-        const double t24 = t19 * t20;
-        const double t25 = t24 * t24;
-        const double t26 = t23 + t25;
-        const double t27 = t20 * t20;
-        const double t28 = 1.0 + t27;
-        const double t29 = t28 * 1.262177448353619e-29;
-        if (!(t26 > t29)) {
+    double t2, t3;
+    front_car_sincos(phi, &t2, &t3);
+    const double L = p->L;
+    const double t4 = fabs(L);
+    const double t5 = L * L;
+    const double m_2 = p->m_2;
+    const double t6 = m_2 * t5;
+    const double Theta_1 = p->Theta_1;
+    const double t7 = Theta_1 + t6;
+    const double m_1 = p->m_1;
+    const double t8 = m_1 + m_2;
+    const double t9 = t8 * t5;
+    const double t10 = t9 - t7;
+    const double t11 = t3 * t10;
+    const double t12 = t3 * t11;
+    const double t13 = t7 + t12;
+    const double t14 = 1.0 / t5;
+    const double t15 = t13 * t14;
+    const double theta = q[2];
+    if (!(t4 > 0.0)) {
+        const double t16 = t2 * t2;
+        double t17, t18;
+        front_car_sincos(theta, &t17, &t18);
+        const double t19 = L * t3;
+        const double t20 = t17 * t19;
+        const double t21 = t20 * t20;
+        const double t22 = t16 + t21;
+        const double t23 = t18 * t19;
+        const double t24 = t23 * t23;
+        const double t25 = t22 + t24;
+        const double t26 = t19 * t19;
+        const double t27 = 1.0 + t26;
+        const double t28 = t27 * 1.262177448353619e-29;
+        if (!(t25 > t28)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    double rest = t16 - t16;
+    const double Theta_2 = p->Theta_2;
+    double rest = t15 - t15;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_nu[0] = t16;
+    G_nu[0] = t15;
     G_nu[1] = 0.0;
     G_nu[2] = 0.0;
     G_nu[3] = Theta_2;
@@ -2198,17 +2189,9 @@ front_car_status front_car_actuator_mass_matrix(const double q[4], const front_c
 }
 
 front_car_status front_car_actuator_bias(const double q[4], const double qd[4], const front_car_params *p, double bias_nu[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -2218,83 +2201,79 @@ front_car_status front_car_actuator_bias(const double q[4], const double qd[4], 
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = fabs(L);
-    const double t19 = t18 * 3.552713678800501e-15;
-    const double t20 = L * L;
-    const double t21 = 1.0 / t20;
-    const double t22 = phi_dot * t4;
-    const double t23 = t3 * t22;
-    const double t24 = m_2 * t20;
-    const double t25 = Theta_1 + t24;
-    const double t26 = theta_dot * t3;
-    const double t27 = t25 * t26;
-    const double t28 = m_1 + m_2;
-    const double t29 = t7 * t4;
-    const double t30 = t6 * t3;
-    const double t31 = t29 - t30;
-    const double t32 = x_dot * t31;
-    const double t33 = t6 * t4;
-    const double t34 = t7 * t3;
-    const double t35 = t33 + t34;
-    const double t36 = y_dot * t35;
-    const double t37 = t32 + t36;
-    const double t38 = L * t3;
-    const double t39 = theta_dot * t38;
-    const double t40 = t37 + t39;
-    const double t41 = t28 * t40;
-    const double t42 = L * t41;
-    const double t43 = t27 - t42;
-    const double t44 = L * t43;
-    const double t45 = t25 * t37;
-    const double t46 = t44 + t45;
-    const double t47 = t23 * t46;
-    const double t48 = t21 * t47;
+    const double t19 = L * L;
+    const double t20 = 1.0 / t19;
+    const double phi_dot = qd[3];
+    const double t21 = phi_dot * t4;
+    const double t22 = t3 * t21;
+    const double m_2 = p->m_2;
+    const double t23 = m_2 * t19;
+    const double Theta_1 = p->Theta_1;
+    const double t24 = Theta_1 + t23;
+    const double theta_dot = qd[2];
+    const double t25 = theta_dot * t3;
+    const double t26 = t24 * t25;
+    const double m_1 = p->m_1;
+    const double t27 = m_1 + m_2;
+    const double t28 = L * t3;
+    const double t29 = theta_dot * t28;
+    const double t30 = t6 * t4;
+    const double t31 = t5 * t3;
+    const double t32 = t30 - t31;
+    const double x_dot = qd[0];
+    const double t33 = x_dot * t32;
+    const double t34 = t5 * t4;
+    const double t35 = t6 * t3;
+    const double t36 = t34 + t35;
+    const double y_dot = qd[1];
+    const double t37 = y_dot * t36;
+    const double t38 = t33 + t37;
+    const double t39 = t29 + t38;
+    const double t40 = t27 * t39;
+    const double t41 = L * t40;
+    const double t42 = t26 - t41;
+    const double t43 = L * t42;
+    const double t44 = t24 * t38;
+    const double t45 = t43 + t44;
+    const double t46 = t22 * t45;
+    const double t47 = t20 * t46;
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    if (!(t18 > t19)) {
+    if (!(t18 > 0.0)) {
         if (!(t14 > t17)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    double rest = t48 - t48;
+    double rest = t47 - t47;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    bias_nu[0] = t48;
+    bias_nu[0] = t47;
     bias_nu[1] = 0.0;
     return FRONT_CAR_OK;
 }
 
 front_car_status front_car_forward_dynamics(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double qdd[4]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double K_f = u[0];
-    const double T = u[1];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -2303,39 +2282,44 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    front_car_sincos(theta, &t3, &t4);
+    double t5, t6;
+    front_car_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
-    const double t22 = t3 * t21;
+    const double t21 = t4 * t20;
+    const double t22 = t5 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
-    const double t26 = t3 * t25;
+    const double t25 = t3 * t20;
+    const double t26 = t5 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
     const double t29 = t12 * t28;
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
-    const double t34 = t3 * t33;
-    const double t35 = t3 * t34;
+    const double t34 = t5 * t33;
+    const double t35 = t5 * t34;
     const double t36 = t30 + t35;
+    const double Theta_2 = p->Theta_2;
     const double t37 = Theta_2 * t36;
     const double t38 = fabs(t37);
     const double t39 = fabs(Theta_1);
@@ -2346,7 +2330,7 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
     const double t44 = t39 + t43;
     const double t45 = fabs(Theta_2);
     const double t46 = t44 * t45;
-    const double t47 = t5 * t46;
+    const double t47 = t7 * t46;
     const double t48 = fabs(m_1);
     const double t49 = t48 + t40;
     const double t50 = t49 * t45;
@@ -2358,35 +2342,40 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
     const double t56 = 1.0 / t37;
     const double t57 = Theta_2 * t12;
     const double t58 = t12 * t57;
+    const double theta_dot = qd[2];
     const double t59 = theta_dot * t20;
-    const double t60 = theta_dot * t7;
+    const double t60 = theta_dot * t4;
     const double t61 = t59 * t60;
-    const double t62 = t7 * t4;
-    const double t63 = t6 * t3;
+    const double t62 = t4 * t6;
+    const double t63 = t3 * t5;
     const double t64 = t62 - t63;
+    const double K_f = u[0];
     const double t65 = K_f * t64;
     const double t66 = t61 + t65;
-    const double t67 = theta_dot * t6;
+    const double t67 = theta_dot * t3;
+    const double y_dot = qd[1];
     const double t68 = y_dot * t67;
+    const double x_dot = qd[0];
     const double t69 = x_dot * t60;
     const double t70 = t68 + t69;
     const double t71 = 1.0 / t14;
     const double t72 = t8 * t9;
-    const double t73 = t64 * t3;
+    const double t73 = t5 * t64;
     const double t74 = t72 - t73;
     const double t75 = t71 * t74;
     const double t76 = t70 * t75;
-    const double t77 = t7 * t3;
+    const double t77 = t4 * t5;
     const double t78 = t71 * t77;
-    const double t79 = phi_dot * t3;
+    const double phi_dot = qd[3];
+    const double t79 = phi_dot * t5;
     const double t80 = L * t79;
     const double t81 = theta_dot * t80;
     const double t82 = theta_dot + phi_dot;
-    const double t83 = t64 * t82;
+    const double t83 = t82 * t64;
     const double t84 = x_dot * t83;
-    const double t85 = t6 * t4;
+    const double t85 = t3 * t6;
     const double t86 = t85 + t77;
-    const double t87 = t86 * t82;
+    const double t87 = t82 * t86;
     const double t88 = y_dot * t87;
     const double t89 = t84 + t88;
     const double t90 = t81 + t89;
@@ -2395,7 +2384,7 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
     const double t93 = t18 * t92;
     const double t94 = t8 * t71;
     const double t95 = t94 * t90;
-    const double t96 = t4 * t8;
+    const double t96 = t6 * t8;
     const double t97 = t71 * t96;
     const double t98 = t70 * t97;
     const double t99 = t95 - t98;
@@ -2407,8 +2396,8 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
     const double t105 = t59 * t67;
     const double t106 = K_f * t86;
     const double t107 = t105 + t106;
-    const double t108 = t86 * t3;
-    const double t109 = t8 * t12;
+    const double t108 = t8 * t12;
+    const double t109 = t5 * t86;
     const double t110 = t108 + t109;
     const double t111 = t71 * t110;
     const double t112 = t70 * t111;
@@ -2421,8 +2410,8 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
     const double t119 = t107 - t118;
     const double t120 = t104 * t119;
     const double t121 = t103 + t120;
-    const double t122 = t3 * t57;
-    const double t123 = L * t3;
+    const double t122 = t5 * t57;
+    const double t123 = L * t5;
     const double t124 = K_f * t123;
     const double t125 = t20 * t70;
     const double t126 = t33 * t99;
@@ -2437,7 +2426,7 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
     const double t135 = t9 * t134;
     const double t136 = t135 * t119;
     const double t137 = t133 + t136;
-    const double t138 = t3 * t134;
+    const double t138 = t5 * t134;
     const double t139 = t138 * t128;
     const double t140 = t137 + t139;
     const double t141 = t56 * t140;
@@ -2445,12 +2434,13 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
     const double t143 = t122 * t102;
     const double t144 = t138 * t119;
     const double t145 = t143 + t144;
-    const double t146 = Theta_2 * t3;
-    const double t147 = t3 * t146;
+    const double t146 = Theta_2 * t5;
+    const double t147 = t5 * t146;
     const double t148 = t147 * t128;
     const double t149 = t145 + t148;
     const double t150 = t56 * t149;
     const double t151 = t99 + t150;
+    const double T = u[1];
     const double t152 = T * t36;
     const double t153 = t56 * t152;
     if (!(t14 > t17)) {
@@ -2474,19 +2464,9 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
 }
 
 front_car_status front_car_multipliers(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double K_f = u[0];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -2496,27 +2476,30 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     }
     double t3, t4;
     front_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
+    const double t21 = t6 * t20;
     const double t22 = t3 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
+    const double t25 = t5 * t20;
     const double t26 = t3 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
@@ -2524,10 +2507,12 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
     const double t34 = t3 * t33;
     const double t35 = t3 * t34;
     const double t36 = t30 + t35;
+    const double Theta_2 = p->Theta_2;
     const double t37 = Theta_2 * t36;
     const double t38 = fabs(t37);
     const double t39 = fabs(Theta_1);
@@ -2538,7 +2523,7 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t44 = t39 + t43;
     const double t45 = fabs(Theta_2);
     const double t46 = t44 * t45;
-    const double t47 = t5 * t46;
+    const double t47 = t7 * t46;
     const double t48 = fabs(m_1);
     const double t49 = t48 + t40;
     const double t50 = t49 * t45;
@@ -2549,10 +2534,10 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t55 = t54 * 3.552713678800501e-15;
     const double t56 = 1.0 / t14;
     const double t57 = t8 * t9;
-    const double t58 = t7 * t4;
-    const double t59 = t6 * t3;
+    const double t58 = t6 * t4;
+    const double t59 = t5 * t3;
     const double t60 = t58 - t59;
-    const double t61 = t60 * t3;
+    const double t61 = t3 * t60;
     const double t62 = t57 - t61;
     const double t63 = t56 * t62;
     const double t64 = Theta_2 * t12;
@@ -2565,12 +2550,12 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t71 = t69 * t70;
     const double t72 = 1.0 - t71;
     const double t73 = t63 * t72;
-    const double t74 = t6 * t4;
-    const double t75 = t7 * t3;
-    const double t76 = t74 + t75;
-    const double t77 = t76 * t3;
-    const double t78 = t8 * t12;
-    const double t79 = t77 + t78;
+    const double t74 = t8 * t12;
+    const double t75 = t5 * t4;
+    const double t76 = t6 * t3;
+    const double t77 = t75 + t76;
+    const double t78 = t3 * t77;
+    const double t79 = t74 + t78;
     const double t80 = t56 * t79;
     const double t81 = t9 * t64;
     const double t82 = t18 * t81;
@@ -2585,22 +2570,26 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t91 = t70 * t90;
     const double t92 = t89 * t91;
     const double t93 = t87 - t92;
+    const double theta_dot = qd[2];
     const double t94 = theta_dot * t20;
-    const double t95 = theta_dot * t7;
+    const double t95 = theta_dot * t6;
     const double t96 = t94 * t95;
-    const double t97 = theta_dot * t6;
+    const double t97 = theta_dot * t5;
+    const double y_dot = qd[1];
     const double t98 = y_dot * t97;
+    const double x_dot = qd[0];
     const double t99 = x_dot * t95;
     const double t100 = t98 + t99;
     const double t101 = t100 * t63;
-    const double t102 = t56 * t75;
+    const double t102 = t56 * t76;
+    const double phi_dot = qd[3];
     const double t103 = phi_dot * t3;
     const double t104 = L * t103;
     const double t105 = theta_dot * t104;
     const double t106 = theta_dot + phi_dot;
-    const double t107 = t60 * t106;
+    const double t107 = t106 * t60;
     const double t108 = x_dot * t107;
-    const double t109 = t76 * t106;
+    const double t109 = t106 * t77;
     const double t110 = y_dot * t109;
     const double t111 = t108 + t110;
     const double t112 = t105 + t111;
@@ -2617,21 +2606,21 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t123 = t93 * t122;
     const double t124 = Theta_2 * t9;
     const double t125 = t3 * t124;
-    const double t126 = t25 * t125;
-    const double t127 = t82 - t126;
-    const double t128 = t70 * t127;
-    const double t129 = t63 * t128;
-    const double t130 = t9 * t124;
-    const double t131 = t18 * t130;
-    const double t132 = t68 + t131;
-    const double t133 = t132 * t70;
-    const double t134 = 1.0 - t133;
-    const double t135 = t80 * t134;
-    const double t136 = t129 + t135;
-    const double t137 = t33 * t125;
-    const double t138 = t70 * t137;
-    const double t139 = t89 * t138;
-    const double t140 = t136 + t139;
+    const double t126 = t33 * t125;
+    const double t127 = t70 * t126;
+    const double t128 = t89 * t127;
+    const double t129 = t25 * t125;
+    const double t130 = t82 - t129;
+    const double t131 = t70 * t130;
+    const double t132 = t63 * t131;
+    const double t133 = t9 * t124;
+    const double t134 = t18 * t133;
+    const double t135 = t68 + t134;
+    const double t136 = t135 * t70;
+    const double t137 = 1.0 - t136;
+    const double t138 = t80 * t137;
+    const double t139 = t132 + t138;
+    const double t140 = t128 + t139;
     const double t141 = t94 * t97;
     const double t142 = t56 * t59;
     const double t143 = t142 * t112;
@@ -2644,35 +2633,36 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t150 = t141 + t149;
     const double t151 = t140 * t150;
     const double t152 = t123 - t151;
-    const double t153 = t18 * t125;
-    const double t154 = Theta_2 * t3;
-    const double t155 = t3 * t154;
-    const double t156 = t21 * t155;
-    const double t157 = t153 + t156;
-    const double t158 = t70 * t157;
-    const double t159 = t80 * t158;
-    const double t160 = t18 * t67;
-    const double t161 = t25 * t155;
-    const double t162 = t160 - t161;
-    const double t163 = t70 * t162;
-    const double t164 = t63 * t163;
-    const double t165 = t159 - t164;
-    const double t166 = t33 * t155;
-    const double t167 = t166 * t70;
-    const double t168 = 1.0 - t167;
-    const double t169 = t89 * t168;
-    const double t170 = t165 + t169;
+    const double t153 = Theta_2 * t3;
+    const double t154 = t3 * t153;
+    const double t155 = t33 * t154;
+    const double t156 = t155 * t70;
+    const double t157 = 1.0 - t156;
+    const double t158 = t89 * t157;
+    const double t159 = t18 * t125;
+    const double t160 = t21 * t154;
+    const double t161 = t159 + t160;
+    const double t162 = t70 * t161;
+    const double t163 = t80 * t162;
+    const double t164 = t18 * t67;
+    const double t165 = t25 * t154;
+    const double t166 = t164 - t165;
+    const double t167 = t70 * t166;
+    const double t168 = t63 * t167;
+    const double t169 = t163 - t168;
+    const double t170 = t158 + t169;
     const double t171 = t33 * t147;
     const double t172 = t20 * t100;
     const double t173 = t171 - t172;
     const double t174 = t170 * t173;
     const double t175 = t152 + t174;
     const double t176 = t60 * t93;
-    const double t177 = t76 * t140;
+    const double t177 = t77 * t140;
     const double t178 = t176 - t177;
     const double t179 = L * t3;
     const double t180 = t179 * t170;
     const double t181 = t178 + t180;
+    const double K_f = u[0];
     const double t182 = K_f * t181;
     const double t183 = t175 + t182;
     const double t184 = t102 * t72;
@@ -2681,22 +2671,22 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t187 = t116 * t91;
     const double t188 = t186 + t187;
     const double t189 = t188 * t122;
-    const double t190 = t142 * t134;
-    const double t191 = t102 * t128;
+    const double t190 = t142 * t137;
+    const double t191 = t102 * t131;
     const double t192 = t190 - t191;
-    const double t193 = t116 * t138;
+    const double t193 = t116 * t127;
     const double t194 = t192 + t193;
     const double t195 = t194 * t150;
     const double t196 = t189 + t195;
-    const double t197 = t102 * t163;
-    const double t198 = t142 * t158;
+    const double t197 = t102 * t167;
+    const double t198 = t142 * t162;
     const double t199 = t197 + t198;
-    const double t200 = t116 * t168;
+    const double t200 = t116 * t157;
     const double t201 = t199 + t200;
     const double t202 = t201 * t173;
     const double t203 = t196 - t202;
     const double t204 = t60 * t188;
-    const double t205 = t76 * t194;
+    const double t205 = t77 * t194;
     const double t206 = t204 + t205;
     const double t207 = t179 * t201;
     const double t208 = t206 - t207;
@@ -2720,40 +2710,40 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
 
 front_car_status front_car_energy(const double q[4], const double qd[4], const front_car_params *p, double T_U[2]) {
     const double theta = q[2];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const double t2 = L * L;
-    const double t3 = m_2 * t2;
-    const double t4 = Theta_1 + t3;
-    const double t5 = theta_dot * t4;
-    const double t6 = 0.5 * t5;
-    const double t7 = L * m_2;
-    double t8, t9;
-    front_car_sincos(theta, &t8, &t9);
-    const double t10 = y_dot * t9;
-    const double t11 = x_dot * t8;
+    double t2, t3;
+    front_car_sincos(theta, &t2, &t3);
+    const double L = p->L;
+    const double t4 = L * L;
+    const double m_2 = p->m_2;
+    const double t5 = m_2 * t4;
+    const double Theta_1 = p->Theta_1;
+    const double t6 = Theta_1 + t5;
+    const double theta_dot = qd[2];
+    const double t7 = theta_dot * t6;
+    const double t8 = 0.5 * t7;
+    const double t9 = L * m_2;
+    const double y_dot = qd[1];
+    const double t10 = y_dot * t3;
+    const double x_dot = qd[0];
+    const double t11 = x_dot * t2;
     const double t12 = t10 - t11;
-    const double t13 = t7 * t12;
-    const double t14 = t6 + t13;
+    const double t13 = t9 * t12;
+    const double t14 = t8 + t13;
     const double t15 = theta_dot * t14;
+    const double m_1 = p->m_1;
     const double t16 = m_1 + m_2;
     const double t17 = x_dot * x_dot;
     const double t18 = y_dot * y_dot;
     const double t19 = t17 + t18;
     const double t20 = t16 * t19;
     const double t21 = 0.5 * t20;
+    const double phi_dot = qd[3];
     const double t22 = phi_dot * phi_dot;
+    const double Theta_2 = p->Theta_2;
     const double t23 = Theta_2 * t22;
     const double t24 = 0.5 * t23;
     const double t25 = t21 + t24;
@@ -2768,11 +2758,10 @@ front_car_status front_car_energy(const double q[4], const double qd[4], const f
 }
 
 front_car_status front_car_singularity(const double q[4], const front_car_params *p, double measure[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double t1 = fabs(theta);
-    const double t2 = fabs(phi);
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
@@ -2780,56 +2769,64 @@ front_car_status front_car_singularity(const double q[4], const front_car_params
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_sincos(theta, &t3, &t4);
-    const double t5 = 1.0 != 0.0 ? t3 / 1.0 : 0.0;
-    double t6, t7;
-    front_car_sincos(phi, &t6, &t7);
-    const double t8 = t4 * t7;
-    const double t9 = t3 * t6;
-    const double t10 = t8 - t9;
-    const double t11 = -t10;
-    const double t12 = L * t7;
+    front_car_sincos(phi, &t3, &t4);
+    double t5, t6;
+    front_car_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = L * t4;
+    const double t8 = -t7;
+    const double t9 = t7 * t7;
+    const double t10 = 1.0 + t9;
+    const double t11 = sqrt(t10);
+    const double t12 = t11 != 0.0 ? t8 / t11 : 0.0;
     const double t13 = t12 * t12;
-    const double t14 = 1.0 + t13;
-    const double t15 = sqrt(t14);
-    const double t16 = t15 != 0.0 ? t11 / t15 : 0.0;
-    const double t17 = t5 * t16;
-    const double t18 = -t4;
-    const double t19 = 1.0 != 0.0 ? t18 / 1.0 : 0.0;
-    const double t20 = t3 * t7;
-    const double t21 = t4 * t6;
-    const double t22 = t20 + t21;
-    const double t23 = t15 != 0.0 ? t22 / t15 : 0.0;
-    const double t24 = t19 * t23;
-    const double t25 = t17 - t24;
-    const double t26 = t25 * t25;
-    const double t27 = -t12;
-    const double t28 = t15 != 0.0 ? t27 / t15 : 0.0;
-    const double t29 = t5 * t28;
-    const double t30 = t29 * t29;
-    const double t31 = t26 + t30;
-    const double t32 = t19 * t28;
-    const double t33 = t32 * t32;
-    const double t34 = t31 + t33;
-    const double t35 = L * t6;
-    const double t36 = t35 * t25;
-    const double t37 = t22 * t29;
-    const double t38 = t36 - t37;
-    const double t39 = t10 * t32;
-    const double t40 = t38 + t39;
-    const double t41 = t40 * t40;
-    const double t42 = t34 != 0.0 ? t41 / t34 : 0.0;
-    const double t43 = t6 * t6;
-    const double t44 = L * L;
-    const double t45 = t43 * t44;
-    const double t46 = 1.0 + t45;
-    const double t47 = t46 != 0.0 ? t42 / t46 : 0.0;
-    double rest = t34 - t34;
-    rest += t47 - t47;
+    const double t14 = t5 * t4;
+    const double t15 = t6 * t3;
+    const double t16 = t14 + t15;
+    const double t17 = t11 != 0.0 ? t16 / t11 : 0.0;
+    const double t18 = t6 * t6;
+    const double t19 = t18 * t17;
+    const double t20 = t17 * t19;
+    const double t21 = t13 + t20;
+    const double t22 = t6 * t4;
+    const double t23 = t5 * t3;
+    const double t24 = t22 - t23;
+    const double t25 = -t24;
+    const double t26 = t11 != 0.0 ? t25 / t11 : 0.0;
+    const double t27 = t5 * t26;
+    const double t28 = t6 * t17;
+    const double t29 = 2.0 * t28;
+    const double t30 = t27 + t29;
+    const double t31 = t26 * t30;
+    const double t32 = t5 * t31;
+    const double t33 = t21 + t32;
+    const double t34 = L * t3;
+    const double t35 = t27 + t28;
+    const double t36 = t34 * t35;
+    const double t37 = t5 * t12;
+    const double t38 = t16 * t37;
+    const double t39 = t36 - t38;
+    const double t40 = t6 * t12;
+    const double t41 = t24 * t40;
+    const double t42 = t39 - t41;
+    const double t43 = t42 * t42;
+    const double t44 = t40 * t40;
+    const double t45 = t37 * t37;
+    const double t46 = t35 * t35;
+    const double t47 = t45 + t46;
+    const double t48 = t44 + t47;
+    const double t49 = t48 != 0.0 ? t43 / t48 : 0.0;
+    const double t50 = t3 * t3;
+    const double t51 = L * L;
+    const double t52 = t50 * t51;
+    const double t53 = 1.0 + t52;
+    const double t54 = t53 != 0.0 ? t49 / t53 : 0.0;
+    double rest = t33 - t33;
+    rest += t54 - t54;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    measure[0] = t34;
-    measure[1] = t47;
+    measure[0] = t33;
+    measure[1] = t54;
     return FRONT_CAR_OK;
 }

@@ -43,19 +43,13 @@ static void front_car_sincos_f(const float x, float *sine, float *cosine) {
     const float zzc = z * zc;
     const float rest = lost + zzc;
     const float cos_r = near_ + rest;
-    const float quarter = k * 0.25f;
-    const float pushed = quarter + 12582912.0f;
-    const float whole = pushed - 12582912.0f;
-    const float four = whole * 4.0f;
+    const float pushed = k + 50331650.0f;
+    const float four = pushed - 50331650.0f;
     const float m = k - four;
-    const float m2 = m * m;
-    const float fade = 4.0f - m2;
-    const float odd = m * fade;
-    const float turn = odd * 0.33333334f;
-    const float bend = 7.0f - m2;
-    const float even = m2 * bend;
-    const float sixth = even * 0.16666667f;
-    const float keep = 1.0f - sixth;
+    const float size = fabsf(m);
+    const float keep = 1.0f - size;
+    const float fade = 2.0f - size;
+    const float turn = m * fade;
     const float ss = keep * sin_r;
     const float sc = turn * cos_r;
     const float sine_ = ss + sc;
@@ -78,26 +72,26 @@ front_car_params_f front_car_default_params_f(void) {
 
 front_car_status front_car_mass_matrix_f(const float q[4], const front_car_params_f *p, float G[16]) {
     const float theta = q[2];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float t2 = m_1 + m_2;
-    float t3, t4;
-    front_car_sincos_f(theta, &t3, &t4);
+    float t2, t3;
+    front_car_sincos_f(theta, &t2, &t3);
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
+    const float t4 = m_1 + m_2;
+    const float L = p->L;
     const float t5 = L * m_2;
-    const float t6 = t3 * t5;
+    const float t6 = t2 * t5;
     const float t7 = -t6;
-    const float t8 = t4 * t5;
+    const float t8 = t3 * t5;
     const float t9 = L * L;
     const float t10 = m_2 * t9;
+    const float Theta_1 = p->Theta_1;
     const float t11 = Theta_1 + t10;
-    float rest = t2 - t2;
+    const float Theta_2 = p->Theta_2;
+    float rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
     rest += t11 - t11;
@@ -105,12 +99,12 @@ front_car_status front_car_mass_matrix_f(const float q[4], const front_car_param
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G[0] = t2;
+    G[0] = t4;
     G[1] = 0.0f;
     G[2] = t7;
     G[3] = 0.0f;
     G[4] = 0.0f;
-    G[5] = t2;
+    G[5] = t4;
     G[6] = t8;
     G[7] = 0.0f;
     G[8] = t7;
@@ -126,16 +120,16 @@ front_car_status front_car_mass_matrix_f(const float q[4], const front_car_param
 
 front_car_status front_car_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C[16]) {
     const float theta = q[2];
-    const float theta_dot = qd[2];
-    const float L = p->L;
-    const float m_2 = p->m_2;
     const float t1 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t2, t3;
     front_car_sincos_f(theta, &t2, &t3);
+    const float L = p->L;
+    const float m_2 = p->m_2;
     const float t4 = L * m_2;
+    const float theta_dot = qd[2];
     const float t5 = theta_dot * t4;
     const float t6 = t3 * t5;
     const float t7 = -t6;
@@ -167,22 +161,22 @@ front_car_status front_car_coriolis_matrix_f(const float q[4], const float qd[4]
 
 front_car_status front_car_coriolis_force_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_qd[4]) {
     const float theta = q[2];
-    const float theta_dot = qd[2];
-    const float L = p->L;
-    const float m_2 = p->m_2;
     const float t1 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float t2 = L * m_2;
-    const float t3 = theta_dot * t2;
-    float t4, t5;
-    front_car_sincos_f(theta, &t4, &t5);
-    const float t6 = theta_dot * t5;
-    const float t7 = t3 * t6;
+    float t2, t3;
+    front_car_sincos_f(theta, &t2, &t3);
+    const float L = p->L;
+    const float m_2 = p->m_2;
+    const float t4 = L * m_2;
+    const float theta_dot = qd[2];
+    const float t5 = theta_dot * t4;
+    const float t6 = theta_dot * t3;
+    const float t7 = t5 * t6;
     const float t8 = -t7;
-    const float t9 = theta_dot * t4;
-    const float t10 = t3 * t9;
+    const float t9 = theta_dot * t2;
+    const float t10 = t5 * t9;
     const float t11 = -t10;
     float rest = t8 - t8;
     rest += t11 - t11;
@@ -219,9 +213,8 @@ front_car_status front_car_applied_force_f(const float q[4], const float qd[4], 
 
 front_car_status front_car_constraint_jacobian_f(const float q[4], const front_car_params_f *p, float B[8]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -231,20 +224,21 @@ front_car_status front_car_constraint_jacobian_f(const float q[4], const front_c
     }
     float t3, t4;
     front_car_sincos_f(theta, &t3, &t4);
-    const float t5 = -t4;
-    float t6, t7;
-    front_car_sincos_f(phi, &t6, &t7);
-    const float t8 = t3 * t7;
-    const float t9 = t4 * t6;
+    float t5, t6;
+    front_car_sincos_f(phi, &t5, &t6);
+    const float t7 = -t4;
+    const float t8 = t3 * t6;
+    const float t9 = t4 * t5;
     const float t10 = t8 + t9;
-    const float t11 = t4 * t7;
-    const float t12 = t3 * t6;
+    const float t11 = t4 * t6;
+    const float t12 = t3 * t5;
     const float t13 = t11 - t12;
     const float t14 = -t13;
-    const float t15 = L * t7;
+    const float L = p->L;
+    const float t15 = L * t6;
     const float t16 = -t15;
     float rest = t3 - t3;
-    rest += t5 - t5;
+    rest += t7 - t7;
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
@@ -252,7 +246,7 @@ front_car_status front_car_constraint_jacobian_f(const float q[4], const front_c
         return FRONT_CAR_NOT_FINITE;
     }
     B[0] = t3;
-    B[1] = t5;
+    B[1] = t7;
     B[2] = 0.0f;
     B[3] = 0.0f;
     B[4] = t10;
@@ -264,11 +258,8 @@ front_car_status front_car_constraint_jacobian_f(const float q[4], const front_c
 
 front_car_status front_car_constraint_jacobian_dot_f(const float q[4], const float qd[4], const front_car_params_f *p, float B_dot[8]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -278,31 +269,34 @@ front_car_status front_car_constraint_jacobian_dot_f(const float q[4], const flo
     }
     float t3, t4;
     front_car_sincos_f(theta, &t3, &t4);
-    const float t5 = theta_dot * t4;
-    const float t6 = theta_dot * t3;
-    float t7, t8;
-    front_car_sincos_f(phi, &t7, &t8);
-    const float t9 = t4 * t8;
-    const float t10 = t3 * t7;
-    const float t11 = t9 - t10;
-    const float t12 = theta_dot + phi_dot;
-    const float t13 = t11 * t12;
-    const float t14 = t3 * t8;
-    const float t15 = t4 * t7;
+    float t5, t6;
+    front_car_sincos_f(phi, &t5, &t6);
+    const float theta_dot = qd[2];
+    const float t7 = theta_dot * t4;
+    const float t8 = theta_dot * t3;
+    const float phi_dot = qd[3];
+    const float t9 = theta_dot + phi_dot;
+    const float t10 = t4 * t6;
+    const float t11 = t3 * t5;
+    const float t12 = t10 - t11;
+    const float t13 = t9 * t12;
+    const float t14 = t3 * t6;
+    const float t15 = t4 * t5;
     const float t16 = t14 + t15;
-    const float t17 = t16 * t12;
-    const float t18 = phi_dot * t7;
+    const float t17 = t9 * t16;
+    const float t18 = phi_dot * t5;
+    const float L = p->L;
     const float t19 = L * t18;
-    float rest = t5 - t5;
-    rest += t6 - t6;
+    float rest = t7 - t7;
+    rest += t8 - t8;
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    B_dot[0] = t5;
-    B_dot[1] = t6;
+    B_dot[0] = t7;
+    B_dot[1] = t8;
     B_dot[2] = 0.0f;
     B_dot[3] = 0.0f;
     B_dot[4] = t13;
@@ -313,10 +307,9 @@ front_car_status front_car_constraint_jacobian_dot_f(const float q[4], const flo
 }
 
 front_car_status front_car_constraint_pseudoinverse_f(const float q[4], const front_car_params_f *p, float B_pinv[8]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -326,14 +319,15 @@ front_car_status front_car_constraint_pseudoinverse_f(const float q[4], const fr
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -341,19 +335,19 @@ front_car_status front_car_constraint_pseudoinverse_f(const float q[4], const fr
     const float t17 = t16 * 3.637979e-12f;
     const float t18 = 1.0f / t14;
     const float t19 = t8 * t9;
-    const float t20 = t7 * t4;
-    const float t21 = t6 * t3;
+    const float t20 = t6 * t4;
+    const float t21 = t5 * t3;
     const float t22 = t20 - t21;
-    const float t23 = t22 * t3;
+    const float t23 = t3 * t22;
     const float t24 = t19 - t23;
     const float t25 = t18 * t24;
-    const float t26 = t7 * t3;
+    const float t26 = t6 * t3;
     const float t27 = t18 * t26;
-    const float t28 = t6 * t4;
-    const float t29 = t28 + t26;
-    const float t30 = t29 * t3;
-    const float t31 = t8 * t12;
-    const float t32 = t30 + t31;
+    const float t28 = t8 * t12;
+    const float t29 = t5 * t4;
+    const float t30 = t29 + t26;
+    const float t31 = t3 * t30;
+    const float t32 = t28 + t31;
     const float t33 = t18 * t32;
     const float t34 = -t33;
     const float t35 = t18 * t21;
@@ -387,9 +381,8 @@ front_car_status front_car_constraint_pseudoinverse_f(const float q[4], const fr
 
 front_car_status front_car_nullspace_projector_f(const float q[4], const front_car_params_f *p, float N_B[16]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -398,15 +391,16 @@ front_car_status front_car_nullspace_projector_f(const float q[4], const front_c
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
-    const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    front_car_sincos_f(theta, &t3, &t4);
+    float t5, t6;
+    front_car_sincos_f(phi, &t5, &t6);
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t8 = L * t6;
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -416,12 +410,12 @@ front_car_status front_car_nullspace_projector_f(const float q[4], const front_c
     const float t19 = t13 * t18;
     const float t20 = t9 * t12;
     const float t21 = t18 * t20;
-    const float t22 = t3 * t12;
+    const float t22 = t5 * t12;
     const float t23 = t18 * t22;
     const float t24 = t10 * t18;
-    const float t25 = t3 * t9;
+    const float t25 = t5 * t9;
     const float t26 = t18 * t25;
-    const float t27 = t5 * t18;
+    const float t27 = t7 * t18;
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
@@ -454,12 +448,9 @@ front_car_status front_car_nullspace_projector_f(const float q[4], const front_c
 }
 
 front_car_status front_car_nullspace_projector_dot_f(const float q[4], const float qd[4], const front_car_params_f *p, float N_B_dot[16]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -469,14 +460,15 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -485,14 +477,16 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     const float t18 = L * L;
     const float t19 = t14 * t14;
     const float t20 = t18 / t19;
-    const float t21 = t7 * t4;
-    const float t22 = t6 * t4;
+    const float t21 = t6 * t4;
+    const float t22 = t5 * t4;
     const float t23 = 2.0f * t15;
-    const float t24 = 2.0f * t5;
+    const float t24 = 2.0f * t7;
     const float t25 = t23 + t24;
     const float t26 = t22 * t25;
+    const float theta_dot = qd[2];
     const float t27 = theta_dot * t26;
-    const float t28 = phi_dot * t7;
+    const float phi_dot = qd[3];
+    const float t28 = phi_dot * t6;
     const float t29 = t3 * t28;
     const float t30 = 2.0f * t29;
     const float t31 = t27 + t30;
@@ -504,14 +498,14 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     const float t37 = t4 * t36;
     const float t38 = t4 * t37;
     const float t39 = 2.0f + t38;
-    const float t40 = t7 * t39;
-    const float t41 = t7 * t40;
-    const float t42 = t5 + t15;
+    const float t40 = t6 * t39;
+    const float t41 = t6 * t40;
+    const float t42 = t7 + t15;
     const float t43 = t41 - t42;
     const float t44 = t4 * t43;
     const float t45 = theta_dot * t44;
-    const float t46 = phi_dot * t6;
-    const float t47 = t7 * t46;
+    const float t46 = phi_dot * t5;
+    const float t47 = t6 * t46;
     const float t48 = t3 * t47;
     const float t49 = 2.0f * t48;
     const float t50 = t45 - t49;
@@ -519,7 +513,7 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     const float t52 = t20 * t51;
     const float t53 = t4 * t28;
     const float t54 = t18 * t53;
-    const float t55 = t6 * t3;
+    const float t55 = t5 * t3;
     const float t56 = t55 * t42;
     const float t57 = theta_dot * t56;
     const float t58 = t54 - t57;
@@ -535,7 +529,7 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     const float t68 = t65 - t67;
     const float t69 = t22 * t68;
     const float t70 = t20 * t69;
-    const float t71 = t7 * t3;
+    const float t71 = t6 * t3;
     const float t72 = t71 * t42;
     const float t73 = theta_dot * t72;
     const float t74 = t4 * t46;
@@ -581,14 +575,9 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
 }
 
 front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const front_car_params_f *p, float B_G_pinv[8]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -598,27 +587,30 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t18 = m_1 + m_2;
     const float t19 = t9 * t18;
     const float t20 = L * m_2;
-    const float t21 = t7 * t20;
+    const float t21 = t6 * t20;
     const float t22 = t3 * t21;
     const float t23 = t19 + t22;
     const float t24 = t9 * t23;
-    const float t25 = t6 * t20;
+    const float t25 = t5 * t20;
     const float t26 = t3 * t25;
     const float t27 = t12 * t18;
     const float t28 = t26 - t27;
@@ -626,10 +618,12 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t30 = t24 - t29;
     const float t31 = L * L;
     const float t32 = m_2 * t31;
+    const float Theta_1 = p->Theta_1;
     const float t33 = Theta_1 + t32;
     const float t34 = t3 * t33;
     const float t35 = t3 * t34;
     const float t36 = t30 + t35;
+    const float Theta_2 = p->Theta_2;
     const float t37 = Theta_2 * t36;
     const float t38 = fabsf(t37);
     const float t39 = fabsf(Theta_1);
@@ -640,7 +634,7 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t44 = t39 + t43;
     const float t45 = fabsf(Theta_2);
     const float t46 = t44 * t45;
-    const float t47 = t5 * t46;
+    const float t47 = t7 * t46;
     const float t48 = fabsf(m_1);
     const float t49 = t48 + t40;
     const float t50 = t49 * t45;
@@ -649,16 +643,16 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t53 = t13 * t50;
     const float t54 = t52 + t53;
     const float t55 = t54 * 1.9073486e-06f;
-    const float t56 = t7 * t3;
+    const float t56 = t6 * t3;
     const float t57 = t18 + t32;
     const float t58 = t57 - t33;
     const float t59 = t4 * t58;
     const float t60 = t4 * t59;
-    const float t61 = m_2 * t5;
+    const float t61 = m_2 * t7;
     const float t62 = t60 + t61;
     const float t63 = t56 * t62;
     const float t64 = Theta_2 * t63;
-    const float t65 = t6 * t4;
+    const float t65 = t5 * t4;
     const float t66 = t65 * t37;
     const float t67 = t64 + t66;
     const float t68 = L * t67;
@@ -666,7 +660,7 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t70 = t56 * t37;
     const float t71 = t69 - t70;
     const float t72 = t4 * t71;
-    const float t73 = t6 * t3;
+    const float t73 = t5 * t3;
     const float t74 = t3 * t73;
     const float t75 = t37 * t74;
     const float t76 = t72 + t75;
@@ -684,7 +678,7 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t88 = t78 * t87;
     const float t89 = t73 * t62;
     const float t90 = Theta_2 * t89;
-    const float t91 = t7 * t4;
+    const float t91 = t6 * t4;
     const float t92 = t91 * t37;
     const float t93 = t90 - t92;
     const float t94 = L * t93;
@@ -698,12 +692,12 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t102 = t78 * t101;
     const float t103 = t73 * t86;
     const float t104 = t78 * t103;
-    const float t105 = t5 * t31;
+    const float t105 = t7 * t31;
     const float t106 = (-2.0f) + t105;
     const float t107 = t81 + t106;
     const float t108 = m_2 * t107;
     const float t109 = t18 - t33;
-    const float t110 = t5 * t109;
+    const float t110 = t7 * t109;
     const float t111 = t108 + t110;
     const float t112 = t4 * t111;
     const float t113 = t4 * t112;
@@ -713,7 +707,7 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t117 = t115 + t116;
     const float t118 = L / t77;
     const float t119 = t117 * t118;
-    const float t120 = t5 * t82;
+    const float t120 = t7 * t82;
     const float t121 = Theta_2 * t120;
     const float t122 = t121 - t37;
     const float t123 = t4 * t122;
@@ -746,13 +740,8 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
 
 front_car_status front_car_weighted_nullspace_projector_f(const float q[4], const front_car_params_f *p, float N_BG[16]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -761,39 +750,44 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
-    const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    front_car_sincos_f(theta, &t3, &t4);
+    float t5, t6;
+    front_car_sincos_f(phi, &t5, &t6);
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t8 = L * t6;
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t18 = m_1 + m_2;
     const float t19 = t9 * t18;
     const float t20 = L * m_2;
-    const float t21 = t7 * t20;
-    const float t22 = t3 * t21;
+    const float t21 = t4 * t20;
+    const float t22 = t5 * t21;
     const float t23 = t19 + t22;
     const float t24 = t9 * t23;
-    const float t25 = t6 * t20;
-    const float t26 = t3 * t25;
+    const float t25 = t3 * t20;
+    const float t26 = t5 * t25;
     const float t27 = t12 * t18;
     const float t28 = t26 - t27;
     const float t29 = t12 * t28;
     const float t30 = t24 - t29;
     const float t31 = L * L;
     const float t32 = m_2 * t31;
+    const float Theta_1 = p->Theta_1;
     const float t33 = Theta_1 + t32;
-    const float t34 = t3 * t33;
-    const float t35 = t3 * t34;
+    const float t34 = t5 * t33;
+    const float t35 = t5 * t34;
     const float t36 = t30 + t35;
+    const float Theta_2 = p->Theta_2;
     const float t37 = Theta_2 * t36;
     const float t38 = fabsf(t37);
     const float t39 = fabsf(Theta_1);
@@ -804,7 +798,7 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
     const float t44 = t39 + t43;
     const float t45 = fabsf(Theta_2);
     const float t46 = t44 * t45;
-    const float t47 = t5 * t46;
+    const float t47 = t7 * t46;
     const float t48 = fabsf(m_1);
     const float t49 = t48 + t40;
     const float t50 = t49 * t45;
@@ -815,21 +809,21 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
     const float t55 = t54 * 1.9073486e-06f;
     const float t56 = Theta_2 * t31;
     const float t57 = t56 / t37;
-    const float t58 = t7 * t4;
+    const float t58 = t4 * t6;
     const float t59 = t18 * t58;
-    const float t60 = t6 * t3;
+    const float t60 = t3 * t5;
     const float t61 = m_2 * t60;
     const float t62 = t59 - t61;
     const float t63 = t58 * t62;
     const float t64 = t57 * t63;
-    const float t65 = t7 * t3;
+    const float t65 = t4 * t5;
     const float t66 = m_2 * t65;
-    const float t67 = t6 * t4;
+    const float t67 = t3 * t6;
     const float t68 = t18 * t67;
     const float t69 = t66 + t68;
     const float t70 = t58 * t69;
     const float t71 = t57 * t70;
-    const float t72 = t3 * t58;
+    const float t72 = t5 * t58;
     const float t73 = L * Theta_2;
     const float t74 = t33 * t73;
     const float t75 = t74 / t37;
@@ -838,16 +832,16 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
     const float t78 = t57 * t77;
     const float t79 = t67 * t69;
     const float t80 = t57 * t79;
-    const float t81 = t3 * t67;
+    const float t81 = t5 * t67;
     const float t82 = t81 * t75;
     const float t83 = t73 / t37;
-    const float t84 = t3 * t62;
+    const float t84 = t5 * t62;
     const float t85 = t83 * t84;
-    const float t86 = t3 * t69;
+    const float t86 = t5 * t69;
     const float t87 = t83 * t86;
     const float t88 = Theta_2 * t33;
     const float t89 = t88 / t37;
-    const float t90 = t5 * t89;
+    const float t90 = t7 * t89;
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
@@ -888,7 +882,6 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
 front_car_status front_car_control_matrix_f(const float q[4], const front_car_params_f *p, float M[8]) {
     const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
     const float t1 = theta + phi;
     const float t2 = fabsf(t1);
     const float t3 = fabsf(phi);
@@ -902,6 +895,7 @@ front_car_status front_car_control_matrix_f(const float q[4], const front_car_pa
     front_car_sincos_f(t1, &t4, &t5);
     float t6, t7;
     front_car_sincos_f(phi, &t6, &t7);
+    const float L = p->L;
     const float t8 = L * t6;
     float rest = t5 - t5;
     rest += t4 - t4;
@@ -921,10 +915,9 @@ front_car_status front_car_control_matrix_f(const float q[4], const front_car_pa
 }
 
 front_car_status front_car_projected_control_matrix_f(const float q[4], const front_car_params_f *p, float M_tilde[8]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -934,24 +927,25 @@ front_car_status front_car_projected_control_matrix_f(const float q[4], const fr
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
     const float t18 = L * L;
-    const float t19 = t7 * t18;
+    const float t19 = t6 * t18;
     const float t20 = t4 * t19;
     const float t21 = t20 / t14;
-    const float t22 = t6 * t18;
+    const float t22 = t5 * t18;
     const float t23 = t4 * t22;
     const float t24 = t23 / t14;
     const float t25 = L * t3;
@@ -978,64 +972,8 @@ front_car_status front_car_projected_control_matrix_f(const float q[4], const fr
 
 front_car_status front_car_projected_control_pseudoinverse_f(const float q[4], const front_car_params_f *p, float M_tilde_pinv[8]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
-    const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    if (!(100.0f >= t2)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    const float t3 = fabsf(L);
-    const float t4 = t3 * 1.9073486e-06f;
-    float t5, t6;
-    front_car_sincos_f(theta, &t5, &t6);
-    float t7, t8;
-    front_car_sincos_f(phi, &t7, &t8);
-    const float t9 = t6 * t8;
-    const float t10 = t5 * t8;
-    const float t11 = t7 / L;
-    if (!(t3 > t4)) {
-        const float t12 = t7 * t7;
-        const float t13 = L * t8;
-        const float t14 = t5 * t13;
-        const float t15 = t14 * t14;
-        const float t16 = t12 + t15;
-        const float t17 = t6 * t13;
-        const float t18 = t17 * t17;
-        const float t19 = t16 + t18;
-        const float t20 = t13 * t13;
-        const float t21 = 1.0f + t20;
-        const float t22 = t21 * 3.637979e-12f;
-        if (!(t19 > t22)) {
-            return FRONT_CAR_CONSTRAINT_RANK;
-        }
-        return FRONT_CAR_ACTUATION_RANK;
-    }
-    float rest = t9 - t9;
-    rest += t10 - t10;
-    rest += t11 - t11;
-    if (!(rest >= 0.0f)) {
-        return FRONT_CAR_NOT_FINITE;
-    }
-    M_tilde_pinv[0] = t9;
-    M_tilde_pinv[1] = t10;
-    M_tilde_pinv[2] = t11;
-    M_tilde_pinv[3] = 0.0f;
-    M_tilde_pinv[4] = 0.0f;
-    M_tilde_pinv[5] = 0.0f;
-    M_tilde_pinv[6] = 0.0f;
-    M_tilde_pinv[7] = 1.0f;
-    return FRONT_CAR_OK;
-}
-
-front_car_status front_car_orthogonal_complement_f(const float q[4], const front_car_params_f *p, float F_B[8]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float t1 = fabsf(theta);
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1047,6 +985,61 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
     front_car_sincos_f(theta, &t3, &t4);
     float t5, t6;
     front_car_sincos_f(phi, &t5, &t6);
+    const float L = p->L;
+    const float t7 = fabsf(L);
+    const float t8 = t4 * t6;
+    const float t9 = t3 * t6;
+    const float t10 = t5 / L;
+    if (!(t7 > 0.0f)) {
+        const float t11 = t5 * t5;
+        const float t12 = L * t6;
+        const float t13 = t3 * t12;
+        const float t14 = t13 * t13;
+        const float t15 = t11 + t14;
+        const float t16 = t4 * t12;
+        const float t17 = t16 * t16;
+        const float t18 = t15 + t17;
+        const float t19 = t12 * t12;
+        const float t20 = 1.0f + t19;
+        const float t21 = t20 * 3.637979e-12f;
+        if (!(t18 > t21)) {
+            return FRONT_CAR_CONSTRAINT_RANK;
+        }
+        return FRONT_CAR_ACTUATION_RANK;
+    }
+    float rest = t8 - t8;
+    rest += t9 - t9;
+    rest += t10 - t10;
+    if (!(rest >= 0.0f)) {
+        return FRONT_CAR_NOT_FINITE;
+    }
+    M_tilde_pinv[0] = t8;
+    M_tilde_pinv[1] = t9;
+    M_tilde_pinv[2] = t10;
+    M_tilde_pinv[3] = 0.0f;
+    M_tilde_pinv[4] = 0.0f;
+    M_tilde_pinv[5] = 0.0f;
+    M_tilde_pinv[6] = 0.0f;
+    M_tilde_pinv[7] = 1.0f;
+    return FRONT_CAR_OK;
+}
+
+front_car_status front_car_orthogonal_complement_f(const float q[4], const front_car_params_f *p, float F_B[8]) {
+    const float theta = q[2];
+    const float t1 = fabsf(theta);
+    const float phi = q[3];
+    const float t2 = fabsf(phi);
+    if (!(100.0f >= t1)) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    if (!(100.0f >= t2)) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    float t3, t4;
+    front_car_sincos_f(theta, &t3, &t4);
+    float t5, t6;
+    front_car_sincos_f(phi, &t5, &t6);
+    const float L = p->L;
     const float t7 = L * t6;
     const float t8 = t4 * t7;
     const float t9 = fabsf(t8);
@@ -1087,14 +1080,9 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
 }
 
 front_car_status front_car_projected_mass_matrix_f(const float q[4], const front_car_params_f *p, float G_tilde[16]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1104,14 +1092,15 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -1120,11 +1109,14 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t18 = L * L;
     const float t19 = t14 * t14;
     const float t20 = t18 / t19;
-    const float t21 = t7 * t7;
+    const float t21 = t6 * t6;
     const float t22 = t4 * t21;
     const float t23 = t4 * t22;
+    const float m_2 = p->m_2;
     const float t24 = m_2 * t18;
+    const float Theta_1 = p->Theta_1;
     const float t25 = Theta_1 + t24;
+    const float m_1 = p->m_1;
     const float t26 = m_1 + m_2;
     const float t27 = t26 * t18;
     const float t28 = t27 - t25;
@@ -1133,29 +1125,29 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t31 = t25 + t30;
     const float t32 = t23 * t31;
     const float t33 = t20 * t32;
-    const float t34 = t6 * t7;
+    const float t34 = t5 * t6;
     const float t35 = t4 * t34;
     const float t36 = t4 * t35;
     const float t37 = t36 * t31;
     const float t38 = t20 * t37;
     const float t39 = L / t19;
-    const float t40 = t7 * t4;
+    const float t40 = t6 * t4;
     const float t41 = t3 * t40;
     const float t42 = t41 * t31;
     const float t43 = t39 * t42;
-    const float t44 = t6 * t6;
+    const float t44 = t5 * t5;
     const float t45 = t4 * t44;
     const float t46 = t4 * t45;
     const float t47 = t46 * t31;
     const float t48 = t20 * t47;
-    const float t49 = t6 * t4;
+    const float t49 = t5 * t4;
     const float t50 = t3 * t49;
     const float t51 = t50 * t31;
     const float t52 = t39 * t51;
     const float t53 = t4 * t4;
     const float t54 = t53 + (-2.0f);
     const float t55 = t25 * t54;
-    const float t56 = t5 * t27;
+    const float t56 = t7 * t27;
     const float t57 = t55 + t56;
     const float t58 = t4 * t57;
     const float t59 = t4 * t58;
@@ -1165,6 +1157,7 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
+    const float Theta_2 = p->Theta_2;
     float rest = t33 - t33;
     rest += t38 - t38;
     rest += t43 - t43;
@@ -1195,17 +1188,9 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
 }
 
 front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_tilde[16]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1215,14 +1200,15 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -1233,46 +1219,53 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t20 = t14 * t19;
     const float t21 = t14 * t20;
     const float t22 = t18 / t21;
-    const float t23 = t7 * t4;
-    const float t24 = x_dot * t7;
-    const float t25 = y_dot * t6;
+    const float t23 = t6 * t4;
+    const float x_dot = qd[0];
+    const float t24 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t25 = y_dot * t5;
     const float t26 = t24 + t25;
     const float t27 = t4 * t26;
     const float t28 = L * t27;
+    const float theta_dot = qd[2];
     const float t29 = theta_dot * t3;
     const float t30 = t28 + t29;
-    const float t31 = t5 * t18;
+    const float t31 = t7 * t18;
     const float t32 = t4 * t4;
     const float t33 = t32 + (-2.0f);
     const float t34 = t14 + t33;
     const float t35 = t31 + t34;
-    const float t36 = t7 * t35;
+    const float t36 = t6 * t35;
+    const float m_2 = p->m_2;
     const float t37 = m_2 * t36;
-    const float t38 = t6 * t4;
+    const float t38 = t5 * t4;
     const float t39 = t3 * t38;
+    const float m_1 = p->m_1;
     const float t40 = m_1 + m_2;
     const float t41 = t40 * t18;
     const float t42 = t39 * t41;
     const float t43 = t37 - t42;
     const float t44 = t4 * t43;
     const float t45 = m_2 * t18;
+    const float Theta_1 = p->Theta_1;
     const float t46 = Theta_1 + t45;
     const float t47 = t40 + t46;
-    const float t48 = t6 * t3;
+    const float t48 = t5 * t3;
     const float t49 = t3 * t48;
     const float t50 = t3 * t49;
     const float t51 = t47 * t50;
     const float t52 = t44 - t51;
     const float t53 = t4 * t52;
-    const float t54 = t5 + t15;
+    const float t54 = t7 + t15;
     const float t55 = 1.0f - t54;
-    const float t56 = t7 * t55;
+    const float t56 = t6 * t55;
     const float t57 = m_2 * t56;
     const float t58 = t53 + t57;
     const float t59 = t30 * t58;
     const float t60 = 2.0f * t40;
     const float t61 = t46 - t60;
-    const float t62 = phi_dot * t7;
+    const float phi_dot = qd[3];
+    const float t62 = phi_dot * t6;
     const float t63 = t3 * t62;
     const float t64 = t14 * t63;
     const float t65 = t61 * t64;
@@ -1282,7 +1275,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t69 = 2.0f - t32;
     const float t70 = t4 * t30;
     const float t71 = t69 * t70;
-    const float t72 = t6 * t71;
+    const float t72 = t5 * t71;
     const float t73 = t14 * t62;
     const float t74 = t72 + t73;
     const float t75 = t3 * t74;
@@ -1301,26 +1294,26 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t88 = t40 * t87;
     const float t89 = t88 - t46;
     const float t90 = t3 * t89;
-    const float t91 = t7 * t90;
+    const float t91 = t6 * t90;
     const float t92 = m_2 * t38;
     const float t93 = t91 + t92;
     const float t94 = t4 * t93;
     const float t95 = (-2.0f) + t31;
-    const float t96 = t6 * t95;
+    const float t96 = t5 * t95;
     const float t97 = m_2 * t96;
     const float t98 = t94 + t97;
     const float t99 = t4 * t98;
-    const float t100 = t7 * t3;
+    const float t100 = t6 * t3;
     const float t101 = t100 * t47;
     const float t102 = t99 + t101;
     const float t103 = t4 * t102;
-    const float t104 = t5 * t14;
+    const float t104 = t7 * t14;
     const float t105 = 1.0f - t104;
-    const float t106 = t6 * t105;
+    const float t106 = t5 * t105;
     const float t107 = m_2 * t106;
     const float t108 = t103 + t107;
     const float t109 = t30 * t108;
-    const float t110 = phi_dot * t6;
+    const float t110 = phi_dot * t5;
     const float t111 = t3 * t110;
     const float t112 = t14 * t111;
     const float t113 = t61 * t112;
@@ -1364,18 +1357,18 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t151 = t40 * t150;
     const float t152 = t46 + t151;
     const float t153 = t3 * t152;
-    const float t154 = t6 * t153;
+    const float t154 = t5 * t153;
     const float t155 = m_2 * t23;
     const float t156 = t154 + t155;
     const float t157 = t4 * t156;
-    const float t158 = t7 * t95;
+    const float t158 = t6 * t95;
     const float t159 = m_2 * t158;
     const float t160 = t157 + t159;
     const float t161 = t4 * t160;
     const float t162 = t48 * t47;
     const float t163 = t161 - t162;
     const float t164 = t4 * t163;
-    const float t165 = t7 * t105;
+    const float t165 = t6 * t105;
     const float t166 = m_2 * t165;
     const float t167 = t164 + t166;
     const float t168 = t30 * t167;
@@ -1406,7 +1399,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t193 = t40 * t192;
     const float t194 = t46 * t69;
     const float t195 = t193 + t194;
-    const float t196 = t6 * t195;
+    const float t196 = t5 * t195;
     const float t197 = m_2 * t117;
     const float t198 = t196 + t197;
     const float t199 = t4 * t198;
@@ -1414,7 +1407,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t201 = m_2 * t200;
     const float t202 = t199 + t201;
     const float t203 = t4 * t202;
-    const float t204 = t6 * t47;
+    const float t204 = t5 * t47;
     const float t205 = t203 - t204;
     const float t206 = t4 * t205;
     const float t207 = t100 * t105;
@@ -1428,10 +1421,10 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t215 = L * t214;
     const float t216 = t4 * t32;
     const float t217 = t4 * t216;
-    const float t218 = 3.0f * t5;
+    const float t218 = 3.0f * t7;
     const float t219 = t217 + t218;
     const float t220 = t30 * t219;
-    const float t221 = t6 * t220;
+    const float t221 = t5 * t220;
     const float t222 = t4 * t62;
     const float t223 = t14 * t222;
     const float t224 = t221 - t223;
@@ -1441,7 +1434,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t228 = t46 * t227;
     const float t229 = t215 + t228;
     const float t230 = t4 * t229;
-    const float t231 = t6 * t30;
+    const float t231 = t5 * t30;
     const float t232 = t46 * t231;
     const float t233 = t230 - t232;
     const float t234 = t4 * t233;
@@ -1453,7 +1446,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t240 = t32 + t95;
     const float t241 = t40 * t240;
     const float t242 = t239 + t241;
-    const float t243 = t7 * t242;
+    const float t243 = t6 * t242;
     const float t244 = m_2 * t39;
     const float t245 = t243 + t244;
     const float t246 = t4 * t245;
@@ -1461,7 +1454,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t248 = m_2 * t247;
     const float t249 = t246 + t248;
     const float t250 = t4 * t249;
-    const float t251 = t7 * t47;
+    const float t251 = t6 * t47;
     const float t252 = t250 + t251;
     const float t253 = t4 * t252;
     const float t254 = t48 * t105;
@@ -1475,7 +1468,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t262 = L * t261;
     const float t263 = t14 * t110;
     const float t264 = 2.0f * t263;
-    const float t265 = t7 * t220;
+    const float t265 = t6 * t220;
     const float t266 = t4 * t110;
     const float t267 = t14 * t266;
     const float t268 = t265 + t267;
@@ -1484,7 +1477,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t271 = t46 * t270;
     const float t272 = t262 + t271;
     const float t273 = t4 * t272;
-    const float t274 = t7 * t30;
+    const float t274 = t6 * t30;
     const float t275 = t46 * t274;
     const float t276 = t273 + t275;
     const float t277 = t4 * t276;
@@ -1554,14 +1547,9 @@ front_car_status front_car_projected_applied_force_f(const float q[4], const flo
 }
 
 front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_car_params_f *p, float G_bar[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1570,29 +1558,33 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_sincos_f(theta, &t3, &t4);
+    front_car_sincos_f(phi, &t3, &t4);
     float t5, t6;
-    front_car_sincos_f(phi, &t5, &t6);
-    const float t7 = L * t6;
-    const float t8 = t4 * t7;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float L = p->L;
+    const float t7 = L * t4;
+    const float t8 = t6 * t7;
     const float t9 = fabsf(t8);
     const float t10 = fabsf(L);
     const float t11 = t10 * 1.9073486e-06f;
     const float t12 = L * L;
+    const float m_2 = p->m_2;
     const float t13 = m_2 * t12;
+    const float Theta_1 = p->Theta_1;
     const float t14 = Theta_1 + t13;
+    const float m_1 = p->m_1;
     const float t15 = m_1 + m_2;
     const float t16 = t15 * t12;
     const float t17 = t16 - t14;
-    const float t18 = t6 * t17;
-    const float t19 = t6 * t18;
+    const float t18 = t4 * t17;
+    const float t19 = t4 * t18;
     const float t20 = t14 + t19;
     const float t21 = t8 * t8;
     const float t22 = 1.0f / t21;
     const float t23 = t20 * t22;
     if (!(t9 > t11)) {
-        const float t24 = t5 * t5;
-        const float t25 = t3 * t7;
+        const float t24 = t3 * t3;
+        const float t25 = t5 * t7;
         const float t26 = t25 * t25;
         const float t27 = t24 + t26;
         const float t28 = t27 + t21;
@@ -1604,6 +1596,7 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
         }
         return FRONT_CAR_CONSTRAINT_RANK;
     }
+    const float Theta_2 = p->Theta_2;
     float rest = t23 - t23;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0f)) {
@@ -1617,15 +1610,9 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
 }
 
 front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_bar[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1635,14 +1622,15 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -1651,11 +1639,14 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     const float t18 = fabsf(t12);
     const float t19 = fabsf(L);
     const float t20 = t19 * 1.9073486e-06f;
-    const float t21 = t6 * t4;
+    const float t21 = t5 * t4;
     const float t22 = t3 * t21;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t23 = m_1 + m_2;
     const float t24 = L * L;
     const float t25 = m_2 * t24;
+    const float Theta_1 = p->Theta_1;
     const float t26 = Theta_1 + t25;
     const float t27 = t23 + t26;
     const float t28 = t22 * t27;
@@ -1672,23 +1663,25 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     const float t39 = t21 * t38;
     const float t40 = t26 * t39;
     const float t41 = t36 + t40;
+    const float theta_dot = qd[2];
     const float t42 = theta_dot * t41;
-    const float t43 = phi_dot * t7;
+    const float phi_dot = qd[3];
+    const float t43 = phi_dot * t6;
     const float t44 = t3 * t43;
     const float t45 = (-1.0f) + t24;
     const float t46 = t44 * t45;
     const float t47 = t26 * t46;
     const float t48 = t42 + t47;
     const float t49 = t4 * t48;
-    const float t50 = theta_dot * t6;
+    const float t50 = theta_dot * t5;
     const float t51 = t26 * t50;
     const float t52 = t49 + t51;
     const float t53 = t4 * t52;
     const float t54 = t26 * t44;
     const float t55 = t53 + t54;
-    const float t56 = t7 * t24;
-    const float t57 = t7 * t56;
-    const float t58 = t7 * t57;
+    const float t56 = t6 * t24;
+    const float t57 = t6 * t56;
+    const float t58 = t6 * t57;
     const float t59 = t4 * t58;
     const float t60 = t4 * t59;
     const float t61 = t4 * t60;
@@ -1734,9 +1727,8 @@ front_car_status front_car_minimal_applied_force_f(const float q[4], const float
 
 front_car_status front_car_minimal_control_matrix_f(const float q[4], const front_car_params_f *p, float M_bar[4]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1748,6 +1740,7 @@ front_car_status front_car_minimal_control_matrix_f(const float q[4], const fron
     front_car_sincos_f(theta, &t3, &t4);
     float t5, t6;
     front_car_sincos_f(phi, &t5, &t6);
+    const float L = p->L;
     const float t7 = L * t6;
     const float t8 = t4 * t7;
     const float t9 = fabsf(t8);
@@ -1782,14 +1775,9 @@ front_car_status front_car_minimal_control_matrix_f(const float q[4], const fron
 }
 
 front_car_status front_car_admissible_velocity_f(const float q[4], const float qd[4], const front_car_params_f *p, float qd_admissible[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1799,31 +1787,35 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
     const float t18 = L / t14;
-    const float t19 = x_dot * t7;
-    const float t20 = y_dot * t6;
+    const float x_dot = qd[0];
+    const float t19 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t20 = y_dot * t5;
     const float t21 = t19 + t20;
     const float t22 = t4 * t21;
     const float t23 = L * t22;
+    const float theta_dot = qd[2];
     const float t24 = theta_dot * t3;
     const float t25 = t23 + t24;
-    const float t26 = t7 * t4;
+    const float t26 = t6 * t4;
     const float t27 = t25 * t26;
     const float t28 = t18 * t27;
-    const float t29 = t6 * t4;
+    const float t29 = t5 * t4;
     const float t30 = t25 * t29;
     const float t31 = t18 * t30;
     const float t32 = 1.0f / t14;
@@ -1832,6 +1824,7 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
+    const float phi_dot = qd[3];
     float rest = t28 - t28;
     rest += t31 - t31;
     rest += t34 - t34;
@@ -1847,18 +1840,9 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
 }
 
 front_car_status front_car_admissible_acceleration_f(const float q[4], const float qd[4], const float qdd[4], const front_car_params_f *p, float qdd_admissible[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float x_ddot = qdd[0];
-    const float y_ddot = qdd[1];
-    const float theta_ddot = qdd[2];
-    const float phi_ddot = qdd[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -1868,45 +1852,52 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    const float t18 = y_ddot * t7;
+    const float y_ddot = qdd[1];
+    const float t18 = y_ddot * t6;
     const float t19 = t14 * t18;
     const float t20 = t14 * t19;
-    const float t21 = x_dot * t7;
-    const float t22 = y_dot * t6;
+    const float x_dot = qd[0];
+    const float t21 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t22 = y_dot * t5;
     const float t23 = t21 + t22;
     const float t24 = t4 * t23;
     const float t25 = L * t24;
+    const float theta_dot = qd[2];
     const float t26 = theta_dot * t3;
     const float t27 = t25 + t26;
     const float t28 = t8 * t3;
     const float t29 = t27 * t28;
     const float t30 = t27 * t29;
     const float t31 = t20 - t30;
-    const float t32 = t6 * t31;
-    const float t33 = x_ddot * t7;
-    const float t34 = t7 * t33;
+    const float t32 = t5 * t31;
+    const float x_ddot = qdd[0];
+    const float t33 = x_ddot * t6;
+    const float t34 = t6 * t33;
     const float t35 = t14 * t34;
     const float t36 = t14 * t35;
     const float t37 = t32 + t36;
     const float t38 = t4 * t37;
     const float t39 = L * t38;
-    const float t40 = theta_ddot * t7;
+    const float theta_ddot = qdd[2];
+    const float t40 = theta_ddot * t6;
     const float t41 = t14 * t40;
     const float t42 = t14 * t41;
-    const float t43 = t6 * t3;
+    const float t43 = t5 * t3;
     const float t44 = t3 * t43;
     const float t45 = t27 * t44;
     const float t46 = t27 * t45;
@@ -1914,7 +1905,8 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t48 = t3 * t47;
     const float t49 = t39 + t48;
     const float t50 = t4 * t49;
-    const float t51 = phi_dot * t7;
+    const float phi_dot = qd[3];
+    const float t51 = phi_dot * t6;
     const float t52 = t3 * t51;
     const float t53 = t14 * t52;
     const float t54 = t27 * t53;
@@ -1923,11 +1915,11 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t57 = t14 * t56;
     const float t58 = L / t57;
     const float t59 = t55 * t58;
-    const float t60 = y_ddot * t6;
+    const float t60 = y_ddot * t5;
     const float t61 = t33 + t60;
     const float t62 = t56 * t61;
-    const float t63 = t6 * t62;
-    const float t64 = t7 * t4;
+    const float t63 = t5 * t62;
+    const float t64 = t6 * t4;
     const float t65 = t3 * t64;
     const float t66 = t27 * t65;
     const float t67 = t27 * t66;
@@ -1935,10 +1927,10 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t69 = t63 + t68;
     const float t70 = t4 * t69;
     const float t71 = L * t70;
-    const float t72 = theta_ddot * t6;
+    const float t72 = theta_ddot * t5;
     const float t73 = t14 * t72;
     const float t74 = t14 * t73;
-    const float t75 = t7 * t3;
+    const float t75 = t6 * t3;
     const float t76 = t3 * t75;
     const float t77 = t27 * t76;
     const float t78 = t27 * t77;
@@ -1946,7 +1938,7 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t80 = t3 * t79;
     const float t81 = t71 + t80;
     const float t82 = t4 * t81;
-    const float t83 = phi_dot * t6;
+    const float t83 = phi_dot * t5;
     const float t84 = t3 * t83;
     const float t85 = t14 * t84;
     const float t86 = t27 * t85;
@@ -1968,6 +1960,7 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
+    const float phi_ddot = qdd[3];
     float rest = t59 - t59;
     rest += t88 - t88;
     rest += t101 - t101;
@@ -2003,19 +1996,9 @@ front_car_status front_car_projected_configuration_f(const float q[4], const fro
 }
 
 front_car_status front_car_inverse_dynamics_f(const float q[4], const float qd[4], const float qdd[4], const front_car_params_f *p, float u[2]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float theta_dot = qd[2];
-    const float x_ddot = qdd[0];
-    const float y_ddot = qdd[1];
-    const float theta_ddot = qdd[2];
-    const float phi_ddot = qdd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -2023,62 +2006,71 @@ front_car_status front_car_inverse_dynamics_f(const float q[4], const float qd[4
     if (!(100.0f >= t2)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float t3 = fabsf(L);
-    const float t4 = t3 * 1.9073486e-06f;
-    const float t5 = 1.0f / L;
-    float t6, t7;
-    front_car_sincos_f(phi, &t6, &t7);
-    float t8, t9;
-    front_car_sincos_f(theta, &t8, &t9);
-    const float t10 = y_ddot * t9;
-    const float t11 = x_ddot * t8;
-    const float t12 = t10 - t11;
-    const float t13 = t6 * t12;
-    const float t14 = theta_dot * theta_dot;
-    const float t15 = t7 * t14;
-    const float t16 = L * t15;
-    const float t17 = t13 - t16;
-    const float t18 = m_2 * t17;
-    const float t19 = m_1 + m_2;
-    const float t20 = x_ddot * t9;
-    const float t21 = y_ddot * t8;
-    const float t22 = t20 + t21;
-    const float t23 = t7 * t22;
-    const float t24 = t19 * t23;
-    const float t25 = t18 + t24;
-    const float t26 = L * t25;
-    const float t27 = L * L;
-    const float t28 = m_2 * t27;
-    const float t29 = Theta_1 + t28;
-    const float t30 = theta_ddot * t6;
-    const float t31 = t29 * t30;
-    const float t32 = t26 + t31;
-    const float t33 = t5 * t32;
-    const float t34 = phi_ddot * Theta_2;
-    if (!(t3 > t4)) {
-        const float t35 = t6 * t6;
-        const float t36 = L * t7;
-        const float t37 = t8 * t36;
-        const float t38 = t37 * t37;
-        const float t39 = t35 + t38;
-        const float t40 = t9 * t36;
-        const float t41 = t40 * t40;
-        const float t42 = t39 + t41;
-        const float t43 = t36 * t36;
-        const float t44 = 1.0f + t43;
-        const float t45 = t44 * 3.637979e-12f;
-        if (!(t42 > t45)) {
+    float t3, t4;
+    front_car_sincos_f(phi, &t3, &t4);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float L = p->L;
+    const float t7 = fabsf(L);
+    const float t8 = 1.0f / L;
+    const float y_ddot = qdd[1];
+    const float t9 = y_ddot * t6;
+    const float x_ddot = qdd[0];
+    const float t10 = x_ddot * t5;
+    const float t11 = t9 - t10;
+    const float t12 = t3 * t11;
+    const float theta_dot = qd[2];
+    const float t13 = theta_dot * theta_dot;
+    const float t14 = t4 * t13;
+    const float t15 = L * t14;
+    const float t16 = t12 - t15;
+    const float m_2 = p->m_2;
+    const float t17 = m_2 * t16;
+    const float m_1 = p->m_1;
+    const float t18 = m_1 + m_2;
+    const float t19 = x_ddot * t6;
+    const float t20 = y_ddot * t5;
+    const float t21 = t19 + t20;
+    const float t22 = t4 * t21;
+    const float t23 = t18 * t22;
+    const float t24 = t17 + t23;
+    const float t25 = L * t24;
+    const float t26 = L * L;
+    const float t27 = m_2 * t26;
+    const float Theta_1 = p->Theta_1;
+    const float t28 = Theta_1 + t27;
+    const float theta_ddot = qdd[2];
+    const float t29 = theta_ddot * t3;
+    const float t30 = t28 * t29;
+    const float t31 = t25 + t30;
+    const float t32 = t8 * t31;
+    const float phi_ddot = qdd[3];
+    const float Theta_2 = p->Theta_2;
+    const float t33 = phi_ddot * Theta_2;
+    if (!(t7 > 0.0f)) {
+        const float t34 = t3 * t3;
+        const float t35 = L * t4;
+        const float t36 = t5 * t35;
+        const float t37 = t36 * t36;
+        const float t38 = t34 + t37;
+        const float t39 = t6 * t35;
+        const float t40 = t39 * t39;
+        const float t41 = t38 + t40;
+        const float t42 = t35 * t35;
+        const float t43 = 1.0f + t42;
+        const float t44 = t43 * 3.637979e-12f;
+        if (!(t41 > t44)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    float rest = t33 - t33;
-    rest += t34 - t34;
+    float rest = t32 - t32;
+    rest += t33 - t33;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    u[0] = t33;
-    u[1] = t34;
+    u[0] = t32;
+    u[1] = t33;
     return FRONT_CAR_OK;
 }
 
@@ -2097,11 +2089,6 @@ front_car_status front_car_inverse_dynamics_residual_f(const float q[4], const f
 front_car_status front_car_actuator_velocity_f(const float q[4], const float qd[4], const front_car_params_f *p, float nu[2]) {
     const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
     const float t1 = theta + phi;
     const float t2 = fabsf(t1);
     const float t3 = fabsf(phi);
@@ -2113,14 +2100,19 @@ front_car_status front_car_actuator_velocity_f(const float q[4], const float qd[
     }
     float t4, t5;
     front_car_sincos_f(t1, &t4, &t5);
-    const float t6 = x_dot * t5;
-    const float t7 = y_dot * t4;
-    const float t8 = t6 + t7;
-    float t9, t10;
-    front_car_sincos_f(phi, &t9, &t10);
-    const float t11 = L * t9;
+    float t6, t7;
+    front_car_sincos_f(phi, &t6, &t7);
+    const float x_dot = qd[0];
+    const float t8 = x_dot * t5;
+    const float y_dot = qd[1];
+    const float t9 = y_dot * t4;
+    const float t10 = t8 + t9;
+    const float L = p->L;
+    const float t11 = L * t6;
+    const float theta_dot = qd[2];
     const float t12 = theta_dot * t11;
-    const float t13 = t8 + t12;
+    const float t13 = t10 + t12;
+    const float phi_dot = qd[3];
     float rest = t13 - t13;
     rest += phi_dot - phi_dot;
     if (!(rest >= 0.0f)) {
@@ -2132,57 +2124,56 @@ front_car_status front_car_actuator_velocity_f(const float q[4], const float qd[
 }
 
 front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_car_params_f *p, float G_nu[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float t2 = fabsf(L);
-    const float t3 = t2 * 1.9073486e-06f;
-    const float t4 = L * L;
-    const float t5 = m_2 * t4;
-    const float t6 = Theta_1 + t5;
-    float t7, t8;
-    front_car_sincos_f(phi, &t7, &t8);
-    const float t9 = m_1 + m_2;
-    const float t10 = t9 * t4;
-    const float t11 = t10 - t6;
-    const float t12 = t8 * t11;
-    const float t13 = t8 * t12;
-    const float t14 = t6 + t13;
-    const float t15 = 1.0f / t4;
-    const float t16 = t14 * t15;
-    if (!(t2 > t3)) {
-        const float t17 = t7 * t7;
-        float t18, t19;
-        front_car_sincos_f(theta, &t18, &t19);
-        const float t20 = L * t8;
-        const float t21 = t18 * t20;
-        const float t22 = t21 * t21;
-        const float t23 = t17 + t22;
-        const float t24 = t19 * t20;
-        const float t25 = t24 * t24;
-        const float t26 = t23 + t25;
-        const float t27 = t20 * t20;
-        const float t28 = 1.0f + t27;
-        const float t29 = t28 * 3.637979e-12f;
-        if (!(t26 > t29)) {
+    float t2, t3;
+    front_car_sincos_f(phi, &t2, &t3);
+    const float L = p->L;
+    const float t4 = fabsf(L);
+    const float t5 = L * L;
+    const float m_2 = p->m_2;
+    const float t6 = m_2 * t5;
+    const float Theta_1 = p->Theta_1;
+    const float t7 = Theta_1 + t6;
+    const float m_1 = p->m_1;
+    const float t8 = m_1 + m_2;
+    const float t9 = t8 * t5;
+    const float t10 = t9 - t7;
+    const float t11 = t3 * t10;
+    const float t12 = t3 * t11;
+    const float t13 = t7 + t12;
+    const float t14 = 1.0f / t5;
+    const float t15 = t13 * t14;
+    const float theta = q[2];
+    if (!(t4 > 0.0f)) {
+        const float t16 = t2 * t2;
+        float t17, t18;
+        front_car_sincos_f(theta, &t17, &t18);
+        const float t19 = L * t3;
+        const float t20 = t17 * t19;
+        const float t21 = t20 * t20;
+        const float t22 = t16 + t21;
+        const float t23 = t18 * t19;
+        const float t24 = t23 * t23;
+        const float t25 = t22 + t24;
+        const float t26 = t19 * t19;
+        const float t27 = 1.0f + t26;
+        const float t28 = t27 * 3.637979e-12f;
+        if (!(t25 > t28)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    float rest = t16 - t16;
+    const float Theta_2 = p->Theta_2;
+    float rest = t15 - t15;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_nu[0] = t16;
+    G_nu[0] = t15;
     G_nu[1] = 0.0f;
     G_nu[2] = 0.0f;
     G_nu[3] = Theta_2;
@@ -2190,17 +2181,9 @@ front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_
 }
 
 front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], const front_car_params_f *p, float bias_nu[2]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -2210,83 +2193,79 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
     const float t18 = fabsf(L);
-    const float t19 = t18 * 1.9073486e-06f;
-    const float t20 = L * L;
-    const float t21 = 1.0f / t20;
-    const float t22 = phi_dot * t4;
-    const float t23 = t3 * t22;
-    const float t24 = m_2 * t20;
-    const float t25 = Theta_1 + t24;
-    const float t26 = theta_dot * t3;
-    const float t27 = t25 * t26;
-    const float t28 = m_1 + m_2;
-    const float t29 = t7 * t4;
-    const float t30 = t6 * t3;
-    const float t31 = t29 - t30;
-    const float t32 = x_dot * t31;
-    const float t33 = t6 * t4;
-    const float t34 = t7 * t3;
-    const float t35 = t33 + t34;
-    const float t36 = y_dot * t35;
-    const float t37 = t32 + t36;
-    const float t38 = L * t3;
-    const float t39 = theta_dot * t38;
-    const float t40 = t37 + t39;
-    const float t41 = t28 * t40;
-    const float t42 = L * t41;
-    const float t43 = t27 - t42;
-    const float t44 = L * t43;
-    const float t45 = t25 * t37;
-    const float t46 = t44 + t45;
-    const float t47 = t23 * t46;
-    const float t48 = t21 * t47;
+    const float t19 = L * L;
+    const float t20 = 1.0f / t19;
+    const float phi_dot = qd[3];
+    const float t21 = phi_dot * t4;
+    const float t22 = t3 * t21;
+    const float m_2 = p->m_2;
+    const float t23 = m_2 * t19;
+    const float Theta_1 = p->Theta_1;
+    const float t24 = Theta_1 + t23;
+    const float theta_dot = qd[2];
+    const float t25 = theta_dot * t3;
+    const float t26 = t24 * t25;
+    const float m_1 = p->m_1;
+    const float t27 = m_1 + m_2;
+    const float t28 = L * t3;
+    const float t29 = theta_dot * t28;
+    const float t30 = t6 * t4;
+    const float t31 = t5 * t3;
+    const float t32 = t30 - t31;
+    const float x_dot = qd[0];
+    const float t33 = x_dot * t32;
+    const float t34 = t5 * t4;
+    const float t35 = t6 * t3;
+    const float t36 = t34 + t35;
+    const float y_dot = qd[1];
+    const float t37 = y_dot * t36;
+    const float t38 = t33 + t37;
+    const float t39 = t29 + t38;
+    const float t40 = t27 * t39;
+    const float t41 = L * t40;
+    const float t42 = t26 - t41;
+    const float t43 = L * t42;
+    const float t44 = t24 * t38;
+    const float t45 = t43 + t44;
+    const float t46 = t22 * t45;
+    const float t47 = t20 * t46;
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    if (!(t18 > t19)) {
+    if (!(t18 > 0.0f)) {
         if (!(t14 > t17)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    float rest = t48 - t48;
+    float rest = t47 - t47;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    bias_nu[0] = t48;
+    bias_nu[0] = t47;
     bias_nu[1] = 0.0f;
     return FRONT_CAR_OK;
 }
 
 front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float qdd[4]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float K_f = u[0];
-    const float T = u[1];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -2295,39 +2274,44 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
-    const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    front_car_sincos_f(theta, &t3, &t4);
+    float t5, t6;
+    front_car_sincos_f(phi, &t5, &t6);
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t8 = L * t6;
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t18 = m_1 + m_2;
     const float t19 = t9 * t18;
     const float t20 = L * m_2;
-    const float t21 = t7 * t20;
-    const float t22 = t3 * t21;
+    const float t21 = t4 * t20;
+    const float t22 = t5 * t21;
     const float t23 = t19 + t22;
     const float t24 = t9 * t23;
-    const float t25 = t6 * t20;
-    const float t26 = t3 * t25;
+    const float t25 = t3 * t20;
+    const float t26 = t5 * t25;
     const float t27 = t12 * t18;
     const float t28 = t26 - t27;
     const float t29 = t12 * t28;
     const float t30 = t24 - t29;
     const float t31 = L * L;
     const float t32 = m_2 * t31;
+    const float Theta_1 = p->Theta_1;
     const float t33 = Theta_1 + t32;
-    const float t34 = t3 * t33;
-    const float t35 = t3 * t34;
+    const float t34 = t5 * t33;
+    const float t35 = t5 * t34;
     const float t36 = t30 + t35;
+    const float Theta_2 = p->Theta_2;
     const float t37 = Theta_2 * t36;
     const float t38 = fabsf(t37);
     const float t39 = fabsf(Theta_1);
@@ -2338,7 +2322,7 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     const float t44 = t39 + t43;
     const float t45 = fabsf(Theta_2);
     const float t46 = t44 * t45;
-    const float t47 = t5 * t46;
+    const float t47 = t7 * t46;
     const float t48 = fabsf(m_1);
     const float t49 = t48 + t40;
     const float t50 = t49 * t45;
@@ -2350,35 +2334,40 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     const float t56 = 1.0f / t37;
     const float t57 = Theta_2 * t12;
     const float t58 = t12 * t57;
+    const float theta_dot = qd[2];
     const float t59 = theta_dot * t20;
-    const float t60 = theta_dot * t7;
+    const float t60 = theta_dot * t4;
     const float t61 = t59 * t60;
-    const float t62 = t7 * t4;
-    const float t63 = t6 * t3;
+    const float t62 = t4 * t6;
+    const float t63 = t3 * t5;
     const float t64 = t62 - t63;
+    const float K_f = u[0];
     const float t65 = K_f * t64;
     const float t66 = t61 + t65;
-    const float t67 = theta_dot * t6;
+    const float t67 = theta_dot * t3;
+    const float y_dot = qd[1];
     const float t68 = y_dot * t67;
+    const float x_dot = qd[0];
     const float t69 = x_dot * t60;
     const float t70 = t68 + t69;
     const float t71 = 1.0f / t14;
     const float t72 = t8 * t9;
-    const float t73 = t64 * t3;
+    const float t73 = t5 * t64;
     const float t74 = t72 - t73;
     const float t75 = t71 * t74;
     const float t76 = t70 * t75;
-    const float t77 = t7 * t3;
+    const float t77 = t4 * t5;
     const float t78 = t71 * t77;
-    const float t79 = phi_dot * t3;
+    const float phi_dot = qd[3];
+    const float t79 = phi_dot * t5;
     const float t80 = L * t79;
     const float t81 = theta_dot * t80;
     const float t82 = theta_dot + phi_dot;
-    const float t83 = t64 * t82;
+    const float t83 = t82 * t64;
     const float t84 = x_dot * t83;
-    const float t85 = t6 * t4;
+    const float t85 = t3 * t6;
     const float t86 = t85 + t77;
-    const float t87 = t86 * t82;
+    const float t87 = t82 * t86;
     const float t88 = y_dot * t87;
     const float t89 = t84 + t88;
     const float t90 = t81 + t89;
@@ -2387,7 +2376,7 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     const float t93 = t18 * t92;
     const float t94 = t8 * t71;
     const float t95 = t94 * t90;
-    const float t96 = t4 * t8;
+    const float t96 = t6 * t8;
     const float t97 = t71 * t96;
     const float t98 = t70 * t97;
     const float t99 = t95 - t98;
@@ -2399,8 +2388,8 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     const float t105 = t59 * t67;
     const float t106 = K_f * t86;
     const float t107 = t105 + t106;
-    const float t108 = t86 * t3;
-    const float t109 = t8 * t12;
+    const float t108 = t8 * t12;
+    const float t109 = t5 * t86;
     const float t110 = t108 + t109;
     const float t111 = t71 * t110;
     const float t112 = t70 * t111;
@@ -2413,8 +2402,8 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     const float t119 = t107 - t118;
     const float t120 = t104 * t119;
     const float t121 = t103 + t120;
-    const float t122 = t3 * t57;
-    const float t123 = L * t3;
+    const float t122 = t5 * t57;
+    const float t123 = L * t5;
     const float t124 = K_f * t123;
     const float t125 = t20 * t70;
     const float t126 = t33 * t99;
@@ -2429,7 +2418,7 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     const float t135 = t9 * t134;
     const float t136 = t135 * t119;
     const float t137 = t133 + t136;
-    const float t138 = t3 * t134;
+    const float t138 = t5 * t134;
     const float t139 = t138 * t128;
     const float t140 = t137 + t139;
     const float t141 = t56 * t140;
@@ -2437,12 +2426,13 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     const float t143 = t122 * t102;
     const float t144 = t138 * t119;
     const float t145 = t143 + t144;
-    const float t146 = Theta_2 * t3;
-    const float t147 = t3 * t146;
+    const float t146 = Theta_2 * t5;
+    const float t147 = t5 * t146;
     const float t148 = t147 * t128;
     const float t149 = t145 + t148;
     const float t150 = t56 * t149;
     const float t151 = t99 + t150;
+    const float T = u[1];
     const float t152 = T * t36;
     const float t153 = t56 * t152;
     if (!(t14 > t17)) {
@@ -2466,19 +2456,9 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
 }
 
 front_car_status front_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float K_f = u[0];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
@@ -2488,27 +2468,30 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     }
     float t3, t4;
     front_car_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t18 = m_1 + m_2;
     const float t19 = t9 * t18;
     const float t20 = L * m_2;
-    const float t21 = t7 * t20;
+    const float t21 = t6 * t20;
     const float t22 = t3 * t21;
     const float t23 = t19 + t22;
     const float t24 = t9 * t23;
-    const float t25 = t6 * t20;
+    const float t25 = t5 * t20;
     const float t26 = t3 * t25;
     const float t27 = t12 * t18;
     const float t28 = t26 - t27;
@@ -2516,10 +2499,12 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t30 = t24 - t29;
     const float t31 = L * L;
     const float t32 = m_2 * t31;
+    const float Theta_1 = p->Theta_1;
     const float t33 = Theta_1 + t32;
     const float t34 = t3 * t33;
     const float t35 = t3 * t34;
     const float t36 = t30 + t35;
+    const float Theta_2 = p->Theta_2;
     const float t37 = Theta_2 * t36;
     const float t38 = fabsf(t37);
     const float t39 = fabsf(Theta_1);
@@ -2530,7 +2515,7 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t44 = t39 + t43;
     const float t45 = fabsf(Theta_2);
     const float t46 = t44 * t45;
-    const float t47 = t5 * t46;
+    const float t47 = t7 * t46;
     const float t48 = fabsf(m_1);
     const float t49 = t48 + t40;
     const float t50 = t49 * t45;
@@ -2541,10 +2526,10 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t55 = t54 * 1.9073486e-06f;
     const float t56 = 1.0f / t14;
     const float t57 = t8 * t9;
-    const float t58 = t7 * t4;
-    const float t59 = t6 * t3;
+    const float t58 = t6 * t4;
+    const float t59 = t5 * t3;
     const float t60 = t58 - t59;
-    const float t61 = t60 * t3;
+    const float t61 = t3 * t60;
     const float t62 = t57 - t61;
     const float t63 = t56 * t62;
     const float t64 = Theta_2 * t12;
@@ -2557,12 +2542,12 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t71 = t69 * t70;
     const float t72 = 1.0f - t71;
     const float t73 = t63 * t72;
-    const float t74 = t6 * t4;
-    const float t75 = t7 * t3;
-    const float t76 = t74 + t75;
-    const float t77 = t76 * t3;
-    const float t78 = t8 * t12;
-    const float t79 = t77 + t78;
+    const float t74 = t8 * t12;
+    const float t75 = t5 * t4;
+    const float t76 = t6 * t3;
+    const float t77 = t75 + t76;
+    const float t78 = t3 * t77;
+    const float t79 = t74 + t78;
     const float t80 = t56 * t79;
     const float t81 = t9 * t64;
     const float t82 = t18 * t81;
@@ -2577,22 +2562,26 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t91 = t70 * t90;
     const float t92 = t89 * t91;
     const float t93 = t87 - t92;
+    const float theta_dot = qd[2];
     const float t94 = theta_dot * t20;
-    const float t95 = theta_dot * t7;
+    const float t95 = theta_dot * t6;
     const float t96 = t94 * t95;
-    const float t97 = theta_dot * t6;
+    const float t97 = theta_dot * t5;
+    const float y_dot = qd[1];
     const float t98 = y_dot * t97;
+    const float x_dot = qd[0];
     const float t99 = x_dot * t95;
     const float t100 = t98 + t99;
     const float t101 = t100 * t63;
-    const float t102 = t56 * t75;
+    const float t102 = t56 * t76;
+    const float phi_dot = qd[3];
     const float t103 = phi_dot * t3;
     const float t104 = L * t103;
     const float t105 = theta_dot * t104;
     const float t106 = theta_dot + phi_dot;
-    const float t107 = t60 * t106;
+    const float t107 = t106 * t60;
     const float t108 = x_dot * t107;
-    const float t109 = t76 * t106;
+    const float t109 = t106 * t77;
     const float t110 = y_dot * t109;
     const float t111 = t108 + t110;
     const float t112 = t105 + t111;
@@ -2609,21 +2598,21 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t123 = t93 * t122;
     const float t124 = Theta_2 * t9;
     const float t125 = t3 * t124;
-    const float t126 = t25 * t125;
-    const float t127 = t82 - t126;
-    const float t128 = t70 * t127;
-    const float t129 = t63 * t128;
-    const float t130 = t9 * t124;
-    const float t131 = t18 * t130;
-    const float t132 = t68 + t131;
-    const float t133 = t132 * t70;
-    const float t134 = 1.0f - t133;
-    const float t135 = t80 * t134;
-    const float t136 = t129 + t135;
-    const float t137 = t33 * t125;
-    const float t138 = t70 * t137;
-    const float t139 = t89 * t138;
-    const float t140 = t136 + t139;
+    const float t126 = t33 * t125;
+    const float t127 = t70 * t126;
+    const float t128 = t89 * t127;
+    const float t129 = t25 * t125;
+    const float t130 = t82 - t129;
+    const float t131 = t70 * t130;
+    const float t132 = t63 * t131;
+    const float t133 = t9 * t124;
+    const float t134 = t18 * t133;
+    const float t135 = t68 + t134;
+    const float t136 = t135 * t70;
+    const float t137 = 1.0f - t136;
+    const float t138 = t80 * t137;
+    const float t139 = t132 + t138;
+    const float t140 = t128 + t139;
     const float t141 = t94 * t97;
     const float t142 = t56 * t59;
     const float t143 = t142 * t112;
@@ -2636,35 +2625,36 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t150 = t141 + t149;
     const float t151 = t140 * t150;
     const float t152 = t123 - t151;
-    const float t153 = t18 * t125;
-    const float t154 = Theta_2 * t3;
-    const float t155 = t3 * t154;
-    const float t156 = t21 * t155;
-    const float t157 = t153 + t156;
-    const float t158 = t70 * t157;
-    const float t159 = t80 * t158;
-    const float t160 = t18 * t67;
-    const float t161 = t25 * t155;
-    const float t162 = t160 - t161;
-    const float t163 = t70 * t162;
-    const float t164 = t63 * t163;
-    const float t165 = t159 - t164;
-    const float t166 = t33 * t155;
-    const float t167 = t166 * t70;
-    const float t168 = 1.0f - t167;
-    const float t169 = t89 * t168;
-    const float t170 = t165 + t169;
+    const float t153 = Theta_2 * t3;
+    const float t154 = t3 * t153;
+    const float t155 = t33 * t154;
+    const float t156 = t155 * t70;
+    const float t157 = 1.0f - t156;
+    const float t158 = t89 * t157;
+    const float t159 = t18 * t125;
+    const float t160 = t21 * t154;
+    const float t161 = t159 + t160;
+    const float t162 = t70 * t161;
+    const float t163 = t80 * t162;
+    const float t164 = t18 * t67;
+    const float t165 = t25 * t154;
+    const float t166 = t164 - t165;
+    const float t167 = t70 * t166;
+    const float t168 = t63 * t167;
+    const float t169 = t163 - t168;
+    const float t170 = t158 + t169;
     const float t171 = t33 * t147;
     const float t172 = t20 * t100;
     const float t173 = t171 - t172;
     const float t174 = t170 * t173;
     const float t175 = t152 + t174;
     const float t176 = t60 * t93;
-    const float t177 = t76 * t140;
+    const float t177 = t77 * t140;
     const float t178 = t176 - t177;
     const float t179 = L * t3;
     const float t180 = t179 * t170;
     const float t181 = t178 + t180;
+    const float K_f = u[0];
     const float t182 = K_f * t181;
     const float t183 = t175 + t182;
     const float t184 = t102 * t72;
@@ -2673,22 +2663,22 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t187 = t116 * t91;
     const float t188 = t186 + t187;
     const float t189 = t188 * t122;
-    const float t190 = t142 * t134;
-    const float t191 = t102 * t128;
+    const float t190 = t142 * t137;
+    const float t191 = t102 * t131;
     const float t192 = t190 - t191;
-    const float t193 = t116 * t138;
+    const float t193 = t116 * t127;
     const float t194 = t192 + t193;
     const float t195 = t194 * t150;
     const float t196 = t189 + t195;
-    const float t197 = t102 * t163;
-    const float t198 = t142 * t158;
+    const float t197 = t102 * t167;
+    const float t198 = t142 * t162;
     const float t199 = t197 + t198;
-    const float t200 = t116 * t168;
+    const float t200 = t116 * t157;
     const float t201 = t199 + t200;
     const float t202 = t201 * t173;
     const float t203 = t196 - t202;
     const float t204 = t60 * t188;
-    const float t205 = t76 * t194;
+    const float t205 = t77 * t194;
     const float t206 = t204 + t205;
     const float t207 = t179 * t201;
     const float t208 = t206 - t207;
@@ -2712,40 +2702,40 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
 
 front_car_status front_car_energy_f(const float q[4], const float qd[4], const front_car_params_f *p, float T_U[2]) {
     const float theta = q[2];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float t2 = L * L;
-    const float t3 = m_2 * t2;
-    const float t4 = Theta_1 + t3;
-    const float t5 = theta_dot * t4;
-    const float t6 = 0.5f * t5;
-    const float t7 = L * m_2;
-    float t8, t9;
-    front_car_sincos_f(theta, &t8, &t9);
-    const float t10 = y_dot * t9;
-    const float t11 = x_dot * t8;
+    float t2, t3;
+    front_car_sincos_f(theta, &t2, &t3);
+    const float L = p->L;
+    const float t4 = L * L;
+    const float m_2 = p->m_2;
+    const float t5 = m_2 * t4;
+    const float Theta_1 = p->Theta_1;
+    const float t6 = Theta_1 + t5;
+    const float theta_dot = qd[2];
+    const float t7 = theta_dot * t6;
+    const float t8 = 0.5f * t7;
+    const float t9 = L * m_2;
+    const float y_dot = qd[1];
+    const float t10 = y_dot * t3;
+    const float x_dot = qd[0];
+    const float t11 = x_dot * t2;
     const float t12 = t10 - t11;
-    const float t13 = t7 * t12;
-    const float t14 = t6 + t13;
+    const float t13 = t9 * t12;
+    const float t14 = t8 + t13;
     const float t15 = theta_dot * t14;
+    const float m_1 = p->m_1;
     const float t16 = m_1 + m_2;
     const float t17 = x_dot * x_dot;
     const float t18 = y_dot * y_dot;
     const float t19 = t17 + t18;
     const float t20 = t16 * t19;
     const float t21 = 0.5f * t20;
+    const float phi_dot = qd[3];
     const float t22 = phi_dot * phi_dot;
+    const float Theta_2 = p->Theta_2;
     const float t23 = Theta_2 * t22;
     const float t24 = 0.5f * t23;
     const float t25 = t21 + t24;
@@ -2760,11 +2750,10 @@ front_car_status front_car_energy_f(const float q[4], const float qd[4], const f
 }
 
 front_car_status front_car_singularity_f(const float q[4], const front_car_params_f *p, float measure[2]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float t1 = fabsf(theta);
-    const float t2 = fabsf(phi);
+    const float t1 = fabsf(phi);
+    const float theta = q[2];
+    const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
@@ -2772,56 +2761,64 @@ front_car_status front_car_singularity_f(const float q[4], const front_car_param
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_sincos_f(theta, &t3, &t4);
-    const float t5 = 1.0f != 0.0f ? t3 / 1.0f : 0.0f;
-    float t6, t7;
-    front_car_sincos_f(phi, &t6, &t7);
-    const float t8 = t4 * t7;
-    const float t9 = t3 * t6;
-    const float t10 = t8 - t9;
-    const float t11 = -t10;
-    const float t12 = L * t7;
+    front_car_sincos_f(phi, &t3, &t4);
+    float t5, t6;
+    front_car_sincos_f(theta, &t5, &t6);
+    const float L = p->L;
+    const float t7 = L * t4;
+    const float t8 = -t7;
+    const float t9 = t7 * t7;
+    const float t10 = 1.0f + t9;
+    const float t11 = sqrtf(t10);
+    const float t12 = t11 != 0.0f ? t8 / t11 : 0.0f;
     const float t13 = t12 * t12;
-    const float t14 = 1.0f + t13;
-    const float t15 = sqrtf(t14);
-    const float t16 = t15 != 0.0f ? t11 / t15 : 0.0f;
-    const float t17 = t5 * t16;
-    const float t18 = -t4;
-    const float t19 = 1.0f != 0.0f ? t18 / 1.0f : 0.0f;
-    const float t20 = t3 * t7;
-    const float t21 = t4 * t6;
-    const float t22 = t20 + t21;
-    const float t23 = t15 != 0.0f ? t22 / t15 : 0.0f;
-    const float t24 = t19 * t23;
-    const float t25 = t17 - t24;
-    const float t26 = t25 * t25;
-    const float t27 = -t12;
-    const float t28 = t15 != 0.0f ? t27 / t15 : 0.0f;
-    const float t29 = t5 * t28;
-    const float t30 = t29 * t29;
-    const float t31 = t26 + t30;
-    const float t32 = t19 * t28;
-    const float t33 = t32 * t32;
-    const float t34 = t31 + t33;
-    const float t35 = L * t6;
-    const float t36 = t35 * t25;
-    const float t37 = t22 * t29;
-    const float t38 = t36 - t37;
-    const float t39 = t10 * t32;
-    const float t40 = t38 + t39;
-    const float t41 = t40 * t40;
-    const float t42 = t34 != 0.0f ? t41 / t34 : 0.0f;
-    const float t43 = t6 * t6;
-    const float t44 = L * L;
-    const float t45 = t43 * t44;
-    const float t46 = 1.0f + t45;
-    const float t47 = t46 != 0.0f ? t42 / t46 : 0.0f;
-    float rest = t34 - t34;
-    rest += t47 - t47;
+    const float t14 = t5 * t4;
+    const float t15 = t6 * t3;
+    const float t16 = t14 + t15;
+    const float t17 = t11 != 0.0f ? t16 / t11 : 0.0f;
+    const float t18 = t6 * t6;
+    const float t19 = t18 * t17;
+    const float t20 = t17 * t19;
+    const float t21 = t13 + t20;
+    const float t22 = t6 * t4;
+    const float t23 = t5 * t3;
+    const float t24 = t22 - t23;
+    const float t25 = -t24;
+    const float t26 = t11 != 0.0f ? t25 / t11 : 0.0f;
+    const float t27 = t5 * t26;
+    const float t28 = t6 * t17;
+    const float t29 = 2.0f * t28;
+    const float t30 = t27 + t29;
+    const float t31 = t26 * t30;
+    const float t32 = t5 * t31;
+    const float t33 = t21 + t32;
+    const float t34 = L * t3;
+    const float t35 = t27 + t28;
+    const float t36 = t34 * t35;
+    const float t37 = t5 * t12;
+    const float t38 = t16 * t37;
+    const float t39 = t36 - t38;
+    const float t40 = t6 * t12;
+    const float t41 = t24 * t40;
+    const float t42 = t39 - t41;
+    const float t43 = t42 * t42;
+    const float t44 = t40 * t40;
+    const float t45 = t37 * t37;
+    const float t46 = t35 * t35;
+    const float t47 = t45 + t46;
+    const float t48 = t44 + t47;
+    const float t49 = t48 != 0.0f ? t43 / t48 : 0.0f;
+    const float t50 = t3 * t3;
+    const float t51 = L * L;
+    const float t52 = t50 * t51;
+    const float t53 = 1.0f + t52;
+    const float t54 = t53 != 0.0f ? t49 / t53 : 0.0f;
+    float rest = t33 - t33;
+    rest += t54 - t54;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    measure[0] = t34;
-    measure[1] = t47;
+    measure[0] = t33;
+    measure[1] = t54;
     return FRONT_CAR_OK;
 }

@@ -28,7 +28,7 @@
  * weighted_nullspace_projector         15     59      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     14      3      0      2      0
- * projected_control_pseudoinverse       0      3      1      0      2      0
+ * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 0      4      2      0      2      0
  * projected_mass_matrix                10     43      3      0      2      0
  * projected_coriolis_matrix            74    204      3      0      2      0
@@ -42,15 +42,15 @@
  * admissible_velocity                   5     21      2      0      2      0
  * admissible_acceleration              17     76      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                      7     19      1      0      2      0
+ * inverse_dynamics                      7     18      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
- * actuator_mass_matrix                  4      7      1      0      1      0
- * actuator_bias                        11     29      1      0      2      0
+ * actuator_mass_matrix                  4      6      1      0      1      0
+ * actuator_bias                        11     28      1      0      2      0
  * forward_dynamics                     41     98      2      0      2      0
  * multipliers                          61    135      2      0      2      0
  * energy                                7     16      0      0      1      0
- * singularity                           9     21      7      1      2      0
+ * singularity                          12     28      5      1      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -51,19 +51,13 @@ static void front_car_wheelset_sincos(const double x, double *sine, double *cosi
     const double ci = zc - 0.5;
     const double cz = z * ci;
     const double cos_r = 1.0 + cz;
-    const double quarter = k * 0.25;
-    const double pushed = quarter + 6755399441055744.0;
-    const double whole = pushed - 6755399441055744.0;
-    const double four = whole * 4.0;
+    const double pushed = k + 2.7021597764222976e+16;
+    const double four = pushed - 2.7021597764222976e+16;
     const double m = k - four;
-    const double m2 = m * m;
-    const double fade = 4.0 - m2;
-    const double odd = m * fade;
-    const double turn = odd * 0.3333333333333333;
-    const double bend = 7.0 - m2;
-    const double even = m2 * bend;
-    const double sixth = even * 0.16666666666666666;
-    const double keep = 1.0 - sixth;
+    const double size = fabs(m);
+    const double keep = 1.0 - size;
+    const double fade = 2.0 - size;
+    const double turn = m * fade;
     const double ss = keep * sin_r;
     const double sc = turn * cos_r;
     const double sine_ = ss + sc;
@@ -86,27 +80,27 @@ front_car_wheelset_params front_car_wheelset_default_params(void) {
 
 front_car_wheelset_status front_car_wheelset_mass_matrix(const double q[4], const front_car_wheelset_params *p, double G[16]) {
     const double theta = q[2];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const double t2 = m_1 + m_2;
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
+    double t2, t3;
+    front_car_wheelset_sincos(theta, &t2, &t3);
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double t4 = m_1 + m_2;
+    const double L = p->L;
     const double t5 = L * m_2;
-    const double t6 = t3 * t5;
+    const double t6 = t2 * t5;
     const double t7 = -t6;
-    const double t8 = t4 * t5;
+    const double t8 = t3 * t5;
     const double t9 = L * L;
     const double t10 = m_2 * t9;
+    const double Theta_1 = p->Theta_1;
     const double t11 = Theta_1 + t10;
+    const double Theta_2 = p->Theta_2;
     const double t12 = Theta_2 + t11;
-    double rest = t2 - t2;
+    double rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
     rest += t12 - t12;
@@ -114,12 +108,12 @@ front_car_wheelset_status front_car_wheelset_mass_matrix(const double q[4], cons
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    G[0] = t2;
+    G[0] = t4;
     G[1] = 0.0;
     G[2] = t7;
     G[3] = 0.0;
     G[4] = 0.0;
-    G[5] = t2;
+    G[5] = t4;
     G[6] = t8;
     G[7] = 0.0;
     G[8] = t7;
@@ -135,16 +129,16 @@ front_car_wheelset_status front_car_wheelset_mass_matrix(const double q[4], cons
 
 front_car_wheelset_status front_car_wheelset_coriolis_matrix(const double q[4], const double qd[4], const front_car_wheelset_params *p, double C[16]) {
     const double theta = q[2];
-    const double theta_dot = qd[2];
-    const double L = p->L;
-    const double m_2 = p->m_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t2, t3;
     front_car_wheelset_sincos(theta, &t2, &t3);
+    const double L = p->L;
+    const double m_2 = p->m_2;
     const double t4 = L * m_2;
+    const double theta_dot = qd[2];
     const double t5 = theta_dot * t4;
     const double t6 = t3 * t5;
     const double t7 = -t6;
@@ -176,22 +170,22 @@ front_car_wheelset_status front_car_wheelset_coriolis_matrix(const double q[4], 
 
 front_car_wheelset_status front_car_wheelset_coriolis_force(const double q[4], const double qd[4], const front_car_wheelset_params *p, double C_qd[4]) {
     const double theta = q[2];
-    const double theta_dot = qd[2];
-    const double L = p->L;
-    const double m_2 = p->m_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const double t2 = L * m_2;
-    const double t3 = theta_dot * t2;
-    double t4, t5;
-    front_car_wheelset_sincos(theta, &t4, &t5);
-    const double t6 = theta_dot * t5;
-    const double t7 = t3 * t6;
+    double t2, t3;
+    front_car_wheelset_sincos(theta, &t2, &t3);
+    const double L = p->L;
+    const double m_2 = p->m_2;
+    const double t4 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t5 = theta_dot * t4;
+    const double t6 = theta_dot * t3;
+    const double t7 = t5 * t6;
     const double t8 = -t7;
-    const double t9 = theta_dot * t4;
-    const double t10 = t3 * t9;
+    const double t9 = theta_dot * t2;
+    const double t10 = t5 * t9;
     const double t11 = -t10;
     double rest = t8 - t8;
     rest += t11 - t11;
@@ -228,9 +222,8 @@ front_car_wheelset_status front_car_wheelset_applied_force(const double q[4], co
 
 front_car_wheelset_status front_car_wheelset_constraint_jacobian(const double q[4], const front_car_wheelset_params *p, double B[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -240,20 +233,21 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian(const double q[
     }
     double t3, t4;
     front_car_wheelset_sincos(theta, &t3, &t4);
-    const double t5 = -t4;
-    double t6, t7;
-    front_car_wheelset_sincos(phi, &t6, &t7);
-    const double t8 = t3 * t7;
-    const double t9 = t4 * t6;
+    double t5, t6;
+    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double t7 = -t4;
+    const double t8 = t3 * t6;
+    const double t9 = t4 * t5;
     const double t10 = t8 + t9;
-    const double t11 = t4 * t7;
-    const double t12 = t3 * t6;
+    const double t11 = t4 * t6;
+    const double t12 = t3 * t5;
     const double t13 = t11 - t12;
     const double t14 = -t13;
-    const double t15 = L * t7;
+    const double L = p->L;
+    const double t15 = L * t6;
     const double t16 = -t15;
     double rest = t3 - t3;
-    rest += t5 - t5;
+    rest += t7 - t7;
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
@@ -261,7 +255,7 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian(const double q[
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B[0] = t3;
-    B[1] = t5;
+    B[1] = t7;
     B[2] = 0.0;
     B[3] = 0.0;
     B[4] = t10;
@@ -273,11 +267,8 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian(const double q[
 
 front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot(const double q[4], const double qd[4], const front_car_wheelset_params *p, double B_dot[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -287,31 +278,34 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot(const doubl
     }
     double t3, t4;
     front_car_wheelset_sincos(theta, &t3, &t4);
-    const double t5 = theta_dot * t4;
-    const double t6 = theta_dot * t3;
-    double t7, t8;
-    front_car_wheelset_sincos(phi, &t7, &t8);
-    const double t9 = t4 * t8;
-    const double t10 = t3 * t7;
-    const double t11 = t9 - t10;
-    const double t12 = theta_dot + phi_dot;
-    const double t13 = t11 * t12;
-    const double t14 = t3 * t8;
-    const double t15 = t4 * t7;
+    double t5, t6;
+    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double theta_dot = qd[2];
+    const double t7 = theta_dot * t4;
+    const double t8 = theta_dot * t3;
+    const double phi_dot = qd[3];
+    const double t9 = theta_dot + phi_dot;
+    const double t10 = t4 * t6;
+    const double t11 = t3 * t5;
+    const double t12 = t10 - t11;
+    const double t13 = t9 * t12;
+    const double t14 = t3 * t6;
+    const double t15 = t4 * t5;
     const double t16 = t14 + t15;
-    const double t17 = t16 * t12;
-    const double t18 = phi_dot * t7;
+    const double t17 = t9 * t16;
+    const double t18 = phi_dot * t5;
+    const double L = p->L;
     const double t19 = L * t18;
-    double rest = t5 - t5;
-    rest += t6 - t6;
+    double rest = t7 - t7;
+    rest += t8 - t8;
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    B_dot[0] = t5;
-    B_dot[1] = t6;
+    B_dot[0] = t7;
+    B_dot[1] = t8;
     B_dot[2] = 0.0;
     B_dot[3] = 0.0;
     B_dot[4] = t13;
@@ -322,10 +316,9 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot(const doubl
 }
 
 front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const double q[4], const front_car_wheelset_params *p, double B_pinv[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -335,14 +328,15 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -350,19 +344,19 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = 1.0 / t14;
     const double t19 = t8 * t9;
-    const double t20 = t7 * t4;
-    const double t21 = t6 * t3;
+    const double t20 = t6 * t4;
+    const double t21 = t5 * t3;
     const double t22 = t20 - t21;
-    const double t23 = t22 * t3;
+    const double t23 = t3 * t22;
     const double t24 = t19 - t23;
     const double t25 = t18 * t24;
-    const double t26 = t7 * t3;
+    const double t26 = t6 * t3;
     const double t27 = t18 * t26;
-    const double t28 = t6 * t4;
-    const double t29 = t28 + t26;
-    const double t30 = t29 * t3;
-    const double t31 = t8 * t12;
-    const double t32 = t30 + t31;
+    const double t28 = t8 * t12;
+    const double t29 = t5 * t4;
+    const double t30 = t29 + t26;
+    const double t31 = t3 * t30;
+    const double t32 = t28 + t31;
     const double t33 = t18 * t32;
     const double t34 = -t33;
     const double t35 = t18 * t21;
@@ -396,9 +390,8 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
 
 front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[4], const front_car_wheelset_params *p, double N_B[16]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -407,15 +400,16 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    front_car_wheelset_sincos(theta, &t3, &t4);
+    double t5, t6;
+    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -425,12 +419,12 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
     const double t19 = t13 * t18;
     const double t20 = t9 * t12;
     const double t21 = t18 * t20;
-    const double t22 = t3 * t12;
+    const double t22 = t5 * t12;
     const double t23 = t18 * t22;
     const double t24 = t10 * t18;
-    const double t25 = t3 * t9;
+    const double t25 = t5 * t9;
     const double t26 = t18 * t25;
-    const double t27 = t5 * t18;
+    const double t27 = t7 * t18;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -463,12 +457,9 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
 }
 
 front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const double q[4], const double qd[4], const front_car_wheelset_params *p, double N_B_dot[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -478,14 +469,15 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -494,14 +486,16 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t18 / t19;
-    const double t21 = t7 * t4;
-    const double t22 = t6 * t4;
+    const double t21 = t6 * t4;
+    const double t22 = t5 * t4;
     const double t23 = 2.0 * t15;
-    const double t24 = 2.0 * t5;
+    const double t24 = 2.0 * t7;
     const double t25 = t23 + t24;
     const double t26 = t22 * t25;
+    const double theta_dot = qd[2];
     const double t27 = theta_dot * t26;
-    const double t28 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t28 = phi_dot * t6;
     const double t29 = t3 * t28;
     const double t30 = 2.0 * t29;
     const double t31 = t27 + t30;
@@ -513,14 +507,14 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t37 = t4 * t36;
     const double t38 = t4 * t37;
     const double t39 = 2.0 + t38;
-    const double t40 = t7 * t39;
-    const double t41 = t7 * t40;
-    const double t42 = t5 + t15;
+    const double t40 = t6 * t39;
+    const double t41 = t6 * t40;
+    const double t42 = t7 + t15;
     const double t43 = t41 - t42;
     const double t44 = t4 * t43;
     const double t45 = theta_dot * t44;
-    const double t46 = phi_dot * t6;
-    const double t47 = t7 * t46;
+    const double t46 = phi_dot * t5;
+    const double t47 = t6 * t46;
     const double t48 = t3 * t47;
     const double t49 = 2.0 * t48;
     const double t50 = t45 - t49;
@@ -528,7 +522,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t52 = t20 * t51;
     const double t53 = t4 * t28;
     const double t54 = t18 * t53;
-    const double t55 = t6 * t3;
+    const double t55 = t5 * t3;
     const double t56 = t55 * t42;
     const double t57 = theta_dot * t56;
     const double t58 = t54 - t57;
@@ -544,7 +538,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t68 = t65 - t67;
     const double t69 = t22 * t68;
     const double t70 = t20 * t69;
-    const double t71 = t7 * t3;
+    const double t71 = t6 * t3;
     const double t72 = t71 * t42;
     const double t73 = theta_dot * t72;
     const double t74 = t4 * t46;
@@ -590,14 +584,9 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
 }
 
 front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double q[4], const front_car_wheelset_params *p, double B_G_pinv[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -607,27 +596,30 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
+    const double t21 = t6 * t20;
     const double t22 = t3 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
+    const double t25 = t5 * t20;
     const double t26 = t3 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
@@ -635,7 +627,9 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
+    const double Theta_2 = p->Theta_2;
     const double t34 = Theta_2 + t33;
     const double t35 = t3 * t34;
     const double t36 = t3 * t35;
@@ -655,7 +649,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t50 = t45 + t49;
     const double t51 = t44 + t50;
     const double t52 = t44 * t51;
-    const double t53 = t5 * t52;
+    const double t53 = t7 * t52;
     const double t54 = fabs(m_1);
     const double t55 = t54 + t46;
     const double t56 = t55 * t44;
@@ -664,17 +658,17 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t59 = t13 * t56;
     const double t60 = t58 + t59;
     const double t61 = t60 * 3.552713678800501e-15;
-    const double t62 = t7 * t3;
+    const double t62 = t6 * t3;
     const double t63 = Theta_2 + t32;
     const double t64 = t18 + t63;
     const double t65 = t64 - t34;
     const double t66 = t4 * t65;
     const double t67 = t4 * t66;
-    const double t68 = m_2 * t5;
+    const double t68 = m_2 * t7;
     const double t69 = t67 + t68;
     const double t70 = t62 * t69;
     const double t71 = Theta_2 * t70;
-    const double t72 = t6 * t4;
+    const double t72 = t5 * t4;
     const double t73 = t72 * t42;
     const double t74 = t71 + t73;
     const double t75 = L * t74;
@@ -682,7 +676,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t77 = t62 * t42;
     const double t78 = t76 - t77;
     const double t79 = t4 * t78;
-    const double t80 = t6 * t3;
+    const double t80 = t5 * t3;
     const double t81 = t3 * t80;
     const double t82 = t42 * t81;
     const double t83 = t79 + t82;
@@ -701,7 +695,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t96 = t85 * t95;
     const double t97 = t80 * t69;
     const double t98 = Theta_2 * t97;
-    const double t99 = t7 * t4;
+    const double t99 = t6 * t4;
     const double t100 = t99 * t42;
     const double t101 = t98 - t100;
     const double t102 = L * t101;
@@ -728,7 +722,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t123 = t121 + t122;
     const double t124 = L / t84;
     const double t125 = t123 * t124;
-    const double t126 = t5 * t90;
+    const double t126 = t7 * t90;
     const double t127 = Theta_2 * t126;
     const double t128 = t41 - t38;
     const double t129 = t127 + t128;
@@ -747,7 +741,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t142 = t141 - t122;
     const double t143 = t124 * t142;
     const double t144 = t89 - t34;
-    const double t145 = t5 * t144;
+    const double t145 = t7 * t144;
     const double t146 = Theta_2 * t145;
     const double t147 = t42 + t146;
     const double t148 = t4 * t147;
@@ -782,13 +776,8 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
 
 front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const double q[4], const front_car_wheelset_params *p, double N_BG[16]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -797,43 +786,48 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    front_car_wheelset_sincos(theta, &t3, &t4);
+    double t5, t6;
+    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
-    const double t22 = t3 * t21;
+    const double t21 = t4 * t20;
+    const double t22 = t5 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
-    const double t26 = t3 * t25;
+    const double t25 = t3 * t20;
+    const double t26 = t5 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
     const double t29 = t12 * t28;
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
+    const double Theta_2 = p->Theta_2;
     const double t34 = Theta_2 + t33;
-    const double t35 = t3 * t34;
-    const double t36 = t3 * t35;
+    const double t35 = t5 * t34;
+    const double t36 = t5 * t35;
     const double t37 = t30 + t36;
     const double t38 = Theta_2 * t37;
-    const double t39 = Theta_2 * t3;
-    const double t40 = t3 * t39;
+    const double t39 = Theta_2 * t5;
+    const double t40 = t5 * t39;
     const double t41 = Theta_2 * t40;
     const double t42 = t38 - t41;
     const double t43 = fabs(t42);
@@ -846,7 +840,7 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
     const double t50 = t45 + t49;
     const double t51 = t44 + t50;
     const double t52 = t44 * t51;
-    const double t53 = t5 * t52;
+    const double t53 = t7 * t52;
     const double t54 = fabs(m_1);
     const double t55 = t54 + t46;
     const double t56 = t55 * t44;
@@ -857,44 +851,44 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
     const double t61 = t60 * 3.552713678800501e-15;
     const double t62 = Theta_2 * t31;
     const double t63 = t62 / t42;
-    const double t64 = t7 * t4;
+    const double t64 = t4 * t6;
     const double t65 = t18 * t64;
-    const double t66 = t6 * t3;
+    const double t66 = t3 * t5;
     const double t67 = m_2 * t66;
     const double t68 = t65 - t67;
     const double t69 = t64 * t68;
     const double t70 = t63 * t69;
-    const double t71 = t7 * t3;
+    const double t71 = t4 * t5;
     const double t72 = m_2 * t71;
-    const double t73 = t6 * t4;
+    const double t73 = t3 * t6;
     const double t74 = t18 * t73;
     const double t75 = t72 + t74;
     const double t76 = t64 * t75;
     const double t77 = t63 * t76;
     const double t78 = L * Theta_2;
     const double t79 = t78 / t42;
-    const double t80 = t3 * t64;
+    const double t80 = t5 * t64;
     const double t81 = t33 * t80;
     const double t82 = t79 * t81;
     const double t83 = t73 * t68;
     const double t84 = t63 * t83;
     const double t85 = t73 * t75;
     const double t86 = t63 * t85;
-    const double t87 = t3 * t73;
+    const double t87 = t5 * t73;
     const double t88 = t33 * t87;
     const double t89 = t79 * t88;
-    const double t90 = t3 * t68;
+    const double t90 = t5 * t68;
     const double t91 = t79 * t90;
-    const double t92 = t3 * t75;
+    const double t92 = t5 * t75;
     const double t93 = t79 * t92;
     const double t94 = Theta_2 / t42;
-    const double t95 = t5 * t33;
+    const double t95 = t7 * t33;
     const double t96 = t94 * t95;
     const double t97 = t67 - t65;
-    const double t98 = t3 * t97;
+    const double t98 = t5 * t97;
     const double t99 = t79 * t98;
     const double t100 = -t93;
-    const double t101 = t4 * t4;
+    const double t101 = t6 * t6;
     const double t102 = t18 * t62;
     const double t103 = t102 / t42;
     const double t104 = t101 * t103;
@@ -941,7 +935,6 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
 front_car_wheelset_status front_car_wheelset_control_matrix(const double q[4], const front_car_wheelset_params *p, double M[8]) {
     const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
     const double t1 = theta + phi;
     const double t2 = fabs(t1);
     const double t3 = fabs(phi);
@@ -955,6 +948,7 @@ front_car_wheelset_status front_car_wheelset_control_matrix(const double q[4], c
     front_car_wheelset_sincos(t1, &t4, &t5);
     double t6, t7;
     front_car_wheelset_sincos(phi, &t6, &t7);
+    const double L = p->L;
     const double t8 = L * t6;
     double rest = t5 - t5;
     rest += t4 - t4;
@@ -974,10 +968,9 @@ front_car_wheelset_status front_car_wheelset_control_matrix(const double q[4], c
 }
 
 front_car_wheelset_status front_car_wheelset_projected_control_matrix(const double q[4], const front_car_wheelset_params *p, double M_tilde[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -987,24 +980,25 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix(const doub
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = L * L;
-    const double t19 = t7 * t18;
+    const double t19 = t6 * t18;
     const double t20 = t4 * t19;
     const double t21 = t20 / t14;
-    const double t22 = t6 * t18;
+    const double t22 = t5 * t18;
     const double t23 = t4 * t22;
     const double t24 = t23 / t14;
     const double t25 = L * t3;
@@ -1031,64 +1025,8 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix(const doub
 
 front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse(const double q[4], const front_car_wheelset_params *p, double M_tilde_pinv[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
-    const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
-        return FRONT_CAR_WHEELSET_ANGLE_RANGE;
-    }
-    if (!(100000.0 >= t2)) {
-        return FRONT_CAR_WHEELSET_ANGLE_RANGE;
-    }
-    const double t3 = fabs(L);
-    const double t4 = t3 * 3.552713678800501e-15;
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
-    double t7, t8;
-    front_car_wheelset_sincos(phi, &t7, &t8);
-    const double t9 = t6 * t8;
-    const double t10 = t5 * t8;
-    const double t11 = t7 / L;
-    if (!(t3 > t4)) {
-        const double t12 = t7 * t7;
-        const double t13 = L * t8;
-        const double t14 = t5 * t13;
-        const double t15 = t14 * t14;
-        const double t16 = t12 + t15;
-        const double t17 = t6 * t13;
-        const double t18 = t17 * t17;
-        const double t19 = t16 + t18;
-        const double t20 = t13 * t13;
-        const double t21 = 1.0 + t20;
-        const double t22 = t21 * 1.262177448353619e-29;
-        if (!(t19 > t22)) {
-            return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-        }
-        return FRONT_CAR_WHEELSET_ACTUATION_RANK;
-    }
-    double rest = t9 - t9;
-    rest += t10 - t10;
-    rest += t11 - t11;
-    if (!(rest >= 0.0)) {
-        return FRONT_CAR_WHEELSET_NOT_FINITE;
-    }
-    M_tilde_pinv[0] = t9;
-    M_tilde_pinv[1] = t10;
-    M_tilde_pinv[2] = t11;
-    M_tilde_pinv[3] = 0.0;
-    M_tilde_pinv[4] = 0.0;
-    M_tilde_pinv[5] = 0.0;
-    M_tilde_pinv[6] = 0.0;
-    M_tilde_pinv[7] = 1.0;
-    return FRONT_CAR_WHEELSET_OK;
-}
-
-front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double q[4], const front_car_wheelset_params *p, double F_B[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double t1 = fabs(theta);
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1100,6 +1038,61 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double 
     front_car_wheelset_sincos(theta, &t3, &t4);
     double t5, t6;
     front_car_wheelset_sincos(phi, &t5, &t6);
+    const double L = p->L;
+    const double t7 = fabs(L);
+    const double t8 = t4 * t6;
+    const double t9 = t3 * t6;
+    const double t10 = t5 / L;
+    if (!(t7 > 0.0)) {
+        const double t11 = t5 * t5;
+        const double t12 = L * t6;
+        const double t13 = t3 * t12;
+        const double t14 = t13 * t13;
+        const double t15 = t11 + t14;
+        const double t16 = t4 * t12;
+        const double t17 = t16 * t16;
+        const double t18 = t15 + t17;
+        const double t19 = t12 * t12;
+        const double t20 = 1.0 + t19;
+        const double t21 = t20 * 1.262177448353619e-29;
+        if (!(t18 > t21)) {
+            return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+        }
+        return FRONT_CAR_WHEELSET_ACTUATION_RANK;
+    }
+    double rest = t8 - t8;
+    rest += t9 - t9;
+    rest += t10 - t10;
+    if (!(rest >= 0.0)) {
+        return FRONT_CAR_WHEELSET_NOT_FINITE;
+    }
+    M_tilde_pinv[0] = t8;
+    M_tilde_pinv[1] = t9;
+    M_tilde_pinv[2] = t10;
+    M_tilde_pinv[3] = 0.0;
+    M_tilde_pinv[4] = 0.0;
+    M_tilde_pinv[5] = 0.0;
+    M_tilde_pinv[6] = 0.0;
+    M_tilde_pinv[7] = 1.0;
+    return FRONT_CAR_WHEELSET_OK;
+}
+
+front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double q[4], const front_car_wheelset_params *p, double F_B[8]) {
+    const double theta = q[2];
+    const double t1 = fabs(theta);
+    const double phi = q[3];
+    const double t2 = fabs(phi);
+    if (!(100000.0 >= t1)) {
+        return FRONT_CAR_WHEELSET_ANGLE_RANGE;
+    }
+    if (!(100000.0 >= t2)) {
+        return FRONT_CAR_WHEELSET_ANGLE_RANGE;
+    }
+    double t3, t4;
+    front_car_wheelset_sincos(theta, &t3, &t4);
+    double t5, t6;
+    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double L = p->L;
     const double t7 = L * t6;
     const double t8 = t4 * t7;
     const double t9 = fabs(t8);
@@ -1140,14 +1133,9 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double 
 }
 
 front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double q[4], const front_car_wheelset_params *p, double G_tilde[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1157,14 +1145,15 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1173,12 +1162,16 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t18 / t19;
-    const double t21 = t7 * t7;
+    const double t21 = t6 * t6;
     const double t22 = t4 * t21;
     const double t23 = t4 * t22;
+    const double m_2 = p->m_2;
     const double t24 = m_2 * t18;
+    const double Theta_1 = p->Theta_1;
     const double t25 = Theta_1 + t24;
+    const double Theta_2 = p->Theta_2;
     const double t26 = Theta_2 + t25;
+    const double m_1 = p->m_1;
     const double t27 = m_1 + m_2;
     const double t28 = t27 * t18;
     const double t29 = t28 - t26;
@@ -1187,7 +1180,7 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t32 = t26 + t31;
     const double t33 = t23 * t32;
     const double t34 = t20 * t33;
-    const double t35 = t6 * t7;
+    const double t35 = t5 * t6;
     const double t36 = t4 * t35;
     const double t37 = t4 * t36;
     const double t38 = t3 * t26;
@@ -1198,26 +1191,26 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t43 = t37 * t42;
     const double t44 = t20 * t43;
     const double t45 = L / t19;
-    const double t46 = t7 * t4;
+    const double t46 = t6 * t4;
     const double t47 = t3 * t46;
     const double t48 = t47 * t42;
     const double t49 = t45 * t48;
     const double t50 = L * Theta_2;
     const double t51 = t50 / t14;
     const double t52 = t47 * t51;
-    const double t53 = t6 * t6;
+    const double t53 = t5 * t5;
     const double t54 = t4 * t53;
     const double t55 = t4 * t54;
     const double t56 = t55 * t32;
     const double t57 = t20 * t56;
-    const double t58 = t6 * t4;
+    const double t58 = t5 * t4;
     const double t59 = t3 * t58;
     const double t60 = t59 * t42;
     const double t61 = t45 * t60;
     const double t62 = t59 * t51;
     const double t63 = t40 + (-2.0);
     const double t64 = t26 * t63;
-    const double t65 = t5 * t28;
+    const double t65 = t7 * t28;
     const double t66 = t64 + t65;
     const double t67 = t4 * t66;
     const double t68 = t4 * t67;
@@ -1225,7 +1218,7 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t70 = 1.0 / t19;
     const double t71 = t69 * t70;
     const double t72 = Theta_2 / t14;
-    const double t73 = t5 * t72;
+    const double t73 = t7 * t72;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1262,18 +1255,9 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
 }
 
 front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const double q[4], const double qd[4], const front_car_wheelset_params *p, double C_tilde[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1283,14 +1267,15 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1301,12 +1286,15 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t20 = t14 * t19;
     const double t21 = t14 * t20;
     const double t22 = t18 / t21;
-    const double t23 = t7 * t4;
-    const double t24 = x_dot * t7;
-    const double t25 = y_dot * t6;
+    const double t23 = t6 * t4;
+    const double x_dot = qd[0];
+    const double t24 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t25 = y_dot * t5;
     const double t26 = t24 + t25;
     const double t27 = t4 * t26;
     const double t28 = L * t27;
+    const double theta_dot = qd[2];
     const double t29 = theta_dot * t3;
     const double t30 = t28 + t29;
     const double t31 = L * t3;
@@ -1315,34 +1303,39 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t34 = t33 + (-2.0);
     const double t35 = t14 + t34;
     const double t36 = t32 + t35;
-    const double t37 = t7 * t36;
+    const double t37 = t6 * t36;
+    const double m_2 = p->m_2;
     const double t38 = m_2 * t37;
-    const double t39 = t6 * t4;
+    const double t39 = t5 * t4;
     const double t40 = t3 * t39;
+    const double m_1 = p->m_1;
     const double t41 = m_1 + m_2;
     const double t42 = t41 * t18;
     const double t43 = t40 * t42;
     const double t44 = t38 - t43;
     const double t45 = t4 * t44;
     const double t46 = m_2 * t18;
+    const double Theta_1 = p->Theta_1;
     const double t47 = Theta_1 + t46;
+    const double Theta_2 = p->Theta_2;
     const double t48 = Theta_2 + t47;
     const double t49 = t41 + t48;
-    const double t50 = t6 * t3;
+    const double t50 = t5 * t3;
     const double t51 = t3 * t50;
     const double t52 = t3 * t51;
     const double t53 = t49 * t52;
     const double t54 = t45 - t53;
     const double t55 = t4 * t54;
-    const double t56 = t5 + t15;
+    const double t56 = t7 + t15;
     const double t57 = 1.0 - t56;
-    const double t58 = t7 * t57;
+    const double t58 = t6 * t57;
     const double t59 = m_2 * t58;
     const double t60 = t55 + t59;
     const double t61 = t30 * t60;
     const double t62 = 2.0 * t41;
     const double t63 = t48 - t62;
-    const double t64 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t64 = phi_dot * t6;
     const double t65 = t3 * t64;
     const double t66 = t14 * t65;
     const double t67 = t63 * t66;
@@ -1352,7 +1345,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t71 = 2.0 - t33;
     const double t72 = t4 * t30;
     const double t73 = t71 * t72;
-    const double t74 = t6 * t73;
+    const double t74 = t5 * t73;
     const double t75 = t14 * t64;
     const double t76 = t74 + t75;
     const double t77 = t3 * t76;
@@ -1371,26 +1364,26 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t90 = t41 * t89;
     const double t91 = t90 - t48;
     const double t92 = t3 * t91;
-    const double t93 = t7 * t92;
+    const double t93 = t6 * t92;
     const double t94 = m_2 * t39;
     const double t95 = t93 + t94;
     const double t96 = t4 * t95;
     const double t97 = (-2.0) + t32;
-    const double t98 = t6 * t97;
+    const double t98 = t5 * t97;
     const double t99 = m_2 * t98;
     const double t100 = t96 + t99;
     const double t101 = t4 * t100;
-    const double t102 = t7 * t3;
+    const double t102 = t6 * t3;
     const double t103 = t102 * t49;
     const double t104 = t101 + t103;
     const double t105 = t4 * t104;
-    const double t106 = t5 * t14;
+    const double t106 = t7 * t14;
     const double t107 = 1.0 - t106;
-    const double t108 = t6 * t107;
+    const double t108 = t5 * t107;
     const double t109 = m_2 * t108;
     const double t110 = t105 + t109;
     const double t111 = t30 * t110;
-    const double t112 = phi_dot * t6;
+    const double t112 = phi_dot * t5;
     const double t113 = t3 * t112;
     const double t114 = t14 * t113;
     const double t115 = t63 * t114;
@@ -1434,18 +1427,18 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t153 = t41 * t152;
     const double t154 = t48 + t153;
     const double t155 = t3 * t154;
-    const double t156 = t6 * t155;
+    const double t156 = t5 * t155;
     const double t157 = m_2 * t23;
     const double t158 = t156 + t157;
     const double t159 = t4 * t158;
-    const double t160 = t7 * t97;
+    const double t160 = t6 * t97;
     const double t161 = m_2 * t160;
     const double t162 = t159 + t161;
     const double t163 = t4 * t162;
     const double t164 = t50 * t49;
     const double t165 = t163 - t164;
     const double t166 = t4 * t165;
-    const double t167 = t7 * t107;
+    const double t167 = t6 * t107;
     const double t168 = m_2 * t167;
     const double t169 = t166 + t168;
     const double t170 = t30 * t169;
@@ -1476,7 +1469,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t195 = t41 * t194;
     const double t196 = t48 * t71;
     const double t197 = t195 + t196;
-    const double t198 = t6 * t197;
+    const double t198 = t5 * t197;
     const double t199 = m_2 * t119;
     const double t200 = t198 + t199;
     const double t201 = t4 * t200;
@@ -1484,7 +1477,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t203 = m_2 * t202;
     const double t204 = t201 + t203;
     const double t205 = t4 * t204;
-    const double t206 = t6 * t49;
+    const double t206 = t5 * t49;
     const double t207 = t205 - t206;
     const double t208 = t4 * t207;
     const double t209 = t102 * t107;
@@ -1498,10 +1491,10 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t217 = L * t216;
     const double t218 = t4 * t33;
     const double t219 = t4 * t218;
-    const double t220 = 3.0 * t5;
+    const double t220 = 3.0 * t7;
     const double t221 = t219 + t220;
     const double t222 = t30 * t221;
-    const double t223 = t6 * t222;
+    const double t223 = t5 * t222;
     const double t224 = t4 * t64;
     const double t225 = t14 * t224;
     const double t226 = t223 - t225;
@@ -1511,7 +1504,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t230 = t48 * t229;
     const double t231 = t217 + t230;
     const double t232 = t4 * t231;
-    const double t233 = t6 * t30;
+    const double t233 = t5 * t30;
     const double t234 = t48 * t233;
     const double t235 = t232 - t234;
     const double t236 = t4 * t235;
@@ -1523,7 +1516,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t242 = t33 + t97;
     const double t243 = t41 * t242;
     const double t244 = t241 + t243;
-    const double t245 = t7 * t244;
+    const double t245 = t6 * t244;
     const double t246 = m_2 * t40;
     const double t247 = t245 + t246;
     const double t248 = t4 * t247;
@@ -1531,7 +1524,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t250 = m_2 * t249;
     const double t251 = t248 + t250;
     const double t252 = t4 * t251;
-    const double t253 = t7 * t49;
+    const double t253 = t6 * t49;
     const double t254 = t252 + t253;
     const double t255 = t4 * t254;
     const double t256 = t50 * t107;
@@ -1545,7 +1538,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t264 = L * t263;
     const double t265 = t14 * t112;
     const double t266 = 2.0 * t265;
-    const double t267 = t7 * t222;
+    const double t267 = t6 * t222;
     const double t268 = t4 * t112;
     const double t269 = t14 * t268;
     const double t270 = t267 + t269;
@@ -1554,7 +1547,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t273 = t48 * t272;
     const double t274 = t264 + t273;
     const double t275 = t4 * t274;
-    const double t276 = t7 * t30;
+    const double t276 = t6 * t30;
     const double t277 = t48 * t276;
     const double t278 = t275 + t277;
     const double t279 = t4 * t278;
@@ -1572,7 +1565,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t291 = t4 * t290;
     const double t292 = (-1.0) + t291;
     const double t293 = t30 * t292;
-    const double t294 = t6 * t293;
+    const double t294 = t5 * t293;
     const double t295 = t18 * t225;
     const double t296 = t294 + t295;
     const double t297 = t4 * t296;
@@ -1584,7 +1577,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t303 = t4 * t302;
     const double t304 = 1.0 + t303;
     const double t305 = t30 * t304;
-    const double t306 = t7 * t305;
+    const double t306 = t6 * t305;
     const double t307 = t18 * t269;
     const double t308 = t306 + t307;
     const double t309 = t4 * t308;
@@ -1654,14 +1647,9 @@ front_car_wheelset_status front_car_wheelset_projected_applied_force(const doubl
 }
 
 front_car_wheelset_status front_car_wheelset_minimal_mass_matrix(const double q[4], const front_car_wheelset_params *p, double G_bar[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1670,32 +1658,37 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix(const double q[
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
+    front_car_wheelset_sincos(phi, &t3, &t4);
     double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
-    const double t7 = L * t6;
-    const double t8 = t4 * t7;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = L * t4;
+    const double t8 = t6 * t7;
     const double t9 = fabs(t8);
     const double t10 = fabs(L);
     const double t11 = t10 * 3.552713678800501e-15;
     const double t12 = L * L;
+    const double m_2 = p->m_2;
     const double t13 = m_2 * t12;
+    const double Theta_1 = p->Theta_1;
     const double t14 = Theta_1 + t13;
+    const double Theta_2 = p->Theta_2;
     const double t15 = Theta_2 + t14;
+    const double m_1 = p->m_1;
     const double t16 = m_1 + m_2;
     const double t17 = t16 * t12;
     const double t18 = t17 - t15;
-    const double t19 = t6 * t18;
-    const double t20 = t6 * t19;
+    const double t19 = t4 * t18;
+    const double t20 = t4 * t19;
     const double t21 = t15 + t20;
     const double t22 = t8 * t8;
     const double t23 = 1.0 / t22;
     const double t24 = t21 * t23;
-    const double t25 = t5 / t8;
+    const double t25 = t3 / t8;
     const double t26 = Theta_2 * t25;
     if (!(t9 > t11)) {
-        const double t27 = t5 * t5;
-        const double t28 = t3 * t7;
+        const double t27 = t3 * t3;
+        const double t28 = t5 * t7;
         const double t29 = t28 * t28;
         const double t30 = t27 + t29;
         const double t31 = t30 + t22;
@@ -1721,16 +1714,9 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix(const double q[
 }
 
 front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const double q[4], const double qd[4], const front_car_wheelset_params *p, double C_bar[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1740,14 +1726,15 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1756,12 +1743,16 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     const double t18 = fabs(t12);
     const double t19 = fabs(L);
     const double t20 = t19 * 3.552713678800501e-15;
-    const double t21 = t6 * t4;
+    const double t21 = t5 * t4;
     const double t22 = t3 * t21;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t23 = m_1 + m_2;
     const double t24 = L * L;
     const double t25 = m_2 * t24;
+    const double Theta_1 = p->Theta_1;
     const double t26 = Theta_1 + t25;
+    const double Theta_2 = p->Theta_2;
     const double t27 = Theta_2 + t26;
     const double t28 = t23 + t27;
     const double t29 = t22 * t28;
@@ -1778,23 +1769,25 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     const double t40 = t21 * t39;
     const double t41 = t27 * t40;
     const double t42 = t37 + t41;
+    const double theta_dot = qd[2];
     const double t43 = theta_dot * t42;
-    const double t44 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t44 = phi_dot * t6;
     const double t45 = t3 * t44;
     const double t46 = (-1.0) + t24;
     const double t47 = t45 * t46;
     const double t48 = t27 * t47;
     const double t49 = t43 + t48;
     const double t50 = t4 * t49;
-    const double t51 = theta_dot * t6;
+    const double t51 = theta_dot * t5;
     const double t52 = t27 * t51;
     const double t53 = t50 + t52;
     const double t54 = t4 * t53;
     const double t55 = t27 * t45;
     const double t56 = t54 + t55;
-    const double t57 = t7 * t24;
-    const double t58 = t7 * t57;
-    const double t59 = t7 * t58;
+    const double t57 = t6 * t24;
+    const double t58 = t6 * t57;
+    const double t59 = t6 * t58;
     const double t60 = t4 * t59;
     const double t61 = t4 * t60;
     const double t62 = t4 * t61;
@@ -1810,7 +1803,7 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     const double t72 = t70 + t71;
     const double t73 = t4 * t72;
     const double t74 = t44 + t73;
-    const double t75 = t7 * t12;
+    const double t75 = t6 * t12;
     const double t76 = t4 * t75;
     const double t77 = t14 * t76;
     const double t78 = Theta_2 / t77;
@@ -1855,9 +1848,8 @@ front_car_wheelset_status front_car_wheelset_minimal_applied_force(const double 
 
 front_car_wheelset_status front_car_wheelset_minimal_control_matrix(const double q[4], const front_car_wheelset_params *p, double M_bar[4]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1869,6 +1861,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix(const double
     front_car_wheelset_sincos(theta, &t3, &t4);
     double t5, t6;
     front_car_wheelset_sincos(phi, &t5, &t6);
+    const double L = p->L;
     const double t7 = L * t6;
     const double t8 = t4 * t7;
     const double t9 = fabs(t8);
@@ -1903,14 +1896,9 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix(const double
 }
 
 front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[4], const double qd[4], const front_car_wheelset_params *p, double qd_admissible[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1920,31 +1908,35 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = L / t14;
-    const double t19 = x_dot * t7;
-    const double t20 = y_dot * t6;
+    const double x_dot = qd[0];
+    const double t19 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t20 = y_dot * t5;
     const double t21 = t19 + t20;
     const double t22 = t4 * t21;
     const double t23 = L * t22;
+    const double theta_dot = qd[2];
     const double t24 = theta_dot * t3;
     const double t25 = t23 + t24;
-    const double t26 = t7 * t4;
+    const double t26 = t6 * t4;
     const double t27 = t25 * t26;
     const double t28 = t18 * t27;
-    const double t29 = t6 * t4;
+    const double t29 = t5 * t4;
     const double t30 = t25 * t29;
     const double t31 = t18 * t30;
     const double t32 = 1.0 / t14;
@@ -1953,6 +1945,7 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
+    const double phi_dot = qd[3];
     double rest = t28 - t28;
     rest += t31 - t31;
     rest += t34 - t34;
@@ -1968,18 +1961,9 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
 }
 
 front_car_wheelset_status front_car_wheelset_admissible_acceleration(const double q[4], const double qd[4], const double qdd[4], const front_car_wheelset_params *p, double qdd_admissible[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double x_ddot = qdd[0];
-    const double y_ddot = qdd[1];
-    const double theta_ddot = qdd[2];
-    const double phi_ddot = qdd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1989,45 +1973,52 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    const double t18 = y_ddot * t7;
+    const double y_ddot = qdd[1];
+    const double t18 = y_ddot * t6;
     const double t19 = t14 * t18;
     const double t20 = t14 * t19;
-    const double t21 = x_dot * t7;
-    const double t22 = y_dot * t6;
+    const double x_dot = qd[0];
+    const double t21 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t22 = y_dot * t5;
     const double t23 = t21 + t22;
     const double t24 = t4 * t23;
     const double t25 = L * t24;
+    const double theta_dot = qd[2];
     const double t26 = theta_dot * t3;
     const double t27 = t25 + t26;
     const double t28 = t8 * t3;
     const double t29 = t27 * t28;
     const double t30 = t27 * t29;
     const double t31 = t20 - t30;
-    const double t32 = t6 * t31;
-    const double t33 = x_ddot * t7;
-    const double t34 = t7 * t33;
+    const double t32 = t5 * t31;
+    const double x_ddot = qdd[0];
+    const double t33 = x_ddot * t6;
+    const double t34 = t6 * t33;
     const double t35 = t14 * t34;
     const double t36 = t14 * t35;
     const double t37 = t32 + t36;
     const double t38 = t4 * t37;
     const double t39 = L * t38;
-    const double t40 = theta_ddot * t7;
+    const double theta_ddot = qdd[2];
+    const double t40 = theta_ddot * t6;
     const double t41 = t14 * t40;
     const double t42 = t14 * t41;
-    const double t43 = t6 * t3;
+    const double t43 = t5 * t3;
     const double t44 = t3 * t43;
     const double t45 = t27 * t44;
     const double t46 = t27 * t45;
@@ -2035,7 +2026,8 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t48 = t3 * t47;
     const double t49 = t39 + t48;
     const double t50 = t4 * t49;
-    const double t51 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t51 = phi_dot * t6;
     const double t52 = t3 * t51;
     const double t53 = t14 * t52;
     const double t54 = t27 * t53;
@@ -2044,11 +2036,11 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t57 = t14 * t56;
     const double t58 = L / t57;
     const double t59 = t55 * t58;
-    const double t60 = y_ddot * t6;
+    const double t60 = y_ddot * t5;
     const double t61 = t33 + t60;
     const double t62 = t56 * t61;
-    const double t63 = t6 * t62;
-    const double t64 = t7 * t4;
+    const double t63 = t5 * t62;
+    const double t64 = t6 * t4;
     const double t65 = t3 * t64;
     const double t66 = t27 * t65;
     const double t67 = t27 * t66;
@@ -2056,10 +2048,10 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t69 = t63 + t68;
     const double t70 = t4 * t69;
     const double t71 = L * t70;
-    const double t72 = theta_ddot * t6;
+    const double t72 = theta_ddot * t5;
     const double t73 = t14 * t72;
     const double t74 = t14 * t73;
-    const double t75 = t7 * t3;
+    const double t75 = t6 * t3;
     const double t76 = t3 * t75;
     const double t77 = t27 * t76;
     const double t78 = t27 * t77;
@@ -2067,7 +2059,7 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t80 = t3 * t79;
     const double t81 = t71 + t80;
     const double t82 = t4 * t81;
-    const double t83 = phi_dot * t6;
+    const double t83 = phi_dot * t5;
     const double t84 = t3 * t83;
     const double t85 = t14 * t84;
     const double t86 = t27 * t85;
@@ -2089,6 +2081,7 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
+    const double phi_ddot = qdd[3];
     double rest = t59 - t59;
     rest += t88 - t88;
     rest += t101 - t101;
@@ -2124,19 +2117,9 @@ front_car_wheelset_status front_car_wheelset_projected_configuration(const doubl
 }
 
 front_car_wheelset_status front_car_wheelset_inverse_dynamics(const double q[4], const double qd[4], const double qdd[4], const front_car_wheelset_params *p, double u[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double x_ddot = qdd[0];
-    const double y_ddot = qdd[1];
-    const double theta_ddot = qdd[2];
-    const double phi_ddot = qdd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2144,66 +2127,75 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics(const double q[4],
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const double t3 = fabs(L);
-    const double t4 = t3 * 3.552713678800501e-15;
-    const double t5 = 1.0 / L;
-    double t6, t7;
-    front_car_wheelset_sincos(phi, &t6, &t7);
-    double t8, t9;
-    front_car_wheelset_sincos(theta, &t8, &t9);
-    const double t10 = y_ddot * t9;
-    const double t11 = x_ddot * t8;
-    const double t12 = t10 - t11;
-    const double t13 = t6 * t12;
-    const double t14 = theta_dot * theta_dot;
-    const double t15 = t7 * t14;
-    const double t16 = L * t15;
-    const double t17 = t13 - t16;
-    const double t18 = m_2 * t17;
-    const double t19 = m_1 + m_2;
-    const double t20 = x_ddot * t9;
-    const double t21 = y_ddot * t8;
-    const double t22 = t20 + t21;
-    const double t23 = t7 * t22;
-    const double t24 = t19 * t23;
-    const double t25 = t18 + t24;
-    const double t26 = L * t25;
-    const double t27 = L * L;
-    const double t28 = m_2 * t27;
-    const double t29 = Theta_1 + t28;
-    const double t30 = Theta_2 + t29;
-    const double t31 = theta_ddot * t30;
-    const double t32 = phi_ddot * Theta_2;
-    const double t33 = t31 + t32;
-    const double t34 = t6 * t33;
-    const double t35 = t26 + t34;
-    const double t36 = t5 * t35;
-    const double t37 = theta_ddot + phi_ddot;
-    const double t38 = Theta_2 * t37;
-    if (!(t3 > t4)) {
-        const double t39 = t6 * t6;
-        const double t40 = L * t7;
-        const double t41 = t8 * t40;
-        const double t42 = t41 * t41;
-        const double t43 = t39 + t42;
-        const double t44 = t9 * t40;
-        const double t45 = t44 * t44;
-        const double t46 = t43 + t45;
-        const double t47 = t40 * t40;
-        const double t48 = 1.0 + t47;
-        const double t49 = t48 * 1.262177448353619e-29;
-        if (!(t46 > t49)) {
+    double t3, t4;
+    front_car_wheelset_sincos(phi, &t3, &t4);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = fabs(L);
+    const double t8 = 1.0 / L;
+    const double y_ddot = qdd[1];
+    const double t9 = y_ddot * t6;
+    const double x_ddot = qdd[0];
+    const double t10 = x_ddot * t5;
+    const double t11 = t9 - t10;
+    const double t12 = t3 * t11;
+    const double theta_dot = qd[2];
+    const double t13 = theta_dot * theta_dot;
+    const double t14 = t4 * t13;
+    const double t15 = L * t14;
+    const double t16 = t12 - t15;
+    const double m_2 = p->m_2;
+    const double t17 = m_2 * t16;
+    const double m_1 = p->m_1;
+    const double t18 = m_1 + m_2;
+    const double t19 = x_ddot * t6;
+    const double t20 = y_ddot * t5;
+    const double t21 = t19 + t20;
+    const double t22 = t4 * t21;
+    const double t23 = t18 * t22;
+    const double t24 = t17 + t23;
+    const double t25 = L * t24;
+    const double t26 = L * L;
+    const double t27 = m_2 * t26;
+    const double Theta_1 = p->Theta_1;
+    const double t28 = Theta_1 + t27;
+    const double Theta_2 = p->Theta_2;
+    const double t29 = Theta_2 + t28;
+    const double theta_ddot = qdd[2];
+    const double t30 = theta_ddot * t29;
+    const double phi_ddot = qdd[3];
+    const double t31 = phi_ddot * Theta_2;
+    const double t32 = t30 + t31;
+    const double t33 = t3 * t32;
+    const double t34 = t25 + t33;
+    const double t35 = t8 * t34;
+    const double t36 = theta_ddot + phi_ddot;
+    const double t37 = Theta_2 * t36;
+    if (!(t7 > 0.0)) {
+        const double t38 = t3 * t3;
+        const double t39 = L * t4;
+        const double t40 = t5 * t39;
+        const double t41 = t40 * t40;
+        const double t42 = t38 + t41;
+        const double t43 = t6 * t39;
+        const double t44 = t43 * t43;
+        const double t45 = t42 + t44;
+        const double t46 = t39 * t39;
+        const double t47 = 1.0 + t46;
+        const double t48 = t47 * 1.262177448353619e-29;
+        if (!(t45 > t48)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    double rest = t36 - t36;
-    rest += t38 - t38;
+    double rest = t35 - t35;
+    rest += t37 - t37;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    u[0] = t36;
-    u[1] = t38;
+    u[0] = t35;
+    u[1] = t37;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2222,11 +2214,6 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_residual(const dou
 front_car_wheelset_status front_car_wheelset_actuator_velocity(const double q[4], const double qd[4], const front_car_wheelset_params *p, double nu[2]) {
     const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = theta + phi;
     const double t2 = fabs(t1);
     const double t3 = fabs(phi);
@@ -2238,14 +2225,19 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity(const double q[4]
     }
     double t4, t5;
     front_car_wheelset_sincos(t1, &t4, &t5);
-    const double t6 = x_dot * t5;
-    const double t7 = y_dot * t4;
-    const double t8 = t6 + t7;
-    double t9, t10;
-    front_car_wheelset_sincos(phi, &t9, &t10);
-    const double t11 = L * t9;
+    double t6, t7;
+    front_car_wheelset_sincos(phi, &t6, &t7);
+    const double x_dot = qd[0];
+    const double t8 = x_dot * t5;
+    const double y_dot = qd[1];
+    const double t9 = y_dot * t4;
+    const double t10 = t8 + t9;
+    const double L = p->L;
+    const double t11 = L * t6;
+    const double theta_dot = qd[2];
     const double t12 = theta_dot * t11;
-    const double t13 = t8 + t12;
+    const double t13 = t10 + t12;
+    const double phi_dot = qd[3];
     double rest = t13 - t13;
     rest += phi_dot - phi_dot;
     if (!(rest >= 0.0)) {
@@ -2257,81 +2249,71 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity(const double q[4]
 }
 
 front_car_wheelset_status front_car_wheelset_actuator_mass_matrix(const double q[4], const front_car_wheelset_params *p, double G_nu[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const double t2 = fabs(L);
-    const double t3 = t2 * 3.552713678800501e-15;
-    double t4, t5;
-    front_car_wheelset_sincos(phi, &t4, &t5);
-    const double t6 = L * L;
-    const double t7 = m_2 * t6;
-    const double t8 = Theta_1 + t7;
-    const double t9 = Theta_2 + t8;
-    const double t10 = t4 * t9;
-    const double t11 = t4 * t10;
-    const double t12 = t5 * t5;
-    const double t13 = m_1 + m_2;
-    const double t14 = t13 * t6;
-    const double t15 = t12 * t14;
-    const double t16 = t11 + t15;
-    const double t17 = 1.0 / t6;
-    const double t18 = t16 * t17;
-    const double t19 = t4 / L;
-    const double t20 = Theta_2 * t19;
-    if (!(t2 > t3)) {
-        const double t21 = t4 * t4;
-        double t22, t23;
-        front_car_wheelset_sincos(theta, &t22, &t23);
-        const double t24 = L * t5;
-        const double t25 = t22 * t24;
-        const double t26 = t25 * t25;
-        const double t27 = t21 + t26;
-        const double t28 = t23 * t24;
-        const double t29 = t28 * t28;
-        const double t30 = t27 + t29;
-        const double t31 = t24 * t24;
-        const double t32 = 1.0 + t31;
-        const double t33 = t32 * 1.262177448353619e-29;
-        if (!(t30 > t33)) {
+    double t2, t3;
+    front_car_wheelset_sincos(phi, &t2, &t3);
+    const double L = p->L;
+    const double t4 = fabs(L);
+    const double t5 = L * L;
+    const double m_2 = p->m_2;
+    const double t6 = m_2 * t5;
+    const double Theta_1 = p->Theta_1;
+    const double t7 = Theta_1 + t6;
+    const double Theta_2 = p->Theta_2;
+    const double t8 = Theta_2 + t7;
+    const double t9 = t2 * t8;
+    const double t10 = t2 * t9;
+    const double t11 = t3 * t3;
+    const double m_1 = p->m_1;
+    const double t12 = m_1 + m_2;
+    const double t13 = t12 * t5;
+    const double t14 = t11 * t13;
+    const double t15 = t10 + t14;
+    const double t16 = 1.0 / t5;
+    const double t17 = t15 * t16;
+    const double t18 = t2 / L;
+    const double t19 = Theta_2 * t18;
+    const double theta = q[2];
+    if (!(t4 > 0.0)) {
+        const double t20 = t2 * t2;
+        double t21, t22;
+        front_car_wheelset_sincos(theta, &t21, &t22);
+        const double t23 = L * t3;
+        const double t24 = t21 * t23;
+        const double t25 = t24 * t24;
+        const double t26 = t20 + t25;
+        const double t27 = t22 * t23;
+        const double t28 = t27 * t27;
+        const double t29 = t26 + t28;
+        const double t30 = t23 * t23;
+        const double t31 = 1.0 + t30;
+        const double t32 = t31 * 1.262177448353619e-29;
+        if (!(t29 > t32)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    double rest = t18 - t18;
-    rest += t20 - t20;
+    double rest = t17 - t17;
+    rest += t19 - t19;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    G_nu[0] = t18;
-    G_nu[1] = t20;
-    G_nu[2] = t20;
+    G_nu[0] = t17;
+    G_nu[1] = t19;
+    G_nu[2] = t19;
     G_nu[3] = Theta_2;
     return FRONT_CAR_WHEELSET_OK;
 }
 
 front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], const double qd[4], const front_car_wheelset_params *p, double bias_nu[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2341,88 +2323,85 @@ front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], co
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = fabs(L);
-    const double t19 = t18 * 3.552713678800501e-15;
-    const double t20 = L * L;
-    const double t21 = 1.0 / t20;
-    const double t22 = phi_dot * t4;
-    const double t23 = t3 * t22;
-    const double t24 = m_2 * t20;
-    const double t25 = Theta_1 + t24;
-    const double t26 = Theta_2 + t25;
-    const double t27 = theta_dot * t3;
-    const double t28 = t26 * t27;
-    const double t29 = m_1 + m_2;
-    const double t30 = t7 * t4;
-    const double t31 = t6 * t3;
-    const double t32 = t30 - t31;
-    const double t33 = x_dot * t32;
-    const double t34 = t6 * t4;
-    const double t35 = t7 * t3;
-    const double t36 = t34 + t35;
-    const double t37 = y_dot * t36;
-    const double t38 = t33 + t37;
-    const double t39 = L * t3;
-    const double t40 = theta_dot * t39;
-    const double t41 = t38 + t40;
-    const double t42 = t29 * t41;
-    const double t43 = L * t42;
-    const double t44 = t28 - t43;
-    const double t45 = L * t44;
-    const double t46 = t26 * t38;
-    const double t47 = t45 + t46;
-    const double t48 = t23 * t47;
-    const double t49 = t21 * t48;
-    const double t50 = t22 / L;
-    const double t51 = t41 * t50;
-    const double t52 = Theta_2 * t51;
+    const double t19 = L * L;
+    const double t20 = 1.0 / t19;
+    const double phi_dot = qd[3];
+    const double t21 = phi_dot * t4;
+    const double t22 = t3 * t21;
+    const double m_2 = p->m_2;
+    const double t23 = m_2 * t19;
+    const double Theta_1 = p->Theta_1;
+    const double t24 = Theta_1 + t23;
+    const double Theta_2 = p->Theta_2;
+    const double t25 = Theta_2 + t24;
+    const double theta_dot = qd[2];
+    const double t26 = theta_dot * t3;
+    const double t27 = t25 * t26;
+    const double m_1 = p->m_1;
+    const double t28 = m_1 + m_2;
+    const double t29 = L * t3;
+    const double t30 = theta_dot * t29;
+    const double t31 = t6 * t4;
+    const double t32 = t5 * t3;
+    const double t33 = t31 - t32;
+    const double x_dot = qd[0];
+    const double t34 = x_dot * t33;
+    const double t35 = t5 * t4;
+    const double t36 = t6 * t3;
+    const double t37 = t35 + t36;
+    const double y_dot = qd[1];
+    const double t38 = y_dot * t37;
+    const double t39 = t34 + t38;
+    const double t40 = t30 + t39;
+    const double t41 = t28 * t40;
+    const double t42 = L * t41;
+    const double t43 = t27 - t42;
+    const double t44 = L * t43;
+    const double t45 = t25 * t39;
+    const double t46 = t44 + t45;
+    const double t47 = t22 * t46;
+    const double t48 = t20 * t47;
+    const double t49 = t21 / L;
+    const double t50 = t49 * t40;
+    const double t51 = Theta_2 * t50;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t18 > t19)) {
+    if (!(t18 > 0.0)) {
         if (!(t14 > t17)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    double rest = t49 - t49;
-    rest += t52 - t52;
+    double rest = t48 - t48;
+    rest += t51 - t51;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    bias_nu[0] = t49;
-    bias_nu[1] = t52;
+    bias_nu[0] = t48;
+    bias_nu[1] = t51;
     return FRONT_CAR_WHEELSET_OK;
 }
 
 front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_params *p, double qdd[4]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double K_f = u[0];
-    const double T = u[1];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2431,43 +2410,48 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    front_car_wheelset_sincos(theta, &t3, &t4);
+    double t5, t6;
+    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
-    const double t22 = t3 * t21;
+    const double t21 = t4 * t20;
+    const double t22 = t5 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
-    const double t26 = t3 * t25;
+    const double t25 = t3 * t20;
+    const double t26 = t5 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
     const double t29 = t12 * t28;
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
+    const double Theta_2 = p->Theta_2;
     const double t34 = Theta_2 + t33;
-    const double t35 = t3 * t34;
-    const double t36 = t3 * t35;
+    const double t35 = t5 * t34;
+    const double t36 = t5 * t35;
     const double t37 = t30 + t36;
     const double t38 = Theta_2 * t37;
-    const double t39 = Theta_2 * t3;
-    const double t40 = t3 * t39;
+    const double t39 = Theta_2 * t5;
+    const double t40 = t5 * t39;
     const double t41 = Theta_2 * t40;
     const double t42 = t38 - t41;
     const double t43 = fabs(t42);
@@ -2480,7 +2464,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t50 = t45 + t49;
     const double t51 = t44 + t50;
     const double t52 = t44 * t51;
-    const double t53 = t5 * t52;
+    const double t53 = t7 * t52;
     const double t54 = fabs(m_1);
     const double t55 = t54 + t46;
     const double t56 = t55 * t44;
@@ -2492,35 +2476,40 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t62 = 1.0 / t42;
     const double t63 = Theta_2 * t12;
     const double t64 = t12 * t63;
+    const double theta_dot = qd[2];
     const double t65 = theta_dot * t20;
-    const double t66 = theta_dot * t7;
+    const double t66 = theta_dot * t4;
     const double t67 = t65 * t66;
-    const double t68 = t7 * t4;
-    const double t69 = t6 * t3;
+    const double t68 = t4 * t6;
+    const double t69 = t3 * t5;
     const double t70 = t68 - t69;
+    const double K_f = u[0];
     const double t71 = K_f * t70;
     const double t72 = t67 + t71;
-    const double t73 = theta_dot * t6;
+    const double t73 = theta_dot * t3;
+    const double y_dot = qd[1];
     const double t74 = y_dot * t73;
+    const double x_dot = qd[0];
     const double t75 = x_dot * t66;
     const double t76 = t74 + t75;
     const double t77 = 1.0 / t14;
     const double t78 = t8 * t9;
-    const double t79 = t70 * t3;
+    const double t79 = t5 * t70;
     const double t80 = t78 - t79;
     const double t81 = t77 * t80;
     const double t82 = t76 * t81;
-    const double t83 = t7 * t3;
+    const double t83 = t4 * t5;
     const double t84 = t77 * t83;
-    const double t85 = phi_dot * t3;
+    const double phi_dot = qd[3];
+    const double t85 = phi_dot * t5;
     const double t86 = L * t85;
     const double t87 = theta_dot * t86;
     const double t88 = theta_dot + phi_dot;
-    const double t89 = t70 * t88;
+    const double t89 = t88 * t70;
     const double t90 = x_dot * t89;
-    const double t91 = t6 * t4;
+    const double t91 = t3 * t6;
     const double t92 = t91 + t83;
-    const double t93 = t92 * t88;
+    const double t93 = t88 * t92;
     const double t94 = y_dot * t93;
     const double t95 = t90 + t94;
     const double t96 = t87 + t95;
@@ -2529,7 +2518,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t99 = t18 * t98;
     const double t100 = t8 * t77;
     const double t101 = t100 * t96;
-    const double t102 = t4 * t8;
+    const double t102 = t6 * t8;
     const double t103 = t77 * t102;
     const double t104 = t76 * t103;
     const double t105 = t101 - t104;
@@ -2541,8 +2530,8 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t111 = t65 * t73;
     const double t112 = K_f * t92;
     const double t113 = t111 + t112;
-    const double t114 = t92 * t3;
-    const double t115 = t8 * t12;
+    const double t114 = t8 * t12;
+    const double t115 = t5 * t92;
     const double t116 = t114 + t115;
     const double t117 = t77 * t116;
     const double t118 = t76 * t117;
@@ -2555,8 +2544,8 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t125 = t113 - t124;
     const double t126 = t110 * t125;
     const double t127 = t109 + t126;
-    const double t128 = t3 * t63;
-    const double t129 = L * t3;
+    const double t128 = t5 * t63;
+    const double t129 = L * t5;
     const double t130 = K_f * t129;
     const double t131 = t20 * t76;
     const double t132 = t34 * t105;
@@ -2565,6 +2554,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t135 = t128 * t134;
     const double t136 = t127 + t135;
     const double t137 = Theta_2 * t105;
+    const double T = u[1];
     const double t138 = T - t137;
     const double t139 = t128 * t138;
     const double t140 = t136 - t139;
@@ -2575,7 +2565,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t145 = t9 * t144;
     const double t146 = t145 * t125;
     const double t147 = t143 + t146;
-    const double t148 = t3 * t144;
+    const double t148 = t5 * t144;
     const double t149 = t148 * t134;
     const double t150 = t147 + t149;
     const double t151 = t148 * t138;
@@ -2615,20 +2605,9 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
 }
 
 front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_params *p, double lambda_B[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double K_f = u[0];
-    const double T = u[1];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2638,27 +2617,30 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     }
     double t3, t4;
     front_car_wheelset_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    front_car_wheelset_sincos(theta, &t6, &t7);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
+    const double t21 = t6 * t20;
     const double t22 = t3 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
+    const double t25 = t5 * t20;
     const double t26 = t3 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
@@ -2666,7 +2648,9 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
+    const double Theta_2 = p->Theta_2;
     const double t34 = Theta_2 + t33;
     const double t35 = t3 * t34;
     const double t36 = t3 * t35;
@@ -2686,7 +2670,7 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t50 = t45 + t49;
     const double t51 = t44 + t50;
     const double t52 = t44 * t51;
-    const double t53 = t5 * t52;
+    const double t53 = t7 * t52;
     const double t54 = fabs(m_1);
     const double t55 = t54 + t46;
     const double t56 = t55 * t44;
@@ -2697,10 +2681,10 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t61 = t60 * 3.552713678800501e-15;
     const double t62 = 1.0 / t14;
     const double t63 = t8 * t9;
-    const double t64 = t7 * t4;
-    const double t65 = t6 * t3;
+    const double t64 = t6 * t4;
+    const double t65 = t5 * t3;
     const double t66 = t64 - t65;
-    const double t67 = t66 * t3;
+    const double t67 = t3 * t66;
     const double t68 = t63 - t67;
     const double t69 = t62 * t68;
     const double t70 = Theta_2 * t12;
@@ -2713,12 +2697,12 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t77 = t75 * t76;
     const double t78 = 1.0 - t77;
     const double t79 = t69 * t78;
-    const double t80 = t6 * t4;
-    const double t81 = t7 * t3;
-    const double t82 = t80 + t81;
-    const double t83 = t82 * t3;
-    const double t84 = t8 * t12;
-    const double t85 = t83 + t84;
+    const double t80 = t8 * t12;
+    const double t81 = t5 * t4;
+    const double t82 = t6 * t3;
+    const double t83 = t81 + t82;
+    const double t84 = t3 * t83;
+    const double t85 = t80 + t84;
     const double t86 = t62 * t85;
     const double t87 = t9 * t70;
     const double t88 = t18 * t87;
@@ -2735,22 +2719,26 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t99 = t76 * t98;
     const double t100 = t95 * t99;
     const double t101 = t93 - t100;
+    const double theta_dot = qd[2];
     const double t102 = theta_dot * t20;
-    const double t103 = theta_dot * t7;
+    const double t103 = theta_dot * t6;
     const double t104 = t102 * t103;
-    const double t105 = theta_dot * t6;
+    const double t105 = theta_dot * t5;
+    const double y_dot = qd[1];
     const double t106 = y_dot * t105;
+    const double x_dot = qd[0];
     const double t107 = x_dot * t103;
     const double t108 = t106 + t107;
     const double t109 = t108 * t69;
-    const double t110 = t62 * t81;
+    const double t110 = t62 * t82;
+    const double phi_dot = qd[3];
     const double t111 = phi_dot * t3;
     const double t112 = L * t111;
     const double t113 = theta_dot * t112;
     const double t114 = theta_dot + phi_dot;
-    const double t115 = t66 * t114;
+    const double t115 = t114 * t66;
     const double t116 = x_dot * t115;
-    const double t117 = t82 * t114;
+    const double t117 = t114 * t83;
     const double t118 = y_dot * t117;
     const double t119 = t116 + t118;
     const double t120 = t113 + t119;
@@ -2767,23 +2755,23 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t131 = t101 * t130;
     const double t132 = Theta_2 * t9;
     const double t133 = t3 * t132;
-    const double t134 = t25 * t133;
-    const double t135 = t88 - t134;
-    const double t136 = t76 * t135;
-    const double t137 = t69 * t136;
-    const double t138 = t9 * t132;
-    const double t139 = t18 * t138;
-    const double t140 = t74 + t139;
-    const double t141 = t140 * t76;
-    const double t142 = 1.0 - t141;
-    const double t143 = t86 * t142;
-    const double t144 = t137 + t143;
-    const double t145 = t34 * t133;
-    const double t146 = Theta_2 * t133;
-    const double t147 = t145 - t146;
-    const double t148 = t76 * t147;
-    const double t149 = t95 * t148;
-    const double t150 = t144 + t149;
+    const double t134 = t34 * t133;
+    const double t135 = Theta_2 * t133;
+    const double t136 = t134 - t135;
+    const double t137 = t76 * t136;
+    const double t138 = t95 * t137;
+    const double t139 = t25 * t133;
+    const double t140 = t88 - t139;
+    const double t141 = t76 * t140;
+    const double t142 = t69 * t141;
+    const double t143 = t9 * t132;
+    const double t144 = t18 * t143;
+    const double t145 = t74 + t144;
+    const double t146 = t145 * t76;
+    const double t147 = 1.0 - t146;
+    const double t148 = t86 * t147;
+    const double t149 = t142 + t148;
+    const double t150 = t138 + t149;
     const double t151 = t102 * t105;
     const double t152 = t62 * t65;
     const double t153 = t152 * t120;
@@ -2796,43 +2784,45 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t160 = t151 + t159;
     const double t161 = t150 * t160;
     const double t162 = t131 - t161;
-    const double t163 = t25 * t40;
-    const double t164 = t18 * t73;
-    const double t165 = t163 - t164;
-    const double t166 = t76 * t165;
-    const double t167 = t69 * t166;
-    const double t168 = t18 * t133;
-    const double t169 = t21 * t40;
-    const double t170 = t168 + t169;
+    const double t163 = t34 * t40;
+    const double t164 = t163 - t41;
+    const double t165 = t164 * t76;
+    const double t166 = 1.0 - t165;
+    const double t167 = t95 * t166;
+    const double t168 = t25 * t40;
+    const double t169 = t18 * t73;
+    const double t170 = t168 - t169;
     const double t171 = t76 * t170;
-    const double t172 = t86 * t171;
-    const double t173 = t167 + t172;
-    const double t174 = t34 * t40;
-    const double t175 = t174 - t41;
-    const double t176 = t175 * t76;
-    const double t177 = 1.0 - t176;
-    const double t178 = t95 * t177;
-    const double t179 = t173 + t178;
+    const double t172 = t69 * t171;
+    const double t173 = t18 * t133;
+    const double t174 = t21 * t40;
+    const double t175 = t173 + t174;
+    const double t176 = t76 * t175;
+    const double t177 = t86 * t176;
+    const double t178 = t172 + t177;
+    const double t179 = t167 + t178;
     const double t180 = t34 * t157;
     const double t181 = t20 * t108;
     const double t182 = t180 - t181;
     const double t183 = t179 * t182;
     const double t184 = t162 + t183;
-    const double t185 = t164 - t163;
+    const double t185 = t169 - t168;
     const double t186 = t76 * t185;
     const double t187 = t69 * t186;
-    const double t188 = t187 - t172;
-    const double t189 = t188 - t178;
+    const double t188 = t187 - t177;
+    const double t189 = t188 - t167;
     const double t190 = Theta_2 * t157;
     const double t191 = t189 * t190;
     const double t192 = t184 + t191;
     const double t193 = t66 * t101;
-    const double t194 = t82 * t150;
+    const double t194 = t83 * t150;
     const double t195 = t193 - t194;
     const double t196 = L * t3;
     const double t197 = t196 * t179;
     const double t198 = t195 + t197;
+    const double K_f = u[0];
     const double t199 = K_f * t198;
+    const double T = u[1];
     const double t200 = T * t189;
     const double t201 = t199 + t200;
     const double t202 = t192 + t201;
@@ -2842,17 +2832,17 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t206 = t124 * t99;
     const double t207 = t205 + t206;
     const double t208 = t207 * t130;
-    const double t209 = t152 * t142;
-    const double t210 = t110 * t136;
+    const double t209 = t152 * t147;
+    const double t210 = t110 * t141;
     const double t211 = t209 - t210;
-    const double t212 = t124 * t148;
+    const double t212 = t124 * t137;
     const double t213 = t211 + t212;
     const double t214 = t213 * t160;
     const double t215 = t208 + t214;
-    const double t216 = t110 * t166;
-    const double t217 = t152 * t171;
+    const double t216 = t110 * t171;
+    const double t217 = t152 * t176;
     const double t218 = t216 - t217;
-    const double t219 = t124 * t177;
+    const double t219 = t124 * t166;
     const double t220 = t218 - t219;
     const double t221 = t220 * t182;
     const double t222 = t215 + t221;
@@ -2861,14 +2851,14 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t225 = t219 + t224;
     const double t226 = t225 * t190;
     const double t227 = t222 + t226;
-    const double t228 = t66 * t207;
-    const double t229 = t82 * t213;
-    const double t230 = t228 + t229;
-    const double t231 = t196 * t220;
+    const double t228 = T * t225;
+    const double t229 = t196 * t220;
+    const double t230 = t66 * t207;
+    const double t231 = t83 * t213;
     const double t232 = t230 + t231;
-    const double t233 = K_f * t232;
-    const double t234 = T * t225;
-    const double t235 = t233 + t234;
+    const double t233 = t229 + t232;
+    const double t234 = K_f * t233;
+    const double t235 = t228 + t234;
     const double t236 = t227 + t235;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
@@ -2888,43 +2878,43 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
 
 front_car_wheelset_status front_car_wheelset_energy(const double q[4], const double qd[4], const front_car_wheelset_params *p, double T_U[2]) {
     const double theta = q[2];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const double t2 = m_1 + m_2;
-    const double t3 = x_dot * x_dot;
-    const double t4 = y_dot * y_dot;
-    const double t5 = t3 + t4;
-    const double t6 = t2 * t5;
-    const double t7 = 0.5 * t6;
-    const double t8 = L * m_2;
-    const double t9 = theta_dot * t8;
-    double t10, t11;
-    front_car_wheelset_sincos(theta, &t10, &t11);
-    const double t12 = y_dot * t11;
-    const double t13 = x_dot * t10;
+    double t2, t3;
+    front_car_wheelset_sincos(theta, &t2, &t3);
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double t4 = m_1 + m_2;
+    const double x_dot = qd[0];
+    const double t5 = x_dot * x_dot;
+    const double y_dot = qd[1];
+    const double t6 = y_dot * y_dot;
+    const double t7 = t5 + t6;
+    const double t8 = t4 * t7;
+    const double t9 = 0.5 * t8;
+    const double L = p->L;
+    const double t10 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t11 = theta_dot * t10;
+    const double t12 = y_dot * t3;
+    const double t13 = x_dot * t2;
     const double t14 = t12 - t13;
-    const double t15 = t9 * t14;
-    const double t16 = t7 + t15;
+    const double t15 = t11 * t14;
+    const double t16 = t9 + t15;
     const double t17 = L * L;
     const double t18 = m_2 * t17;
+    const double Theta_1 = p->Theta_1;
     const double t19 = Theta_1 + t18;
     const double t20 = theta_dot * theta_dot;
     const double t21 = t19 * t20;
     const double t22 = 0.5 * t21;
     const double t23 = t16 + t22;
+    const double phi_dot = qd[3];
     const double t24 = theta_dot + phi_dot;
     const double t25 = t24 * t24;
+    const double Theta_2 = p->Theta_2;
     const double t26 = Theta_2 * t25;
     const double t27 = 0.5 * t26;
     const double t28 = t23 + t27;
@@ -2938,11 +2928,10 @@ front_car_wheelset_status front_car_wheelset_energy(const double q[4], const dou
 }
 
 front_car_wheelset_status front_car_wheelset_singularity(const double q[4], const front_car_wheelset_params *p, double measure[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double t1 = fabs(theta);
-    const double t2 = fabs(phi);
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
@@ -2950,54 +2939,62 @@ front_car_wheelset_status front_car_wheelset_singularity(const double q[4], cons
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    const double t5 = 1.0 != 0.0 ? t3 / 1.0 : 0.0;
-    double t6, t7;
-    front_car_wheelset_sincos(phi, &t6, &t7);
-    const double t8 = t4 * t7;
-    const double t9 = t3 * t6;
-    const double t10 = t8 - t9;
-    const double t11 = -t10;
-    const double t12 = L * t7;
+    front_car_wheelset_sincos(phi, &t3, &t4);
+    double t5, t6;
+    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = L * t4;
+    const double t8 = -t7;
+    const double t9 = t7 * t7;
+    const double t10 = 1.0 + t9;
+    const double t11 = sqrt(t10);
+    const double t12 = t11 != 0.0 ? t8 / t11 : 0.0;
     const double t13 = t12 * t12;
-    const double t14 = 1.0 + t13;
-    const double t15 = sqrt(t14);
-    const double t16 = t15 != 0.0 ? t11 / t15 : 0.0;
-    const double t17 = t5 * t16;
-    const double t18 = -t4;
-    const double t19 = 1.0 != 0.0 ? t18 / 1.0 : 0.0;
-    const double t20 = t3 * t7;
-    const double t21 = t4 * t6;
-    const double t22 = t20 + t21;
-    const double t23 = t15 != 0.0 ? t22 / t15 : 0.0;
-    const double t24 = t19 * t23;
-    const double t25 = t17 - t24;
-    const double t26 = t25 * t25;
-    const double t27 = -t12;
-    const double t28 = t15 != 0.0 ? t27 / t15 : 0.0;
-    const double t29 = t5 * t28;
-    const double t30 = t29 * t29;
-    const double t31 = t26 + t30;
-    const double t32 = t19 * t28;
-    const double t33 = t32 * t32;
-    const double t34 = t31 + t33;
-    const double t35 = L * t6;
-    const double t36 = t35 * t25;
-    const double t37 = t22 * t29;
-    const double t38 = t36 - t37;
-    const double t39 = t10 * t32;
-    const double t40 = t38 + t39;
-    const double t41 = t40 * t40;
-    const double t42 = t34 != 0.0 ? t41 / t34 : 0.0;
-    const double t43 = t35 * t35;
-    const double t44 = 1.0 + t43;
-    const double t45 = t44 != 0.0 ? t42 / t44 : 0.0;
-    double rest = t34 - t34;
-    rest += t45 - t45;
+    const double t14 = t5 * t4;
+    const double t15 = t6 * t3;
+    const double t16 = t14 + t15;
+    const double t17 = t11 != 0.0 ? t16 / t11 : 0.0;
+    const double t18 = t6 * t6;
+    const double t19 = t18 * t17;
+    const double t20 = t17 * t19;
+    const double t21 = t13 + t20;
+    const double t22 = t6 * t4;
+    const double t23 = t5 * t3;
+    const double t24 = t22 - t23;
+    const double t25 = -t24;
+    const double t26 = t11 != 0.0 ? t25 / t11 : 0.0;
+    const double t27 = t5 * t26;
+    const double t28 = t6 * t17;
+    const double t29 = 2.0 * t28;
+    const double t30 = t27 + t29;
+    const double t31 = t26 * t30;
+    const double t32 = t5 * t31;
+    const double t33 = t21 + t32;
+    const double t34 = L * t3;
+    const double t35 = t27 + t28;
+    const double t36 = t34 * t35;
+    const double t37 = t5 * t12;
+    const double t38 = t16 * t37;
+    const double t39 = t36 - t38;
+    const double t40 = t6 * t12;
+    const double t41 = t24 * t40;
+    const double t42 = t39 - t41;
+    const double t43 = t42 * t42;
+    const double t44 = t40 * t40;
+    const double t45 = t37 * t37;
+    const double t46 = t35 * t35;
+    const double t47 = t45 + t46;
+    const double t48 = t44 + t47;
+    const double t49 = t48 != 0.0 ? t43 / t48 : 0.0;
+    const double t50 = t34 * t34;
+    const double t51 = 1.0 + t50;
+    const double t52 = t51 != 0.0 ? t49 / t51 : 0.0;
+    double rest = t33 - t33;
+    rest += t52 - t52;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    measure[0] = t34;
-    measure[1] = t45;
+    measure[0] = t33;
+    measure[1] = t52;
     return FRONT_CAR_WHEELSET_OK;
 }

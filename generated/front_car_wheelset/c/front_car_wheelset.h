@@ -29,7 +29,7 @@
  * weighted_nullspace_projector         19     68      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     14      3      0      2      0
- * projected_control_pseudoinverse       0      3      1      0      2      0
+ * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 0      4      2      0      2      0
  * projected_mass_matrix                12     50      5      0      2      0
  * projected_coriolis_matrix            81    224      5      0      2      0
@@ -43,15 +43,15 @@
  * admissible_velocity                   5     21      2      0      2      0
  * admissible_acceleration              17     76      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                     10     20      1      0      2      0
+ * inverse_dynamics                     10     19      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
- * actuator_mass_matrix                  4     10      2      0      1      0
- * actuator_bias                        12     31      2      0      2      0
+ * actuator_mass_matrix                  4      9      2      0      1      0
+ * actuator_bias                        12     30      2      0      2      0
  * forward_dynamics                     49    103      2      0      2      0
  * multipliers                          76    146      2      0      2      0
  * energy                                8     17      0      0      1      0
- * singularity                           9     19      7      1      2      0
+ * singularity                          12     26      5      1      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

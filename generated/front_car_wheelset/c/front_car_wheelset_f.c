@@ -43,19 +43,13 @@ static void front_car_wheelset_sincos_f(const float x, float *sine, float *cosin
     const float zzc = z * zc;
     const float rest = lost + zzc;
     const float cos_r = near_ + rest;
-    const float quarter = k * 0.25f;
-    const float pushed = quarter + 12582912.0f;
-    const float whole = pushed - 12582912.0f;
-    const float four = whole * 4.0f;
+    const float pushed = k + 50331650.0f;
+    const float four = pushed - 50331650.0f;
     const float m = k - four;
-    const float m2 = m * m;
-    const float fade = 4.0f - m2;
-    const float odd = m * fade;
-    const float turn = odd * 0.33333334f;
-    const float bend = 7.0f - m2;
-    const float even = m2 * bend;
-    const float sixth = even * 0.16666667f;
-    const float keep = 1.0f - sixth;
+    const float size = fabsf(m);
+    const float keep = 1.0f - size;
+    const float fade = 2.0f - size;
+    const float turn = m * fade;
     const float ss = keep * sin_r;
     const float sc = turn * cos_r;
     const float sine_ = ss + sc;
@@ -78,27 +72,27 @@ front_car_wheelset_params_f front_car_wheelset_default_params_f(void) {
 
 front_car_wheelset_status front_car_wheelset_mass_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float G[16]) {
     const float theta = q[2];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const float t2 = m_1 + m_2;
-    float t3, t4;
-    front_car_wheelset_sincos_f(theta, &t3, &t4);
+    float t2, t3;
+    front_car_wheelset_sincos_f(theta, &t2, &t3);
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
+    const float t4 = m_1 + m_2;
+    const float L = p->L;
     const float t5 = L * m_2;
-    const float t6 = t3 * t5;
+    const float t6 = t2 * t5;
     const float t7 = -t6;
-    const float t8 = t4 * t5;
+    const float t8 = t3 * t5;
     const float t9 = L * L;
     const float t10 = m_2 * t9;
+    const float Theta_1 = p->Theta_1;
     const float t11 = Theta_1 + t10;
+    const float Theta_2 = p->Theta_2;
     const float t12 = Theta_2 + t11;
-    float rest = t2 - t2;
+    float rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
     rest += t12 - t12;
@@ -106,12 +100,12 @@ front_car_wheelset_status front_car_wheelset_mass_matrix_f(const float q[4], con
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    G[0] = t2;
+    G[0] = t4;
     G[1] = 0.0f;
     G[2] = t7;
     G[3] = 0.0f;
     G[4] = 0.0f;
-    G[5] = t2;
+    G[5] = t4;
     G[6] = t8;
     G[7] = 0.0f;
     G[8] = t7;
@@ -127,16 +121,16 @@ front_car_wheelset_status front_car_wheelset_mass_matrix_f(const float q[4], con
 
 front_car_wheelset_status front_car_wheelset_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float C[16]) {
     const float theta = q[2];
-    const float theta_dot = qd[2];
-    const float L = p->L;
-    const float m_2 = p->m_2;
     const float t1 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t2, t3;
     front_car_wheelset_sincos_f(theta, &t2, &t3);
+    const float L = p->L;
+    const float m_2 = p->m_2;
     const float t4 = L * m_2;
+    const float theta_dot = qd[2];
     const float t5 = theta_dot * t4;
     const float t6 = t3 * t5;
     const float t7 = -t6;
@@ -168,22 +162,22 @@ front_car_wheelset_status front_car_wheelset_coriolis_matrix_f(const float q[4],
 
 front_car_wheelset_status front_car_wheelset_coriolis_force_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float C_qd[4]) {
     const float theta = q[2];
-    const float theta_dot = qd[2];
-    const float L = p->L;
-    const float m_2 = p->m_2;
     const float t1 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const float t2 = L * m_2;
-    const float t3 = theta_dot * t2;
-    float t4, t5;
-    front_car_wheelset_sincos_f(theta, &t4, &t5);
-    const float t6 = theta_dot * t5;
-    const float t7 = t3 * t6;
+    float t2, t3;
+    front_car_wheelset_sincos_f(theta, &t2, &t3);
+    const float L = p->L;
+    const float m_2 = p->m_2;
+    const float t4 = L * m_2;
+    const float theta_dot = qd[2];
+    const float t5 = theta_dot * t4;
+    const float t6 = theta_dot * t3;
+    const float t7 = t5 * t6;
     const float t8 = -t7;
-    const float t9 = theta_dot * t4;
-    const float t10 = t3 * t9;
+    const float t9 = theta_dot * t2;
+    const float t10 = t5 * t9;
     const float t11 = -t10;
     float rest = t8 - t8;
     rest += t11 - t11;
@@ -220,9 +214,8 @@ front_car_wheelset_status front_car_wheelset_applied_force_f(const float q[4], c
 
 front_car_wheelset_status front_car_wheelset_constraint_jacobian_f(const float q[4], const front_car_wheelset_params_f *p, float B[8]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -232,20 +225,21 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_f(const float q
     }
     float t3, t4;
     front_car_wheelset_sincos_f(theta, &t3, &t4);
-    const float t5 = -t4;
-    float t6, t7;
-    front_car_wheelset_sincos_f(phi, &t6, &t7);
-    const float t8 = t3 * t7;
-    const float t9 = t4 * t6;
+    float t5, t6;
+    front_car_wheelset_sincos_f(phi, &t5, &t6);
+    const float t7 = -t4;
+    const float t8 = t3 * t6;
+    const float t9 = t4 * t5;
     const float t10 = t8 + t9;
-    const float t11 = t4 * t7;
-    const float t12 = t3 * t6;
+    const float t11 = t4 * t6;
+    const float t12 = t3 * t5;
     const float t13 = t11 - t12;
     const float t14 = -t13;
-    const float t15 = L * t7;
+    const float L = p->L;
+    const float t15 = L * t6;
     const float t16 = -t15;
     float rest = t3 - t3;
-    rest += t5 - t5;
+    rest += t7 - t7;
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
@@ -253,7 +247,7 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_f(const float q
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B[0] = t3;
-    B[1] = t5;
+    B[1] = t7;
     B[2] = 0.0f;
     B[3] = 0.0f;
     B[4] = t10;
@@ -265,11 +259,8 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_f(const float q
 
 front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float B_dot[8]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -279,31 +270,34 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot_f(const flo
     }
     float t3, t4;
     front_car_wheelset_sincos_f(theta, &t3, &t4);
-    const float t5 = theta_dot * t4;
-    const float t6 = theta_dot * t3;
-    float t7, t8;
-    front_car_wheelset_sincos_f(phi, &t7, &t8);
-    const float t9 = t4 * t8;
-    const float t10 = t3 * t7;
-    const float t11 = t9 - t10;
-    const float t12 = theta_dot + phi_dot;
-    const float t13 = t11 * t12;
-    const float t14 = t3 * t8;
-    const float t15 = t4 * t7;
+    float t5, t6;
+    front_car_wheelset_sincos_f(phi, &t5, &t6);
+    const float theta_dot = qd[2];
+    const float t7 = theta_dot * t4;
+    const float t8 = theta_dot * t3;
+    const float phi_dot = qd[3];
+    const float t9 = theta_dot + phi_dot;
+    const float t10 = t4 * t6;
+    const float t11 = t3 * t5;
+    const float t12 = t10 - t11;
+    const float t13 = t9 * t12;
+    const float t14 = t3 * t6;
+    const float t15 = t4 * t5;
     const float t16 = t14 + t15;
-    const float t17 = t16 * t12;
-    const float t18 = phi_dot * t7;
+    const float t17 = t9 * t16;
+    const float t18 = phi_dot * t5;
+    const float L = p->L;
     const float t19 = L * t18;
-    float rest = t5 - t5;
-    rest += t6 - t6;
+    float rest = t7 - t7;
+    rest += t8 - t8;
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    B_dot[0] = t5;
-    B_dot[1] = t6;
+    B_dot[0] = t7;
+    B_dot[1] = t8;
     B_dot[2] = 0.0f;
     B_dot[3] = 0.0f;
     B_dot[4] = t13;
@@ -314,10 +308,9 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot_f(const flo
 }
 
 front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const float q[4], const front_car_wheelset_params_f *p, float B_pinv[8]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -327,14 +320,15 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const fl
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -342,19 +336,19 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const fl
     const float t17 = t16 * 3.637979e-12f;
     const float t18 = 1.0f / t14;
     const float t19 = t8 * t9;
-    const float t20 = t7 * t4;
-    const float t21 = t6 * t3;
+    const float t20 = t6 * t4;
+    const float t21 = t5 * t3;
     const float t22 = t20 - t21;
-    const float t23 = t22 * t3;
+    const float t23 = t3 * t22;
     const float t24 = t19 - t23;
     const float t25 = t18 * t24;
-    const float t26 = t7 * t3;
+    const float t26 = t6 * t3;
     const float t27 = t18 * t26;
-    const float t28 = t6 * t4;
-    const float t29 = t28 + t26;
-    const float t30 = t29 * t3;
-    const float t31 = t8 * t12;
-    const float t32 = t30 + t31;
+    const float t28 = t8 * t12;
+    const float t29 = t5 * t4;
+    const float t30 = t29 + t26;
+    const float t31 = t3 * t30;
+    const float t32 = t28 + t31;
     const float t33 = t18 * t32;
     const float t34 = -t33;
     const float t35 = t18 * t21;
@@ -388,9 +382,8 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const fl
 
 front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q[4], const front_car_wheelset_params_f *p, float N_B[16]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -399,15 +392,16 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
-    const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    front_car_wheelset_sincos_f(theta, &t3, &t4);
+    float t5, t6;
+    front_car_wheelset_sincos_f(phi, &t5, &t6);
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t8 = L * t6;
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -417,12 +411,12 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
     const float t19 = t13 * t18;
     const float t20 = t9 * t12;
     const float t21 = t18 * t20;
-    const float t22 = t3 * t12;
+    const float t22 = t5 * t12;
     const float t23 = t18 * t22;
     const float t24 = t10 * t18;
-    const float t25 = t3 * t9;
+    const float t25 = t5 * t9;
     const float t26 = t18 * t25;
-    const float t27 = t5 * t18;
+    const float t27 = t7 * t18;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -455,12 +449,9 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
 }
 
 front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float N_B_dot[16]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -470,14 +461,15 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -486,14 +478,16 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     const float t18 = L * L;
     const float t19 = t14 * t14;
     const float t20 = t18 / t19;
-    const float t21 = t7 * t4;
-    const float t22 = t6 * t4;
+    const float t21 = t6 * t4;
+    const float t22 = t5 * t4;
     const float t23 = 2.0f * t15;
-    const float t24 = 2.0f * t5;
+    const float t24 = 2.0f * t7;
     const float t25 = t23 + t24;
     const float t26 = t22 * t25;
+    const float theta_dot = qd[2];
     const float t27 = theta_dot * t26;
-    const float t28 = phi_dot * t7;
+    const float phi_dot = qd[3];
+    const float t28 = phi_dot * t6;
     const float t29 = t3 * t28;
     const float t30 = 2.0f * t29;
     const float t31 = t27 + t30;
@@ -505,14 +499,14 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     const float t37 = t4 * t36;
     const float t38 = t4 * t37;
     const float t39 = 2.0f + t38;
-    const float t40 = t7 * t39;
-    const float t41 = t7 * t40;
-    const float t42 = t5 + t15;
+    const float t40 = t6 * t39;
+    const float t41 = t6 * t40;
+    const float t42 = t7 + t15;
     const float t43 = t41 - t42;
     const float t44 = t4 * t43;
     const float t45 = theta_dot * t44;
-    const float t46 = phi_dot * t6;
-    const float t47 = t7 * t46;
+    const float t46 = phi_dot * t5;
+    const float t47 = t6 * t46;
     const float t48 = t3 * t47;
     const float t49 = 2.0f * t48;
     const float t50 = t45 - t49;
@@ -520,7 +514,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     const float t52 = t20 * t51;
     const float t53 = t4 * t28;
     const float t54 = t18 * t53;
-    const float t55 = t6 * t3;
+    const float t55 = t5 * t3;
     const float t56 = t55 * t42;
     const float t57 = theta_dot * t56;
     const float t58 = t54 - t57;
@@ -536,7 +530,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     const float t68 = t65 - t67;
     const float t69 = t22 * t68;
     const float t70 = t20 * t69;
-    const float t71 = t7 * t3;
+    const float t71 = t6 * t3;
     const float t72 = t71 * t42;
     const float t73 = theta_dot * t72;
     const float t74 = t4 * t46;
@@ -582,14 +576,9 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
 }
 
 front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const float q[4], const front_car_wheelset_params_f *p, float B_G_pinv[8]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -599,27 +588,30 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t18 = m_1 + m_2;
     const float t19 = t9 * t18;
     const float t20 = L * m_2;
-    const float t21 = t7 * t20;
+    const float t21 = t6 * t20;
     const float t22 = t3 * t21;
     const float t23 = t19 + t22;
     const float t24 = t9 * t23;
-    const float t25 = t6 * t20;
+    const float t25 = t5 * t20;
     const float t26 = t3 * t25;
     const float t27 = t12 * t18;
     const float t28 = t26 - t27;
@@ -627,7 +619,9 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t30 = t24 - t29;
     const float t31 = L * L;
     const float t32 = m_2 * t31;
+    const float Theta_1 = p->Theta_1;
     const float t33 = Theta_1 + t32;
+    const float Theta_2 = p->Theta_2;
     const float t34 = Theta_2 + t33;
     const float t35 = t3 * t34;
     const float t36 = t3 * t35;
@@ -647,7 +641,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t50 = t45 + t49;
     const float t51 = t44 + t50;
     const float t52 = t44 * t51;
-    const float t53 = t5 * t52;
+    const float t53 = t7 * t52;
     const float t54 = fabsf(m_1);
     const float t55 = t54 + t46;
     const float t56 = t55 * t44;
@@ -656,17 +650,17 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t59 = t13 * t56;
     const float t60 = t58 + t59;
     const float t61 = t60 * 1.9073486e-06f;
-    const float t62 = t7 * t3;
+    const float t62 = t6 * t3;
     const float t63 = Theta_2 + t32;
     const float t64 = t18 + t63;
     const float t65 = t64 - t34;
     const float t66 = t4 * t65;
     const float t67 = t4 * t66;
-    const float t68 = m_2 * t5;
+    const float t68 = m_2 * t7;
     const float t69 = t67 + t68;
     const float t70 = t62 * t69;
     const float t71 = Theta_2 * t70;
-    const float t72 = t6 * t4;
+    const float t72 = t5 * t4;
     const float t73 = t72 * t42;
     const float t74 = t71 + t73;
     const float t75 = L * t74;
@@ -674,7 +668,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t77 = t62 * t42;
     const float t78 = t76 - t77;
     const float t79 = t4 * t78;
-    const float t80 = t6 * t3;
+    const float t80 = t5 * t3;
     const float t81 = t3 * t80;
     const float t82 = t42 * t81;
     const float t83 = t79 + t82;
@@ -693,7 +687,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t96 = t85 * t95;
     const float t97 = t80 * t69;
     const float t98 = Theta_2 * t97;
-    const float t99 = t7 * t4;
+    const float t99 = t6 * t4;
     const float t100 = t99 * t42;
     const float t101 = t98 - t100;
     const float t102 = L * t101;
@@ -720,7 +714,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t123 = t121 + t122;
     const float t124 = L / t84;
     const float t125 = t123 * t124;
-    const float t126 = t5 * t90;
+    const float t126 = t7 * t90;
     const float t127 = Theta_2 * t126;
     const float t128 = t41 - t38;
     const float t129 = t127 + t128;
@@ -739,7 +733,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t142 = t141 - t122;
     const float t143 = t124 * t142;
     const float t144 = t89 - t34;
-    const float t145 = t5 * t144;
+    const float t145 = t7 * t144;
     const float t146 = Theta_2 * t145;
     const float t147 = t42 + t146;
     const float t148 = t4 * t147;
@@ -774,13 +768,8 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
 
 front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(const float q[4], const front_car_wheelset_params_f *p, float N_BG[16]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -789,43 +778,48 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
-    const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    front_car_wheelset_sincos_f(theta, &t3, &t4);
+    float t5, t6;
+    front_car_wheelset_sincos_f(phi, &t5, &t6);
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t8 = L * t6;
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t18 = m_1 + m_2;
     const float t19 = t9 * t18;
     const float t20 = L * m_2;
-    const float t21 = t7 * t20;
-    const float t22 = t3 * t21;
+    const float t21 = t4 * t20;
+    const float t22 = t5 * t21;
     const float t23 = t19 + t22;
     const float t24 = t9 * t23;
-    const float t25 = t6 * t20;
-    const float t26 = t3 * t25;
+    const float t25 = t3 * t20;
+    const float t26 = t5 * t25;
     const float t27 = t12 * t18;
     const float t28 = t26 - t27;
     const float t29 = t12 * t28;
     const float t30 = t24 - t29;
     const float t31 = L * L;
     const float t32 = m_2 * t31;
+    const float Theta_1 = p->Theta_1;
     const float t33 = Theta_1 + t32;
+    const float Theta_2 = p->Theta_2;
     const float t34 = Theta_2 + t33;
-    const float t35 = t3 * t34;
-    const float t36 = t3 * t35;
+    const float t35 = t5 * t34;
+    const float t36 = t5 * t35;
     const float t37 = t30 + t36;
     const float t38 = Theta_2 * t37;
-    const float t39 = Theta_2 * t3;
-    const float t40 = t3 * t39;
+    const float t39 = Theta_2 * t5;
+    const float t40 = t5 * t39;
     const float t41 = Theta_2 * t40;
     const float t42 = t38 - t41;
     const float t43 = fabsf(t42);
@@ -838,7 +832,7 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     const float t50 = t45 + t49;
     const float t51 = t44 + t50;
     const float t52 = t44 * t51;
-    const float t53 = t5 * t52;
+    const float t53 = t7 * t52;
     const float t54 = fabsf(m_1);
     const float t55 = t54 + t46;
     const float t56 = t55 * t44;
@@ -849,44 +843,44 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     const float t61 = t60 * 1.9073486e-06f;
     const float t62 = Theta_2 * t31;
     const float t63 = t62 / t42;
-    const float t64 = t7 * t4;
+    const float t64 = t4 * t6;
     const float t65 = t18 * t64;
-    const float t66 = t6 * t3;
+    const float t66 = t3 * t5;
     const float t67 = m_2 * t66;
     const float t68 = t65 - t67;
     const float t69 = t64 * t68;
     const float t70 = t63 * t69;
-    const float t71 = t7 * t3;
+    const float t71 = t4 * t5;
     const float t72 = m_2 * t71;
-    const float t73 = t6 * t4;
+    const float t73 = t3 * t6;
     const float t74 = t18 * t73;
     const float t75 = t72 + t74;
     const float t76 = t64 * t75;
     const float t77 = t63 * t76;
     const float t78 = L * Theta_2;
     const float t79 = t78 / t42;
-    const float t80 = t3 * t64;
+    const float t80 = t5 * t64;
     const float t81 = t33 * t80;
     const float t82 = t79 * t81;
     const float t83 = t73 * t68;
     const float t84 = t63 * t83;
     const float t85 = t73 * t75;
     const float t86 = t63 * t85;
-    const float t87 = t3 * t73;
+    const float t87 = t5 * t73;
     const float t88 = t33 * t87;
     const float t89 = t79 * t88;
-    const float t90 = t3 * t68;
+    const float t90 = t5 * t68;
     const float t91 = t79 * t90;
-    const float t92 = t3 * t75;
+    const float t92 = t5 * t75;
     const float t93 = t79 * t92;
     const float t94 = Theta_2 / t42;
-    const float t95 = t5 * t33;
+    const float t95 = t7 * t33;
     const float t96 = t94 * t95;
     const float t97 = t67 - t65;
-    const float t98 = t3 * t97;
+    const float t98 = t5 * t97;
     const float t99 = t79 * t98;
     const float t100 = -t93;
-    const float t101 = t4 * t4;
+    const float t101 = t6 * t6;
     const float t102 = t18 * t62;
     const float t103 = t102 / t42;
     const float t104 = t101 * t103;
@@ -933,7 +927,6 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
 front_car_wheelset_status front_car_wheelset_control_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float M[8]) {
     const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
     const float t1 = theta + phi;
     const float t2 = fabsf(t1);
     const float t3 = fabsf(phi);
@@ -947,6 +940,7 @@ front_car_wheelset_status front_car_wheelset_control_matrix_f(const float q[4], 
     front_car_wheelset_sincos_f(t1, &t4, &t5);
     float t6, t7;
     front_car_wheelset_sincos_f(phi, &t6, &t7);
+    const float L = p->L;
     const float t8 = L * t6;
     float rest = t5 - t5;
     rest += t4 - t4;
@@ -966,10 +960,9 @@ front_car_wheelset_status front_car_wheelset_control_matrix_f(const float q[4], 
 }
 
 front_car_wheelset_status front_car_wheelset_projected_control_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float M_tilde[8]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -979,24 +972,25 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix_f(const fl
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
     const float t18 = L * L;
-    const float t19 = t7 * t18;
+    const float t19 = t6 * t18;
     const float t20 = t4 * t19;
     const float t21 = t20 / t14;
-    const float t22 = t6 * t18;
+    const float t22 = t5 * t18;
     const float t23 = t4 * t22;
     const float t24 = t23 / t14;
     const float t25 = L * t3;
@@ -1023,64 +1017,8 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix_f(const fl
 
 front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse_f(const float q[4], const front_car_wheelset_params_f *p, float M_tilde_pinv[8]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
-    const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
-        return FRONT_CAR_WHEELSET_ANGLE_RANGE;
-    }
-    if (!(100.0f >= t2)) {
-        return FRONT_CAR_WHEELSET_ANGLE_RANGE;
-    }
-    const float t3 = fabsf(L);
-    const float t4 = t3 * 1.9073486e-06f;
-    float t5, t6;
-    front_car_wheelset_sincos_f(theta, &t5, &t6);
-    float t7, t8;
-    front_car_wheelset_sincos_f(phi, &t7, &t8);
-    const float t9 = t6 * t8;
-    const float t10 = t5 * t8;
-    const float t11 = t7 / L;
-    if (!(t3 > t4)) {
-        const float t12 = t7 * t7;
-        const float t13 = L * t8;
-        const float t14 = t5 * t13;
-        const float t15 = t14 * t14;
-        const float t16 = t12 + t15;
-        const float t17 = t6 * t13;
-        const float t18 = t17 * t17;
-        const float t19 = t16 + t18;
-        const float t20 = t13 * t13;
-        const float t21 = 1.0f + t20;
-        const float t22 = t21 * 3.637979e-12f;
-        if (!(t19 > t22)) {
-            return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-        }
-        return FRONT_CAR_WHEELSET_ACTUATION_RANK;
-    }
-    float rest = t9 - t9;
-    rest += t10 - t10;
-    rest += t11 - t11;
-    if (!(rest >= 0.0f)) {
-        return FRONT_CAR_WHEELSET_NOT_FINITE;
-    }
-    M_tilde_pinv[0] = t9;
-    M_tilde_pinv[1] = t10;
-    M_tilde_pinv[2] = t11;
-    M_tilde_pinv[3] = 0.0f;
-    M_tilde_pinv[4] = 0.0f;
-    M_tilde_pinv[5] = 0.0f;
-    M_tilde_pinv[6] = 0.0f;
-    M_tilde_pinv[7] = 1.0f;
-    return FRONT_CAR_WHEELSET_OK;
-}
-
-front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float q[4], const front_car_wheelset_params_f *p, float F_B[8]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float t1 = fabsf(theta);
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1092,6 +1030,61 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float
     front_car_wheelset_sincos_f(theta, &t3, &t4);
     float t5, t6;
     front_car_wheelset_sincos_f(phi, &t5, &t6);
+    const float L = p->L;
+    const float t7 = fabsf(L);
+    const float t8 = t4 * t6;
+    const float t9 = t3 * t6;
+    const float t10 = t5 / L;
+    if (!(t7 > 0.0f)) {
+        const float t11 = t5 * t5;
+        const float t12 = L * t6;
+        const float t13 = t3 * t12;
+        const float t14 = t13 * t13;
+        const float t15 = t11 + t14;
+        const float t16 = t4 * t12;
+        const float t17 = t16 * t16;
+        const float t18 = t15 + t17;
+        const float t19 = t12 * t12;
+        const float t20 = 1.0f + t19;
+        const float t21 = t20 * 3.637979e-12f;
+        if (!(t18 > t21)) {
+            return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+        }
+        return FRONT_CAR_WHEELSET_ACTUATION_RANK;
+    }
+    float rest = t8 - t8;
+    rest += t9 - t9;
+    rest += t10 - t10;
+    if (!(rest >= 0.0f)) {
+        return FRONT_CAR_WHEELSET_NOT_FINITE;
+    }
+    M_tilde_pinv[0] = t8;
+    M_tilde_pinv[1] = t9;
+    M_tilde_pinv[2] = t10;
+    M_tilde_pinv[3] = 0.0f;
+    M_tilde_pinv[4] = 0.0f;
+    M_tilde_pinv[5] = 0.0f;
+    M_tilde_pinv[6] = 0.0f;
+    M_tilde_pinv[7] = 1.0f;
+    return FRONT_CAR_WHEELSET_OK;
+}
+
+front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float q[4], const front_car_wheelset_params_f *p, float F_B[8]) {
+    const float theta = q[2];
+    const float t1 = fabsf(theta);
+    const float phi = q[3];
+    const float t2 = fabsf(phi);
+    if (!(100.0f >= t1)) {
+        return FRONT_CAR_WHEELSET_ANGLE_RANGE;
+    }
+    if (!(100.0f >= t2)) {
+        return FRONT_CAR_WHEELSET_ANGLE_RANGE;
+    }
+    float t3, t4;
+    front_car_wheelset_sincos_f(theta, &t3, &t4);
+    float t5, t6;
+    front_car_wheelset_sincos_f(phi, &t5, &t6);
+    const float L = p->L;
     const float t7 = L * t6;
     const float t8 = t4 * t7;
     const float t9 = fabsf(t8);
@@ -1132,14 +1125,9 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float
 }
 
 front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float G_tilde[16]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1149,14 +1137,15 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -1165,12 +1154,16 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t18 = L * L;
     const float t19 = t14 * t14;
     const float t20 = t18 / t19;
-    const float t21 = t7 * t7;
+    const float t21 = t6 * t6;
     const float t22 = t4 * t21;
     const float t23 = t4 * t22;
+    const float m_2 = p->m_2;
     const float t24 = m_2 * t18;
+    const float Theta_1 = p->Theta_1;
     const float t25 = Theta_1 + t24;
+    const float Theta_2 = p->Theta_2;
     const float t26 = Theta_2 + t25;
+    const float m_1 = p->m_1;
     const float t27 = m_1 + m_2;
     const float t28 = t27 * t18;
     const float t29 = t28 - t26;
@@ -1179,7 +1172,7 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t32 = t26 + t31;
     const float t33 = t23 * t32;
     const float t34 = t20 * t33;
-    const float t35 = t6 * t7;
+    const float t35 = t5 * t6;
     const float t36 = t4 * t35;
     const float t37 = t4 * t36;
     const float t38 = t3 * t26;
@@ -1190,26 +1183,26 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t43 = t37 * t42;
     const float t44 = t20 * t43;
     const float t45 = L / t19;
-    const float t46 = t7 * t4;
+    const float t46 = t6 * t4;
     const float t47 = t3 * t46;
     const float t48 = t47 * t42;
     const float t49 = t45 * t48;
     const float t50 = L * Theta_2;
     const float t51 = t50 / t14;
     const float t52 = t47 * t51;
-    const float t53 = t6 * t6;
+    const float t53 = t5 * t5;
     const float t54 = t4 * t53;
     const float t55 = t4 * t54;
     const float t56 = t55 * t32;
     const float t57 = t20 * t56;
-    const float t58 = t6 * t4;
+    const float t58 = t5 * t4;
     const float t59 = t3 * t58;
     const float t60 = t59 * t42;
     const float t61 = t45 * t60;
     const float t62 = t59 * t51;
     const float t63 = t40 + (-2.0f);
     const float t64 = t26 * t63;
-    const float t65 = t5 * t28;
+    const float t65 = t7 * t28;
     const float t66 = t64 + t65;
     const float t67 = t4 * t66;
     const float t68 = t4 * t67;
@@ -1217,7 +1210,7 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t70 = 1.0f / t19;
     const float t71 = t69 * t70;
     const float t72 = Theta_2 / t14;
-    const float t73 = t5 * t72;
+    const float t73 = t7 * t72;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1254,18 +1247,9 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
 }
 
 front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float C_tilde[16]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1275,14 +1259,15 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -1293,12 +1278,15 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t20 = t14 * t19;
     const float t21 = t14 * t20;
     const float t22 = t18 / t21;
-    const float t23 = t7 * t4;
-    const float t24 = x_dot * t7;
-    const float t25 = y_dot * t6;
+    const float t23 = t6 * t4;
+    const float x_dot = qd[0];
+    const float t24 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t25 = y_dot * t5;
     const float t26 = t24 + t25;
     const float t27 = t4 * t26;
     const float t28 = L * t27;
+    const float theta_dot = qd[2];
     const float t29 = theta_dot * t3;
     const float t30 = t28 + t29;
     const float t31 = L * t3;
@@ -1307,34 +1295,39 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t34 = t33 + (-2.0f);
     const float t35 = t14 + t34;
     const float t36 = t32 + t35;
-    const float t37 = t7 * t36;
+    const float t37 = t6 * t36;
+    const float m_2 = p->m_2;
     const float t38 = m_2 * t37;
-    const float t39 = t6 * t4;
+    const float t39 = t5 * t4;
     const float t40 = t3 * t39;
+    const float m_1 = p->m_1;
     const float t41 = m_1 + m_2;
     const float t42 = t41 * t18;
     const float t43 = t40 * t42;
     const float t44 = t38 - t43;
     const float t45 = t4 * t44;
     const float t46 = m_2 * t18;
+    const float Theta_1 = p->Theta_1;
     const float t47 = Theta_1 + t46;
+    const float Theta_2 = p->Theta_2;
     const float t48 = Theta_2 + t47;
     const float t49 = t41 + t48;
-    const float t50 = t6 * t3;
+    const float t50 = t5 * t3;
     const float t51 = t3 * t50;
     const float t52 = t3 * t51;
     const float t53 = t49 * t52;
     const float t54 = t45 - t53;
     const float t55 = t4 * t54;
-    const float t56 = t5 + t15;
+    const float t56 = t7 + t15;
     const float t57 = 1.0f - t56;
-    const float t58 = t7 * t57;
+    const float t58 = t6 * t57;
     const float t59 = m_2 * t58;
     const float t60 = t55 + t59;
     const float t61 = t30 * t60;
     const float t62 = 2.0f * t41;
     const float t63 = t48 - t62;
-    const float t64 = phi_dot * t7;
+    const float phi_dot = qd[3];
+    const float t64 = phi_dot * t6;
     const float t65 = t3 * t64;
     const float t66 = t14 * t65;
     const float t67 = t63 * t66;
@@ -1344,7 +1337,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t71 = 2.0f - t33;
     const float t72 = t4 * t30;
     const float t73 = t71 * t72;
-    const float t74 = t6 * t73;
+    const float t74 = t5 * t73;
     const float t75 = t14 * t64;
     const float t76 = t74 + t75;
     const float t77 = t3 * t76;
@@ -1363,26 +1356,26 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t90 = t41 * t89;
     const float t91 = t90 - t48;
     const float t92 = t3 * t91;
-    const float t93 = t7 * t92;
+    const float t93 = t6 * t92;
     const float t94 = m_2 * t39;
     const float t95 = t93 + t94;
     const float t96 = t4 * t95;
     const float t97 = (-2.0f) + t32;
-    const float t98 = t6 * t97;
+    const float t98 = t5 * t97;
     const float t99 = m_2 * t98;
     const float t100 = t96 + t99;
     const float t101 = t4 * t100;
-    const float t102 = t7 * t3;
+    const float t102 = t6 * t3;
     const float t103 = t102 * t49;
     const float t104 = t101 + t103;
     const float t105 = t4 * t104;
-    const float t106 = t5 * t14;
+    const float t106 = t7 * t14;
     const float t107 = 1.0f - t106;
-    const float t108 = t6 * t107;
+    const float t108 = t5 * t107;
     const float t109 = m_2 * t108;
     const float t110 = t105 + t109;
     const float t111 = t30 * t110;
-    const float t112 = phi_dot * t6;
+    const float t112 = phi_dot * t5;
     const float t113 = t3 * t112;
     const float t114 = t14 * t113;
     const float t115 = t63 * t114;
@@ -1426,18 +1419,18 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t153 = t41 * t152;
     const float t154 = t48 + t153;
     const float t155 = t3 * t154;
-    const float t156 = t6 * t155;
+    const float t156 = t5 * t155;
     const float t157 = m_2 * t23;
     const float t158 = t156 + t157;
     const float t159 = t4 * t158;
-    const float t160 = t7 * t97;
+    const float t160 = t6 * t97;
     const float t161 = m_2 * t160;
     const float t162 = t159 + t161;
     const float t163 = t4 * t162;
     const float t164 = t50 * t49;
     const float t165 = t163 - t164;
     const float t166 = t4 * t165;
-    const float t167 = t7 * t107;
+    const float t167 = t6 * t107;
     const float t168 = m_2 * t167;
     const float t169 = t166 + t168;
     const float t170 = t30 * t169;
@@ -1468,7 +1461,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t195 = t41 * t194;
     const float t196 = t48 * t71;
     const float t197 = t195 + t196;
-    const float t198 = t6 * t197;
+    const float t198 = t5 * t197;
     const float t199 = m_2 * t119;
     const float t200 = t198 + t199;
     const float t201 = t4 * t200;
@@ -1476,7 +1469,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t203 = m_2 * t202;
     const float t204 = t201 + t203;
     const float t205 = t4 * t204;
-    const float t206 = t6 * t49;
+    const float t206 = t5 * t49;
     const float t207 = t205 - t206;
     const float t208 = t4 * t207;
     const float t209 = t102 * t107;
@@ -1490,10 +1483,10 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t217 = L * t216;
     const float t218 = t4 * t33;
     const float t219 = t4 * t218;
-    const float t220 = 3.0f * t5;
+    const float t220 = 3.0f * t7;
     const float t221 = t219 + t220;
     const float t222 = t30 * t221;
-    const float t223 = t6 * t222;
+    const float t223 = t5 * t222;
     const float t224 = t4 * t64;
     const float t225 = t14 * t224;
     const float t226 = t223 - t225;
@@ -1503,7 +1496,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t230 = t48 * t229;
     const float t231 = t217 + t230;
     const float t232 = t4 * t231;
-    const float t233 = t6 * t30;
+    const float t233 = t5 * t30;
     const float t234 = t48 * t233;
     const float t235 = t232 - t234;
     const float t236 = t4 * t235;
@@ -1515,7 +1508,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t242 = t33 + t97;
     const float t243 = t41 * t242;
     const float t244 = t241 + t243;
-    const float t245 = t7 * t244;
+    const float t245 = t6 * t244;
     const float t246 = m_2 * t40;
     const float t247 = t245 + t246;
     const float t248 = t4 * t247;
@@ -1523,7 +1516,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t250 = m_2 * t249;
     const float t251 = t248 + t250;
     const float t252 = t4 * t251;
-    const float t253 = t7 * t49;
+    const float t253 = t6 * t49;
     const float t254 = t252 + t253;
     const float t255 = t4 * t254;
     const float t256 = t50 * t107;
@@ -1537,7 +1530,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t264 = L * t263;
     const float t265 = t14 * t112;
     const float t266 = 2.0f * t265;
-    const float t267 = t7 * t222;
+    const float t267 = t6 * t222;
     const float t268 = t4 * t112;
     const float t269 = t14 * t268;
     const float t270 = t267 + t269;
@@ -1546,7 +1539,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t273 = t48 * t272;
     const float t274 = t264 + t273;
     const float t275 = t4 * t274;
-    const float t276 = t7 * t30;
+    const float t276 = t6 * t30;
     const float t277 = t48 * t276;
     const float t278 = t275 + t277;
     const float t279 = t4 * t278;
@@ -1564,7 +1557,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t291 = t4 * t290;
     const float t292 = (-1.0f) + t291;
     const float t293 = t30 * t292;
-    const float t294 = t6 * t293;
+    const float t294 = t5 * t293;
     const float t295 = t18 * t225;
     const float t296 = t294 + t295;
     const float t297 = t4 * t296;
@@ -1576,7 +1569,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t303 = t4 * t302;
     const float t304 = 1.0f + t303;
     const float t305 = t30 * t304;
-    const float t306 = t7 * t305;
+    const float t306 = t6 * t305;
     const float t307 = t18 * t269;
     const float t308 = t306 + t307;
     const float t309 = t4 * t308;
@@ -1646,14 +1639,9 @@ front_car_wheelset_status front_car_wheelset_projected_applied_force_f(const flo
 }
 
 front_car_wheelset_status front_car_wheelset_minimal_mass_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float G_bar[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1662,32 +1650,37 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix_f(const float q
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_wheelset_sincos_f(theta, &t3, &t4);
+    front_car_wheelset_sincos_f(phi, &t3, &t4);
     float t5, t6;
-    front_car_wheelset_sincos_f(phi, &t5, &t6);
-    const float t7 = L * t6;
-    const float t8 = t4 * t7;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float L = p->L;
+    const float t7 = L * t4;
+    const float t8 = t6 * t7;
     const float t9 = fabsf(t8);
     const float t10 = fabsf(L);
     const float t11 = t10 * 1.9073486e-06f;
     const float t12 = L * L;
+    const float m_2 = p->m_2;
     const float t13 = m_2 * t12;
+    const float Theta_1 = p->Theta_1;
     const float t14 = Theta_1 + t13;
+    const float Theta_2 = p->Theta_2;
     const float t15 = Theta_2 + t14;
+    const float m_1 = p->m_1;
     const float t16 = m_1 + m_2;
     const float t17 = t16 * t12;
     const float t18 = t17 - t15;
-    const float t19 = t6 * t18;
-    const float t20 = t6 * t19;
+    const float t19 = t4 * t18;
+    const float t20 = t4 * t19;
     const float t21 = t15 + t20;
     const float t22 = t8 * t8;
     const float t23 = 1.0f / t22;
     const float t24 = t21 * t23;
-    const float t25 = t5 / t8;
+    const float t25 = t3 / t8;
     const float t26 = Theta_2 * t25;
     if (!(t9 > t11)) {
-        const float t27 = t5 * t5;
-        const float t28 = t3 * t7;
+        const float t27 = t3 * t3;
+        const float t28 = t5 * t7;
         const float t29 = t28 * t28;
         const float t30 = t27 + t29;
         const float t31 = t30 + t22;
@@ -1713,16 +1706,9 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix_f(const float q
 }
 
 front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float C_bar[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1732,14 +1718,15 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -1748,12 +1735,16 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     const float t18 = fabsf(t12);
     const float t19 = fabsf(L);
     const float t20 = t19 * 1.9073486e-06f;
-    const float t21 = t6 * t4;
+    const float t21 = t5 * t4;
     const float t22 = t3 * t21;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t23 = m_1 + m_2;
     const float t24 = L * L;
     const float t25 = m_2 * t24;
+    const float Theta_1 = p->Theta_1;
     const float t26 = Theta_1 + t25;
+    const float Theta_2 = p->Theta_2;
     const float t27 = Theta_2 + t26;
     const float t28 = t23 + t27;
     const float t29 = t22 * t28;
@@ -1770,23 +1761,25 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     const float t40 = t21 * t39;
     const float t41 = t27 * t40;
     const float t42 = t37 + t41;
+    const float theta_dot = qd[2];
     const float t43 = theta_dot * t42;
-    const float t44 = phi_dot * t7;
+    const float phi_dot = qd[3];
+    const float t44 = phi_dot * t6;
     const float t45 = t3 * t44;
     const float t46 = (-1.0f) + t24;
     const float t47 = t45 * t46;
     const float t48 = t27 * t47;
     const float t49 = t43 + t48;
     const float t50 = t4 * t49;
-    const float t51 = theta_dot * t6;
+    const float t51 = theta_dot * t5;
     const float t52 = t27 * t51;
     const float t53 = t50 + t52;
     const float t54 = t4 * t53;
     const float t55 = t27 * t45;
     const float t56 = t54 + t55;
-    const float t57 = t7 * t24;
-    const float t58 = t7 * t57;
-    const float t59 = t7 * t58;
+    const float t57 = t6 * t24;
+    const float t58 = t6 * t57;
+    const float t59 = t6 * t58;
     const float t60 = t4 * t59;
     const float t61 = t4 * t60;
     const float t62 = t4 * t61;
@@ -1802,7 +1795,7 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     const float t72 = t70 + t71;
     const float t73 = t4 * t72;
     const float t74 = t44 + t73;
-    const float t75 = t7 * t12;
+    const float t75 = t6 * t12;
     const float t76 = t4 * t75;
     const float t77 = t14 * t76;
     const float t78 = Theta_2 / t77;
@@ -1847,9 +1840,8 @@ front_car_wheelset_status front_car_wheelset_minimal_applied_force_f(const float
 
 front_car_wheelset_status front_car_wheelset_minimal_control_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float M_bar[4]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float L = p->L;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1861,6 +1853,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix_f(const floa
     front_car_wheelset_sincos_f(theta, &t3, &t4);
     float t5, t6;
     front_car_wheelset_sincos_f(phi, &t5, &t6);
+    const float L = p->L;
     const float t7 = L * t6;
     const float t8 = t4 * t7;
     const float t9 = fabsf(t8);
@@ -1895,14 +1888,9 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix_f(const floa
 }
 
 front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float qd_admissible[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1912,31 +1900,35 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
     const float t18 = L / t14;
-    const float t19 = x_dot * t7;
-    const float t20 = y_dot * t6;
+    const float x_dot = qd[0];
+    const float t19 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t20 = y_dot * t5;
     const float t21 = t19 + t20;
     const float t22 = t4 * t21;
     const float t23 = L * t22;
+    const float theta_dot = qd[2];
     const float t24 = theta_dot * t3;
     const float t25 = t23 + t24;
-    const float t26 = t7 * t4;
+    const float t26 = t6 * t4;
     const float t27 = t25 * t26;
     const float t28 = t18 * t27;
-    const float t29 = t6 * t4;
+    const float t29 = t5 * t4;
     const float t30 = t25 * t29;
     const float t31 = t18 * t30;
     const float t32 = 1.0f / t14;
@@ -1945,6 +1937,7 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
+    const float phi_dot = qd[3];
     float rest = t28 - t28;
     rest += t31 - t31;
     rest += t34 - t34;
@@ -1960,18 +1953,9 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q
 }
 
 front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const float q[4], const float qd[4], const float qdd[4], const front_car_wheelset_params_f *p, float qdd_admissible[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float x_ddot = qdd[0];
-    const float y_ddot = qdd[1];
-    const float theta_ddot = qdd[2];
-    const float phi_ddot = qdd[3];
-    const float L = p->L;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -1981,45 +1965,52 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    const float t18 = y_ddot * t7;
+    const float y_ddot = qdd[1];
+    const float t18 = y_ddot * t6;
     const float t19 = t14 * t18;
     const float t20 = t14 * t19;
-    const float t21 = x_dot * t7;
-    const float t22 = y_dot * t6;
+    const float x_dot = qd[0];
+    const float t21 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t22 = y_dot * t5;
     const float t23 = t21 + t22;
     const float t24 = t4 * t23;
     const float t25 = L * t24;
+    const float theta_dot = qd[2];
     const float t26 = theta_dot * t3;
     const float t27 = t25 + t26;
     const float t28 = t8 * t3;
     const float t29 = t27 * t28;
     const float t30 = t27 * t29;
     const float t31 = t20 - t30;
-    const float t32 = t6 * t31;
-    const float t33 = x_ddot * t7;
-    const float t34 = t7 * t33;
+    const float t32 = t5 * t31;
+    const float x_ddot = qdd[0];
+    const float t33 = x_ddot * t6;
+    const float t34 = t6 * t33;
     const float t35 = t14 * t34;
     const float t36 = t14 * t35;
     const float t37 = t32 + t36;
     const float t38 = t4 * t37;
     const float t39 = L * t38;
-    const float t40 = theta_ddot * t7;
+    const float theta_ddot = qdd[2];
+    const float t40 = theta_ddot * t6;
     const float t41 = t14 * t40;
     const float t42 = t14 * t41;
-    const float t43 = t6 * t3;
+    const float t43 = t5 * t3;
     const float t44 = t3 * t43;
     const float t45 = t27 * t44;
     const float t46 = t27 * t45;
@@ -2027,7 +2018,8 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t48 = t3 * t47;
     const float t49 = t39 + t48;
     const float t50 = t4 * t49;
-    const float t51 = phi_dot * t7;
+    const float phi_dot = qd[3];
+    const float t51 = phi_dot * t6;
     const float t52 = t3 * t51;
     const float t53 = t14 * t52;
     const float t54 = t27 * t53;
@@ -2036,11 +2028,11 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t57 = t14 * t56;
     const float t58 = L / t57;
     const float t59 = t55 * t58;
-    const float t60 = y_ddot * t6;
+    const float t60 = y_ddot * t5;
     const float t61 = t33 + t60;
     const float t62 = t56 * t61;
-    const float t63 = t6 * t62;
-    const float t64 = t7 * t4;
+    const float t63 = t5 * t62;
+    const float t64 = t6 * t4;
     const float t65 = t3 * t64;
     const float t66 = t27 * t65;
     const float t67 = t27 * t66;
@@ -2048,10 +2040,10 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t69 = t63 + t68;
     const float t70 = t4 * t69;
     const float t71 = L * t70;
-    const float t72 = theta_ddot * t6;
+    const float t72 = theta_ddot * t5;
     const float t73 = t14 * t72;
     const float t74 = t14 * t73;
-    const float t75 = t7 * t3;
+    const float t75 = t6 * t3;
     const float t76 = t3 * t75;
     const float t77 = t27 * t76;
     const float t78 = t27 * t77;
@@ -2059,7 +2051,7 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t80 = t3 * t79;
     const float t81 = t71 + t80;
     const float t82 = t4 * t81;
-    const float t83 = phi_dot * t6;
+    const float t83 = phi_dot * t5;
     const float t84 = t3 * t83;
     const float t85 = t14 * t84;
     const float t86 = t27 * t85;
@@ -2081,6 +2073,7 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
+    const float phi_ddot = qdd[3];
     float rest = t59 - t59;
     rest += t88 - t88;
     rest += t101 - t101;
@@ -2116,19 +2109,9 @@ front_car_wheelset_status front_car_wheelset_projected_configuration_f(const flo
 }
 
 front_car_wheelset_status front_car_wheelset_inverse_dynamics_f(const float q[4], const float qd[4], const float qdd[4], const front_car_wheelset_params_f *p, float u[2]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float theta_dot = qd[2];
-    const float x_ddot = qdd[0];
-    const float y_ddot = qdd[1];
-    const float theta_ddot = qdd[2];
-    const float phi_ddot = qdd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2136,66 +2119,75 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_f(const float q[4]
     if (!(100.0f >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const float t3 = fabsf(L);
-    const float t4 = t3 * 1.9073486e-06f;
-    const float t5 = 1.0f / L;
-    float t6, t7;
-    front_car_wheelset_sincos_f(phi, &t6, &t7);
-    float t8, t9;
-    front_car_wheelset_sincos_f(theta, &t8, &t9);
-    const float t10 = y_ddot * t9;
-    const float t11 = x_ddot * t8;
-    const float t12 = t10 - t11;
-    const float t13 = t6 * t12;
-    const float t14 = theta_dot * theta_dot;
-    const float t15 = t7 * t14;
-    const float t16 = L * t15;
-    const float t17 = t13 - t16;
-    const float t18 = m_2 * t17;
-    const float t19 = m_1 + m_2;
-    const float t20 = x_ddot * t9;
-    const float t21 = y_ddot * t8;
-    const float t22 = t20 + t21;
-    const float t23 = t7 * t22;
-    const float t24 = t19 * t23;
-    const float t25 = t18 + t24;
-    const float t26 = L * t25;
-    const float t27 = L * L;
-    const float t28 = m_2 * t27;
-    const float t29 = Theta_1 + t28;
-    const float t30 = Theta_2 + t29;
-    const float t31 = theta_ddot * t30;
-    const float t32 = phi_ddot * Theta_2;
-    const float t33 = t31 + t32;
-    const float t34 = t6 * t33;
-    const float t35 = t26 + t34;
-    const float t36 = t5 * t35;
-    const float t37 = theta_ddot + phi_ddot;
-    const float t38 = Theta_2 * t37;
-    if (!(t3 > t4)) {
-        const float t39 = t6 * t6;
-        const float t40 = L * t7;
-        const float t41 = t8 * t40;
-        const float t42 = t41 * t41;
-        const float t43 = t39 + t42;
-        const float t44 = t9 * t40;
-        const float t45 = t44 * t44;
-        const float t46 = t43 + t45;
-        const float t47 = t40 * t40;
-        const float t48 = 1.0f + t47;
-        const float t49 = t48 * 3.637979e-12f;
-        if (!(t46 > t49)) {
+    float t3, t4;
+    front_car_wheelset_sincos_f(phi, &t3, &t4);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float L = p->L;
+    const float t7 = fabsf(L);
+    const float t8 = 1.0f / L;
+    const float y_ddot = qdd[1];
+    const float t9 = y_ddot * t6;
+    const float x_ddot = qdd[0];
+    const float t10 = x_ddot * t5;
+    const float t11 = t9 - t10;
+    const float t12 = t3 * t11;
+    const float theta_dot = qd[2];
+    const float t13 = theta_dot * theta_dot;
+    const float t14 = t4 * t13;
+    const float t15 = L * t14;
+    const float t16 = t12 - t15;
+    const float m_2 = p->m_2;
+    const float t17 = m_2 * t16;
+    const float m_1 = p->m_1;
+    const float t18 = m_1 + m_2;
+    const float t19 = x_ddot * t6;
+    const float t20 = y_ddot * t5;
+    const float t21 = t19 + t20;
+    const float t22 = t4 * t21;
+    const float t23 = t18 * t22;
+    const float t24 = t17 + t23;
+    const float t25 = L * t24;
+    const float t26 = L * L;
+    const float t27 = m_2 * t26;
+    const float Theta_1 = p->Theta_1;
+    const float t28 = Theta_1 + t27;
+    const float Theta_2 = p->Theta_2;
+    const float t29 = Theta_2 + t28;
+    const float theta_ddot = qdd[2];
+    const float t30 = theta_ddot * t29;
+    const float phi_ddot = qdd[3];
+    const float t31 = phi_ddot * Theta_2;
+    const float t32 = t30 + t31;
+    const float t33 = t3 * t32;
+    const float t34 = t25 + t33;
+    const float t35 = t8 * t34;
+    const float t36 = theta_ddot + phi_ddot;
+    const float t37 = Theta_2 * t36;
+    if (!(t7 > 0.0f)) {
+        const float t38 = t3 * t3;
+        const float t39 = L * t4;
+        const float t40 = t5 * t39;
+        const float t41 = t40 * t40;
+        const float t42 = t38 + t41;
+        const float t43 = t6 * t39;
+        const float t44 = t43 * t43;
+        const float t45 = t42 + t44;
+        const float t46 = t39 * t39;
+        const float t47 = 1.0f + t46;
+        const float t48 = t47 * 3.637979e-12f;
+        if (!(t45 > t48)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    float rest = t36 - t36;
-    rest += t38 - t38;
+    float rest = t35 - t35;
+    rest += t37 - t37;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    u[0] = t36;
-    u[1] = t38;
+    u[0] = t35;
+    u[1] = t37;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2214,11 +2206,6 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_residual_f(const f
 front_car_wheelset_status front_car_wheelset_actuator_velocity_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float nu[2]) {
     const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
     const float t1 = theta + phi;
     const float t2 = fabsf(t1);
     const float t3 = fabsf(phi);
@@ -2230,14 +2217,19 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity_f(const float q[4
     }
     float t4, t5;
     front_car_wheelset_sincos_f(t1, &t4, &t5);
-    const float t6 = x_dot * t5;
-    const float t7 = y_dot * t4;
-    const float t8 = t6 + t7;
-    float t9, t10;
-    front_car_wheelset_sincos_f(phi, &t9, &t10);
-    const float t11 = L * t9;
+    float t6, t7;
+    front_car_wheelset_sincos_f(phi, &t6, &t7);
+    const float x_dot = qd[0];
+    const float t8 = x_dot * t5;
+    const float y_dot = qd[1];
+    const float t9 = y_dot * t4;
+    const float t10 = t8 + t9;
+    const float L = p->L;
+    const float t11 = L * t6;
+    const float theta_dot = qd[2];
     const float t12 = theta_dot * t11;
-    const float t13 = t8 + t12;
+    const float t13 = t10 + t12;
+    const float phi_dot = qd[3];
     float rest = t13 - t13;
     rest += phi_dot - phi_dot;
     if (!(rest >= 0.0f)) {
@@ -2249,81 +2241,71 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity_f(const float q[4
 }
 
 front_car_wheelset_status front_car_wheelset_actuator_mass_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float G_nu[4]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const float t2 = fabsf(L);
-    const float t3 = t2 * 1.9073486e-06f;
-    float t4, t5;
-    front_car_wheelset_sincos_f(phi, &t4, &t5);
-    const float t6 = L * L;
-    const float t7 = m_2 * t6;
-    const float t8 = Theta_1 + t7;
-    const float t9 = Theta_2 + t8;
-    const float t10 = t4 * t9;
-    const float t11 = t4 * t10;
-    const float t12 = t5 * t5;
-    const float t13 = m_1 + m_2;
-    const float t14 = t13 * t6;
-    const float t15 = t12 * t14;
-    const float t16 = t11 + t15;
-    const float t17 = 1.0f / t6;
-    const float t18 = t16 * t17;
-    const float t19 = t4 / L;
-    const float t20 = Theta_2 * t19;
-    if (!(t2 > t3)) {
-        const float t21 = t4 * t4;
-        float t22, t23;
-        front_car_wheelset_sincos_f(theta, &t22, &t23);
-        const float t24 = L * t5;
-        const float t25 = t22 * t24;
-        const float t26 = t25 * t25;
-        const float t27 = t21 + t26;
-        const float t28 = t23 * t24;
-        const float t29 = t28 * t28;
-        const float t30 = t27 + t29;
-        const float t31 = t24 * t24;
-        const float t32 = 1.0f + t31;
-        const float t33 = t32 * 3.637979e-12f;
-        if (!(t30 > t33)) {
+    float t2, t3;
+    front_car_wheelset_sincos_f(phi, &t2, &t3);
+    const float L = p->L;
+    const float t4 = fabsf(L);
+    const float t5 = L * L;
+    const float m_2 = p->m_2;
+    const float t6 = m_2 * t5;
+    const float Theta_1 = p->Theta_1;
+    const float t7 = Theta_1 + t6;
+    const float Theta_2 = p->Theta_2;
+    const float t8 = Theta_2 + t7;
+    const float t9 = t2 * t8;
+    const float t10 = t2 * t9;
+    const float t11 = t3 * t3;
+    const float m_1 = p->m_1;
+    const float t12 = m_1 + m_2;
+    const float t13 = t12 * t5;
+    const float t14 = t11 * t13;
+    const float t15 = t10 + t14;
+    const float t16 = 1.0f / t5;
+    const float t17 = t15 * t16;
+    const float t18 = t2 / L;
+    const float t19 = Theta_2 * t18;
+    const float theta = q[2];
+    if (!(t4 > 0.0f)) {
+        const float t20 = t2 * t2;
+        float t21, t22;
+        front_car_wheelset_sincos_f(theta, &t21, &t22);
+        const float t23 = L * t3;
+        const float t24 = t21 * t23;
+        const float t25 = t24 * t24;
+        const float t26 = t20 + t25;
+        const float t27 = t22 * t23;
+        const float t28 = t27 * t27;
+        const float t29 = t26 + t28;
+        const float t30 = t23 * t23;
+        const float t31 = 1.0f + t30;
+        const float t32 = t31 * 3.637979e-12f;
+        if (!(t29 > t32)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    float rest = t18 - t18;
-    rest += t20 - t20;
+    float rest = t17 - t17;
+    rest += t19 - t19;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    G_nu[0] = t18;
-    G_nu[1] = t20;
-    G_nu[2] = t20;
+    G_nu[0] = t17;
+    G_nu[1] = t19;
+    G_nu[2] = t19;
     G_nu[3] = Theta_2;
     return FRONT_CAR_WHEELSET_OK;
 }
 
 front_car_wheelset_status front_car_wheelset_actuator_bias_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float bias_nu[2]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2333,88 +2315,85 @@ front_car_wheelset_status front_car_wheelset_actuator_bias_f(const float q[4], c
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
     const float t18 = fabsf(L);
-    const float t19 = t18 * 1.9073486e-06f;
-    const float t20 = L * L;
-    const float t21 = 1.0f / t20;
-    const float t22 = phi_dot * t4;
-    const float t23 = t3 * t22;
-    const float t24 = m_2 * t20;
-    const float t25 = Theta_1 + t24;
-    const float t26 = Theta_2 + t25;
-    const float t27 = theta_dot * t3;
-    const float t28 = t26 * t27;
-    const float t29 = m_1 + m_2;
-    const float t30 = t7 * t4;
-    const float t31 = t6 * t3;
-    const float t32 = t30 - t31;
-    const float t33 = x_dot * t32;
-    const float t34 = t6 * t4;
-    const float t35 = t7 * t3;
-    const float t36 = t34 + t35;
-    const float t37 = y_dot * t36;
-    const float t38 = t33 + t37;
-    const float t39 = L * t3;
-    const float t40 = theta_dot * t39;
-    const float t41 = t38 + t40;
-    const float t42 = t29 * t41;
-    const float t43 = L * t42;
-    const float t44 = t28 - t43;
-    const float t45 = L * t44;
-    const float t46 = t26 * t38;
-    const float t47 = t45 + t46;
-    const float t48 = t23 * t47;
-    const float t49 = t21 * t48;
-    const float t50 = t22 / L;
-    const float t51 = t41 * t50;
-    const float t52 = Theta_2 * t51;
+    const float t19 = L * L;
+    const float t20 = 1.0f / t19;
+    const float phi_dot = qd[3];
+    const float t21 = phi_dot * t4;
+    const float t22 = t3 * t21;
+    const float m_2 = p->m_2;
+    const float t23 = m_2 * t19;
+    const float Theta_1 = p->Theta_1;
+    const float t24 = Theta_1 + t23;
+    const float Theta_2 = p->Theta_2;
+    const float t25 = Theta_2 + t24;
+    const float theta_dot = qd[2];
+    const float t26 = theta_dot * t3;
+    const float t27 = t25 * t26;
+    const float m_1 = p->m_1;
+    const float t28 = m_1 + m_2;
+    const float t29 = L * t3;
+    const float t30 = theta_dot * t29;
+    const float t31 = t6 * t4;
+    const float t32 = t5 * t3;
+    const float t33 = t31 - t32;
+    const float x_dot = qd[0];
+    const float t34 = x_dot * t33;
+    const float t35 = t5 * t4;
+    const float t36 = t6 * t3;
+    const float t37 = t35 + t36;
+    const float y_dot = qd[1];
+    const float t38 = y_dot * t37;
+    const float t39 = t34 + t38;
+    const float t40 = t30 + t39;
+    const float t41 = t28 * t40;
+    const float t42 = L * t41;
+    const float t43 = t27 - t42;
+    const float t44 = L * t43;
+    const float t45 = t25 * t39;
+    const float t46 = t44 + t45;
+    const float t47 = t22 * t46;
+    const float t48 = t20 * t47;
+    const float t49 = t21 / L;
+    const float t50 = t49 * t40;
+    const float t51 = Theta_2 * t50;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t18 > t19)) {
+    if (!(t18 > 0.0f)) {
         if (!(t14 > t17)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    float rest = t49 - t49;
-    rest += t52 - t52;
+    float rest = t48 - t48;
+    rest += t51 - t51;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    bias_nu[0] = t49;
-    bias_nu[1] = t52;
+    bias_nu[0] = t48;
+    bias_nu[1] = t51;
     return FRONT_CAR_WHEELSET_OK;
 }
 
 front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4], const float qd[4], const float u[2], const front_car_wheelset_params_f *p, float qdd[4]) {
     const float theta = q[2];
-    const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float K_f = u[0];
-    const float T = u[1];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(theta);
+    const float phi = q[3];
     const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2423,43 +2402,48 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
-    const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    front_car_wheelset_sincos_f(theta, &t3, &t4);
+    float t5, t6;
+    front_car_wheelset_sincos_f(phi, &t5, &t6);
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t8 = L * t6;
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t18 = m_1 + m_2;
     const float t19 = t9 * t18;
     const float t20 = L * m_2;
-    const float t21 = t7 * t20;
-    const float t22 = t3 * t21;
+    const float t21 = t4 * t20;
+    const float t22 = t5 * t21;
     const float t23 = t19 + t22;
     const float t24 = t9 * t23;
-    const float t25 = t6 * t20;
-    const float t26 = t3 * t25;
+    const float t25 = t3 * t20;
+    const float t26 = t5 * t25;
     const float t27 = t12 * t18;
     const float t28 = t26 - t27;
     const float t29 = t12 * t28;
     const float t30 = t24 - t29;
     const float t31 = L * L;
     const float t32 = m_2 * t31;
+    const float Theta_1 = p->Theta_1;
     const float t33 = Theta_1 + t32;
+    const float Theta_2 = p->Theta_2;
     const float t34 = Theta_2 + t33;
-    const float t35 = t3 * t34;
-    const float t36 = t3 * t35;
+    const float t35 = t5 * t34;
+    const float t36 = t5 * t35;
     const float t37 = t30 + t36;
     const float t38 = Theta_2 * t37;
-    const float t39 = Theta_2 * t3;
-    const float t40 = t3 * t39;
+    const float t39 = Theta_2 * t5;
+    const float t40 = t5 * t39;
     const float t41 = Theta_2 * t40;
     const float t42 = t38 - t41;
     const float t43 = fabsf(t42);
@@ -2472,7 +2456,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t50 = t45 + t49;
     const float t51 = t44 + t50;
     const float t52 = t44 * t51;
-    const float t53 = t5 * t52;
+    const float t53 = t7 * t52;
     const float t54 = fabsf(m_1);
     const float t55 = t54 + t46;
     const float t56 = t55 * t44;
@@ -2484,35 +2468,40 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t62 = 1.0f / t42;
     const float t63 = Theta_2 * t12;
     const float t64 = t12 * t63;
+    const float theta_dot = qd[2];
     const float t65 = theta_dot * t20;
-    const float t66 = theta_dot * t7;
+    const float t66 = theta_dot * t4;
     const float t67 = t65 * t66;
-    const float t68 = t7 * t4;
-    const float t69 = t6 * t3;
+    const float t68 = t4 * t6;
+    const float t69 = t3 * t5;
     const float t70 = t68 - t69;
+    const float K_f = u[0];
     const float t71 = K_f * t70;
     const float t72 = t67 + t71;
-    const float t73 = theta_dot * t6;
+    const float t73 = theta_dot * t3;
+    const float y_dot = qd[1];
     const float t74 = y_dot * t73;
+    const float x_dot = qd[0];
     const float t75 = x_dot * t66;
     const float t76 = t74 + t75;
     const float t77 = 1.0f / t14;
     const float t78 = t8 * t9;
-    const float t79 = t70 * t3;
+    const float t79 = t5 * t70;
     const float t80 = t78 - t79;
     const float t81 = t77 * t80;
     const float t82 = t76 * t81;
-    const float t83 = t7 * t3;
+    const float t83 = t4 * t5;
     const float t84 = t77 * t83;
-    const float t85 = phi_dot * t3;
+    const float phi_dot = qd[3];
+    const float t85 = phi_dot * t5;
     const float t86 = L * t85;
     const float t87 = theta_dot * t86;
     const float t88 = theta_dot + phi_dot;
-    const float t89 = t70 * t88;
+    const float t89 = t88 * t70;
     const float t90 = x_dot * t89;
-    const float t91 = t6 * t4;
+    const float t91 = t3 * t6;
     const float t92 = t91 + t83;
-    const float t93 = t92 * t88;
+    const float t93 = t88 * t92;
     const float t94 = y_dot * t93;
     const float t95 = t90 + t94;
     const float t96 = t87 + t95;
@@ -2521,7 +2510,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t99 = t18 * t98;
     const float t100 = t8 * t77;
     const float t101 = t100 * t96;
-    const float t102 = t4 * t8;
+    const float t102 = t6 * t8;
     const float t103 = t77 * t102;
     const float t104 = t76 * t103;
     const float t105 = t101 - t104;
@@ -2533,8 +2522,8 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t111 = t65 * t73;
     const float t112 = K_f * t92;
     const float t113 = t111 + t112;
-    const float t114 = t92 * t3;
-    const float t115 = t8 * t12;
+    const float t114 = t8 * t12;
+    const float t115 = t5 * t92;
     const float t116 = t114 + t115;
     const float t117 = t77 * t116;
     const float t118 = t76 * t117;
@@ -2547,8 +2536,8 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t125 = t113 - t124;
     const float t126 = t110 * t125;
     const float t127 = t109 + t126;
-    const float t128 = t3 * t63;
-    const float t129 = L * t3;
+    const float t128 = t5 * t63;
+    const float t129 = L * t5;
     const float t130 = K_f * t129;
     const float t131 = t20 * t76;
     const float t132 = t34 * t105;
@@ -2557,6 +2546,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t135 = t128 * t134;
     const float t136 = t127 + t135;
     const float t137 = Theta_2 * t105;
+    const float T = u[1];
     const float t138 = T - t137;
     const float t139 = t128 * t138;
     const float t140 = t136 - t139;
@@ -2567,7 +2557,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t145 = t9 * t144;
     const float t146 = t145 * t125;
     const float t147 = t143 + t146;
-    const float t148 = t3 * t144;
+    const float t148 = t5 * t144;
     const float t149 = t148 * t134;
     const float t150 = t147 + t149;
     const float t151 = t148 * t138;
@@ -2607,20 +2597,9 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
 }
 
 front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_wheelset_params_f *p, float lambda_B[2]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float K_f = u[0];
-    const float T = u[1];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(phi);
+    const float theta = q[2];
     const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2630,27 +2609,30 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     }
     float t3, t4;
     front_car_wheelset_sincos_f(phi, &t3, &t4);
-    const float t5 = t3 * t3;
-    float t6, t7;
-    front_car_wheelset_sincos_f(theta, &t6, &t7);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float t7 = t3 * t3;
+    const float L = p->L;
     const float t8 = L * t4;
-    const float t9 = t6 * t8;
+    const float t9 = t5 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t5 + t10;
-    const float t12 = t7 * t8;
+    const float t11 = t7 + t10;
+    const float t12 = t6 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
     const float t18 = m_1 + m_2;
     const float t19 = t9 * t18;
     const float t20 = L * m_2;
-    const float t21 = t7 * t20;
+    const float t21 = t6 * t20;
     const float t22 = t3 * t21;
     const float t23 = t19 + t22;
     const float t24 = t9 * t23;
-    const float t25 = t6 * t20;
+    const float t25 = t5 * t20;
     const float t26 = t3 * t25;
     const float t27 = t12 * t18;
     const float t28 = t26 - t27;
@@ -2658,7 +2640,9 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t30 = t24 - t29;
     const float t31 = L * L;
     const float t32 = m_2 * t31;
+    const float Theta_1 = p->Theta_1;
     const float t33 = Theta_1 + t32;
+    const float Theta_2 = p->Theta_2;
     const float t34 = Theta_2 + t33;
     const float t35 = t3 * t34;
     const float t36 = t3 * t35;
@@ -2678,7 +2662,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t50 = t45 + t49;
     const float t51 = t44 + t50;
     const float t52 = t44 * t51;
-    const float t53 = t5 * t52;
+    const float t53 = t7 * t52;
     const float t54 = fabsf(m_1);
     const float t55 = t54 + t46;
     const float t56 = t55 * t44;
@@ -2689,10 +2673,10 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t61 = t60 * 1.9073486e-06f;
     const float t62 = 1.0f / t14;
     const float t63 = t8 * t9;
-    const float t64 = t7 * t4;
-    const float t65 = t6 * t3;
+    const float t64 = t6 * t4;
+    const float t65 = t5 * t3;
     const float t66 = t64 - t65;
-    const float t67 = t66 * t3;
+    const float t67 = t3 * t66;
     const float t68 = t63 - t67;
     const float t69 = t62 * t68;
     const float t70 = Theta_2 * t12;
@@ -2705,12 +2689,12 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t77 = t75 * t76;
     const float t78 = 1.0f - t77;
     const float t79 = t69 * t78;
-    const float t80 = t6 * t4;
-    const float t81 = t7 * t3;
-    const float t82 = t80 + t81;
-    const float t83 = t82 * t3;
-    const float t84 = t8 * t12;
-    const float t85 = t83 + t84;
+    const float t80 = t8 * t12;
+    const float t81 = t5 * t4;
+    const float t82 = t6 * t3;
+    const float t83 = t81 + t82;
+    const float t84 = t3 * t83;
+    const float t85 = t80 + t84;
     const float t86 = t62 * t85;
     const float t87 = t9 * t70;
     const float t88 = t18 * t87;
@@ -2727,22 +2711,26 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t99 = t76 * t98;
     const float t100 = t95 * t99;
     const float t101 = t93 - t100;
+    const float theta_dot = qd[2];
     const float t102 = theta_dot * t20;
-    const float t103 = theta_dot * t7;
+    const float t103 = theta_dot * t6;
     const float t104 = t102 * t103;
-    const float t105 = theta_dot * t6;
+    const float t105 = theta_dot * t5;
+    const float y_dot = qd[1];
     const float t106 = y_dot * t105;
+    const float x_dot = qd[0];
     const float t107 = x_dot * t103;
     const float t108 = t106 + t107;
     const float t109 = t108 * t69;
-    const float t110 = t62 * t81;
+    const float t110 = t62 * t82;
+    const float phi_dot = qd[3];
     const float t111 = phi_dot * t3;
     const float t112 = L * t111;
     const float t113 = theta_dot * t112;
     const float t114 = theta_dot + phi_dot;
-    const float t115 = t66 * t114;
+    const float t115 = t114 * t66;
     const float t116 = x_dot * t115;
-    const float t117 = t82 * t114;
+    const float t117 = t114 * t83;
     const float t118 = y_dot * t117;
     const float t119 = t116 + t118;
     const float t120 = t113 + t119;
@@ -2759,23 +2747,23 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t131 = t101 * t130;
     const float t132 = Theta_2 * t9;
     const float t133 = t3 * t132;
-    const float t134 = t25 * t133;
-    const float t135 = t88 - t134;
-    const float t136 = t76 * t135;
-    const float t137 = t69 * t136;
-    const float t138 = t9 * t132;
-    const float t139 = t18 * t138;
-    const float t140 = t74 + t139;
-    const float t141 = t140 * t76;
-    const float t142 = 1.0f - t141;
-    const float t143 = t86 * t142;
-    const float t144 = t137 + t143;
-    const float t145 = t34 * t133;
-    const float t146 = Theta_2 * t133;
-    const float t147 = t145 - t146;
-    const float t148 = t76 * t147;
-    const float t149 = t95 * t148;
-    const float t150 = t144 + t149;
+    const float t134 = t34 * t133;
+    const float t135 = Theta_2 * t133;
+    const float t136 = t134 - t135;
+    const float t137 = t76 * t136;
+    const float t138 = t95 * t137;
+    const float t139 = t25 * t133;
+    const float t140 = t88 - t139;
+    const float t141 = t76 * t140;
+    const float t142 = t69 * t141;
+    const float t143 = t9 * t132;
+    const float t144 = t18 * t143;
+    const float t145 = t74 + t144;
+    const float t146 = t145 * t76;
+    const float t147 = 1.0f - t146;
+    const float t148 = t86 * t147;
+    const float t149 = t142 + t148;
+    const float t150 = t138 + t149;
     const float t151 = t102 * t105;
     const float t152 = t62 * t65;
     const float t153 = t152 * t120;
@@ -2788,43 +2776,45 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t160 = t151 + t159;
     const float t161 = t150 * t160;
     const float t162 = t131 - t161;
-    const float t163 = t25 * t40;
-    const float t164 = t18 * t73;
-    const float t165 = t163 - t164;
-    const float t166 = t76 * t165;
-    const float t167 = t69 * t166;
-    const float t168 = t18 * t133;
-    const float t169 = t21 * t40;
-    const float t170 = t168 + t169;
+    const float t163 = t34 * t40;
+    const float t164 = t163 - t41;
+    const float t165 = t164 * t76;
+    const float t166 = 1.0f - t165;
+    const float t167 = t95 * t166;
+    const float t168 = t25 * t40;
+    const float t169 = t18 * t73;
+    const float t170 = t168 - t169;
     const float t171 = t76 * t170;
-    const float t172 = t86 * t171;
-    const float t173 = t167 + t172;
-    const float t174 = t34 * t40;
-    const float t175 = t174 - t41;
-    const float t176 = t175 * t76;
-    const float t177 = 1.0f - t176;
-    const float t178 = t95 * t177;
-    const float t179 = t173 + t178;
+    const float t172 = t69 * t171;
+    const float t173 = t18 * t133;
+    const float t174 = t21 * t40;
+    const float t175 = t173 + t174;
+    const float t176 = t76 * t175;
+    const float t177 = t86 * t176;
+    const float t178 = t172 + t177;
+    const float t179 = t167 + t178;
     const float t180 = t34 * t157;
     const float t181 = t20 * t108;
     const float t182 = t180 - t181;
     const float t183 = t179 * t182;
     const float t184 = t162 + t183;
-    const float t185 = t164 - t163;
+    const float t185 = t169 - t168;
     const float t186 = t76 * t185;
     const float t187 = t69 * t186;
-    const float t188 = t187 - t172;
-    const float t189 = t188 - t178;
+    const float t188 = t187 - t177;
+    const float t189 = t188 - t167;
     const float t190 = Theta_2 * t157;
     const float t191 = t189 * t190;
     const float t192 = t184 + t191;
     const float t193 = t66 * t101;
-    const float t194 = t82 * t150;
+    const float t194 = t83 * t150;
     const float t195 = t193 - t194;
     const float t196 = L * t3;
     const float t197 = t196 * t179;
     const float t198 = t195 + t197;
+    const float K_f = u[0];
     const float t199 = K_f * t198;
+    const float T = u[1];
     const float t200 = T * t189;
     const float t201 = t199 + t200;
     const float t202 = t192 + t201;
@@ -2834,17 +2824,17 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t206 = t124 * t99;
     const float t207 = t205 + t206;
     const float t208 = t207 * t130;
-    const float t209 = t152 * t142;
-    const float t210 = t110 * t136;
+    const float t209 = t152 * t147;
+    const float t210 = t110 * t141;
     const float t211 = t209 - t210;
-    const float t212 = t124 * t148;
+    const float t212 = t124 * t137;
     const float t213 = t211 + t212;
     const float t214 = t213 * t160;
     const float t215 = t208 + t214;
-    const float t216 = t110 * t166;
-    const float t217 = t152 * t171;
+    const float t216 = t110 * t171;
+    const float t217 = t152 * t176;
     const float t218 = t216 - t217;
-    const float t219 = t124 * t177;
+    const float t219 = t124 * t166;
     const float t220 = t218 - t219;
     const float t221 = t220 * t182;
     const float t222 = t215 + t221;
@@ -2853,14 +2843,14 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t225 = t219 + t224;
     const float t226 = t225 * t190;
     const float t227 = t222 + t226;
-    const float t228 = t66 * t207;
-    const float t229 = t82 * t213;
-    const float t230 = t228 + t229;
-    const float t231 = t196 * t220;
+    const float t228 = T * t225;
+    const float t229 = t196 * t220;
+    const float t230 = t66 * t207;
+    const float t231 = t83 * t213;
     const float t232 = t230 + t231;
-    const float t233 = K_f * t232;
-    const float t234 = T * t225;
-    const float t235 = t233 + t234;
+    const float t233 = t229 + t232;
+    const float t234 = K_f * t233;
+    const float t235 = t228 + t234;
     const float t236 = t227 + t235;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
@@ -2880,43 +2870,43 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
 
 front_car_wheelset_status front_car_wheelset_energy_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float T_U[2]) {
     const float theta = q[2];
-    const float x_dot = qd[0];
-    const float y_dot = qd[1];
-    const float theta_dot = qd[2];
-    const float phi_dot = qd[3];
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
     const float t1 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    const float t2 = m_1 + m_2;
-    const float t3 = x_dot * x_dot;
-    const float t4 = y_dot * y_dot;
-    const float t5 = t3 + t4;
-    const float t6 = t2 * t5;
-    const float t7 = 0.5f * t6;
-    const float t8 = L * m_2;
-    const float t9 = theta_dot * t8;
-    float t10, t11;
-    front_car_wheelset_sincos_f(theta, &t10, &t11);
-    const float t12 = y_dot * t11;
-    const float t13 = x_dot * t10;
+    float t2, t3;
+    front_car_wheelset_sincos_f(theta, &t2, &t3);
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
+    const float t4 = m_1 + m_2;
+    const float x_dot = qd[0];
+    const float t5 = x_dot * x_dot;
+    const float y_dot = qd[1];
+    const float t6 = y_dot * y_dot;
+    const float t7 = t5 + t6;
+    const float t8 = t4 * t7;
+    const float t9 = 0.5f * t8;
+    const float L = p->L;
+    const float t10 = L * m_2;
+    const float theta_dot = qd[2];
+    const float t11 = theta_dot * t10;
+    const float t12 = y_dot * t3;
+    const float t13 = x_dot * t2;
     const float t14 = t12 - t13;
-    const float t15 = t9 * t14;
-    const float t16 = t7 + t15;
+    const float t15 = t11 * t14;
+    const float t16 = t9 + t15;
     const float t17 = L * L;
     const float t18 = m_2 * t17;
+    const float Theta_1 = p->Theta_1;
     const float t19 = Theta_1 + t18;
     const float t20 = theta_dot * theta_dot;
     const float t21 = t19 * t20;
     const float t22 = 0.5f * t21;
     const float t23 = t16 + t22;
+    const float phi_dot = qd[3];
     const float t24 = theta_dot + phi_dot;
     const float t25 = t24 * t24;
+    const float Theta_2 = p->Theta_2;
     const float t26 = Theta_2 * t25;
     const float t27 = 0.5f * t26;
     const float t28 = t23 + t27;
@@ -2930,11 +2920,10 @@ front_car_wheelset_status front_car_wheelset_energy_f(const float q[4], const fl
 }
 
 front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], const front_car_wheelset_params_f *p, float measure[2]) {
-    const float theta = q[2];
     const float phi = q[3];
-    const float L = p->L;
-    const float t1 = fabsf(theta);
-    const float t2 = fabsf(phi);
+    const float t1 = fabsf(phi);
+    const float theta = q[2];
+    const float t2 = fabsf(theta);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
@@ -2942,54 +2931,62 @@ front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], con
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t3, t4;
-    front_car_wheelset_sincos_f(theta, &t3, &t4);
-    const float t5 = 1.0f != 0.0f ? t3 / 1.0f : 0.0f;
-    float t6, t7;
-    front_car_wheelset_sincos_f(phi, &t6, &t7);
-    const float t8 = t4 * t7;
-    const float t9 = t3 * t6;
-    const float t10 = t8 - t9;
-    const float t11 = -t10;
-    const float t12 = L * t7;
+    front_car_wheelset_sincos_f(phi, &t3, &t4);
+    float t5, t6;
+    front_car_wheelset_sincos_f(theta, &t5, &t6);
+    const float L = p->L;
+    const float t7 = L * t4;
+    const float t8 = -t7;
+    const float t9 = t7 * t7;
+    const float t10 = 1.0f + t9;
+    const float t11 = sqrtf(t10);
+    const float t12 = t11 != 0.0f ? t8 / t11 : 0.0f;
     const float t13 = t12 * t12;
-    const float t14 = 1.0f + t13;
-    const float t15 = sqrtf(t14);
-    const float t16 = t15 != 0.0f ? t11 / t15 : 0.0f;
-    const float t17 = t5 * t16;
-    const float t18 = -t4;
-    const float t19 = 1.0f != 0.0f ? t18 / 1.0f : 0.0f;
-    const float t20 = t3 * t7;
-    const float t21 = t4 * t6;
-    const float t22 = t20 + t21;
-    const float t23 = t15 != 0.0f ? t22 / t15 : 0.0f;
-    const float t24 = t19 * t23;
-    const float t25 = t17 - t24;
-    const float t26 = t25 * t25;
-    const float t27 = -t12;
-    const float t28 = t15 != 0.0f ? t27 / t15 : 0.0f;
-    const float t29 = t5 * t28;
-    const float t30 = t29 * t29;
-    const float t31 = t26 + t30;
-    const float t32 = t19 * t28;
-    const float t33 = t32 * t32;
-    const float t34 = t31 + t33;
-    const float t35 = L * t6;
-    const float t36 = t35 * t25;
-    const float t37 = t22 * t29;
-    const float t38 = t36 - t37;
-    const float t39 = t10 * t32;
-    const float t40 = t38 + t39;
-    const float t41 = t40 * t40;
-    const float t42 = t34 != 0.0f ? t41 / t34 : 0.0f;
-    const float t43 = t35 * t35;
-    const float t44 = 1.0f + t43;
-    const float t45 = t44 != 0.0f ? t42 / t44 : 0.0f;
-    float rest = t34 - t34;
-    rest += t45 - t45;
+    const float t14 = t5 * t4;
+    const float t15 = t6 * t3;
+    const float t16 = t14 + t15;
+    const float t17 = t11 != 0.0f ? t16 / t11 : 0.0f;
+    const float t18 = t6 * t6;
+    const float t19 = t18 * t17;
+    const float t20 = t17 * t19;
+    const float t21 = t13 + t20;
+    const float t22 = t6 * t4;
+    const float t23 = t5 * t3;
+    const float t24 = t22 - t23;
+    const float t25 = -t24;
+    const float t26 = t11 != 0.0f ? t25 / t11 : 0.0f;
+    const float t27 = t5 * t26;
+    const float t28 = t6 * t17;
+    const float t29 = 2.0f * t28;
+    const float t30 = t27 + t29;
+    const float t31 = t26 * t30;
+    const float t32 = t5 * t31;
+    const float t33 = t21 + t32;
+    const float t34 = L * t3;
+    const float t35 = t27 + t28;
+    const float t36 = t34 * t35;
+    const float t37 = t5 * t12;
+    const float t38 = t16 * t37;
+    const float t39 = t36 - t38;
+    const float t40 = t6 * t12;
+    const float t41 = t24 * t40;
+    const float t42 = t39 - t41;
+    const float t43 = t42 * t42;
+    const float t44 = t40 * t40;
+    const float t45 = t37 * t37;
+    const float t46 = t35 * t35;
+    const float t47 = t45 + t46;
+    const float t48 = t44 + t47;
+    const float t49 = t48 != 0.0f ? t43 / t48 : 0.0f;
+    const float t50 = t34 * t34;
+    const float t51 = 1.0f + t50;
+    const float t52 = t51 != 0.0f ? t49 / t51 : 0.0f;
+    float rest = t33 - t33;
+    rest += t52 - t52;
     if (!(rest >= 0.0f)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    measure[0] = t34;
-    measure[1] = t45;
+    measure[0] = t33;
+    measure[1] = t52;
     return FRONT_CAR_WHEELSET_OK;
 }

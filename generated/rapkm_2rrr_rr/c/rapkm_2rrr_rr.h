@@ -39,20 +39,20 @@
  * projected_coriolis_matrix           722   1037     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  69    129      1      0      9      0
+ * minimal_mass_matrix                  66    129      1      0      6      0
  * minimal_coriolis_matrix             336    540     15      4      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
- * minimal_control_matrix               16     43      1      0      8      0
+ * minimal_control_matrix               12     36      1      0      6      0
  * admissible_velocity                  96    139      4      4      6      0
  * admissible_acceleration             191    273      8      4      6      0
  * projected_configuration             228    244     16      8     12      0
- * inverse_dynamics                     89    171      1      0      9      0
+ * inverse_dynamics                     86    171      1      0      6      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * forward_dynamics                    253    385     11      4      6      0
  * multipliers                         505    747     31      4      6      0
  * energy                               18     43      0      0      3      0
- * singularity                          64    103     18      4      6      0
+ * singularity                          64    104     17      4      6      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

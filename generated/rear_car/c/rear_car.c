@@ -51,19 +51,13 @@ static void rear_car_sincos(const double x, double *sine, double *cosine) {
     const double ci = zc - 0.5;
     const double cz = z * ci;
     const double cos_r = 1.0 + cz;
-    const double quarter = k * 0.25;
-    const double pushed = quarter + 6755399441055744.0;
-    const double whole = pushed - 6755399441055744.0;
-    const double four = whole * 4.0;
+    const double pushed = k + 2.7021597764222976e+16;
+    const double four = pushed - 2.7021597764222976e+16;
     const double m = k - four;
-    const double m2 = m * m;
-    const double fade = 4.0 - m2;
-    const double odd = m * fade;
-    const double turn = odd * 0.3333333333333333;
-    const double bend = 7.0 - m2;
-    const double even = m2 * bend;
-    const double sixth = even * 0.16666666666666666;
-    const double keep = 1.0 - sixth;
+    const double size = fabs(m);
+    const double keep = 1.0 - size;
+    const double fade = 2.0 - size;
+    const double turn = m * fade;
     const double ss = keep * sin_r;
     const double sc = turn * cos_r;
     const double sine_ = ss + sc;
@@ -86,26 +80,26 @@ rear_car_params rear_car_default_params(void) {
 
 rear_car_status rear_car_mass_matrix(const double q[4], const rear_car_params *p, double G[16]) {
     const double theta = q[2];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    const double t2 = m_1 + m_2;
-    double t3, t4;
-    rear_car_sincos(theta, &t3, &t4);
+    double t2, t3;
+    rear_car_sincos(theta, &t2, &t3);
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double t4 = m_1 + m_2;
+    const double L = p->L;
     const double t5 = L * m_2;
-    const double t6 = t3 * t5;
+    const double t6 = t2 * t5;
     const double t7 = -t6;
-    const double t8 = t4 * t5;
+    const double t8 = t3 * t5;
     const double t9 = L * L;
     const double t10 = m_2 * t9;
+    const double Theta_1 = p->Theta_1;
     const double t11 = Theta_1 + t10;
-    double rest = t2 - t2;
+    const double Theta_2 = p->Theta_2;
+    double rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
     rest += t11 - t11;
@@ -113,12 +107,12 @@ rear_car_status rear_car_mass_matrix(const double q[4], const rear_car_params *p
     if (!(rest >= 0.0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    G[0] = t2;
+    G[0] = t4;
     G[1] = 0.0;
     G[2] = t7;
     G[3] = 0.0;
     G[4] = 0.0;
-    G[5] = t2;
+    G[5] = t4;
     G[6] = t8;
     G[7] = 0.0;
     G[8] = t7;
@@ -134,16 +128,16 @@ rear_car_status rear_car_mass_matrix(const double q[4], const rear_car_params *p
 
 rear_car_status rear_car_coriolis_matrix(const double q[4], const double qd[4], const rear_car_params *p, double C[16]) {
     const double theta = q[2];
-    const double theta_dot = qd[2];
-    const double L = p->L;
-    const double m_2 = p->m_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2, t3;
     rear_car_sincos(theta, &t2, &t3);
+    const double L = p->L;
+    const double m_2 = p->m_2;
     const double t4 = L * m_2;
+    const double theta_dot = qd[2];
     const double t5 = theta_dot * t4;
     const double t6 = t3 * t5;
     const double t7 = -t6;
@@ -175,22 +169,22 @@ rear_car_status rear_car_coriolis_matrix(const double q[4], const double qd[4], 
 
 rear_car_status rear_car_coriolis_force(const double q[4], const double qd[4], const rear_car_params *p, double C_qd[4]) {
     const double theta = q[2];
-    const double theta_dot = qd[2];
-    const double L = p->L;
-    const double m_2 = p->m_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    const double t2 = L * m_2;
-    const double t3 = theta_dot * t2;
-    double t4, t5;
-    rear_car_sincos(theta, &t4, &t5);
-    const double t6 = theta_dot * t5;
-    const double t7 = t3 * t6;
+    double t2, t3;
+    rear_car_sincos(theta, &t2, &t3);
+    const double L = p->L;
+    const double m_2 = p->m_2;
+    const double t4 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t5 = theta_dot * t4;
+    const double t6 = theta_dot * t3;
+    const double t7 = t5 * t6;
     const double t8 = -t7;
-    const double t9 = theta_dot * t4;
-    const double t10 = t3 * t9;
+    const double t9 = theta_dot * t2;
+    const double t10 = t5 * t9;
     const double t11 = -t10;
     double rest = t8 - t8;
     rest += t11 - t11;
@@ -227,9 +221,8 @@ rear_car_status rear_car_applied_force(const double q[4], const double qd[4], co
 
 rear_car_status rear_car_constraint_jacobian(const double q[4], const rear_car_params *p, double B[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -239,20 +232,21 @@ rear_car_status rear_car_constraint_jacobian(const double q[4], const rear_car_p
     }
     double t3, t4;
     rear_car_sincos(theta, &t3, &t4);
-    const double t5 = -t4;
-    double t6, t7;
-    rear_car_sincos(phi, &t6, &t7);
-    const double t8 = t3 * t7;
-    const double t9 = t4 * t6;
+    double t5, t6;
+    rear_car_sincos(phi, &t5, &t6);
+    const double t7 = -t4;
+    const double t8 = t3 * t6;
+    const double t9 = t4 * t5;
     const double t10 = t8 + t9;
-    const double t11 = t4 * t7;
-    const double t12 = t3 * t6;
+    const double t11 = t4 * t6;
+    const double t12 = t3 * t5;
     const double t13 = t11 - t12;
     const double t14 = -t13;
-    const double t15 = L * t7;
+    const double L = p->L;
+    const double t15 = L * t6;
     const double t16 = -t15;
     double rest = t3 - t3;
-    rest += t5 - t5;
+    rest += t7 - t7;
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
@@ -260,7 +254,7 @@ rear_car_status rear_car_constraint_jacobian(const double q[4], const rear_car_p
         return REAR_CAR_NOT_FINITE;
     }
     B[0] = t3;
-    B[1] = t5;
+    B[1] = t7;
     B[2] = 0.0;
     B[3] = 0.0;
     B[4] = t10;
@@ -272,11 +266,8 @@ rear_car_status rear_car_constraint_jacobian(const double q[4], const rear_car_p
 
 rear_car_status rear_car_constraint_jacobian_dot(const double q[4], const double qd[4], const rear_car_params *p, double B_dot[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -286,31 +277,34 @@ rear_car_status rear_car_constraint_jacobian_dot(const double q[4], const double
     }
     double t3, t4;
     rear_car_sincos(theta, &t3, &t4);
-    const double t5 = theta_dot * t4;
-    const double t6 = theta_dot * t3;
-    double t7, t8;
-    rear_car_sincos(phi, &t7, &t8);
-    const double t9 = t4 * t8;
-    const double t10 = t3 * t7;
-    const double t11 = t9 - t10;
-    const double t12 = theta_dot + phi_dot;
-    const double t13 = t11 * t12;
-    const double t14 = t3 * t8;
-    const double t15 = t4 * t7;
+    double t5, t6;
+    rear_car_sincos(phi, &t5, &t6);
+    const double theta_dot = qd[2];
+    const double t7 = theta_dot * t4;
+    const double t8 = theta_dot * t3;
+    const double phi_dot = qd[3];
+    const double t9 = theta_dot + phi_dot;
+    const double t10 = t4 * t6;
+    const double t11 = t3 * t5;
+    const double t12 = t10 - t11;
+    const double t13 = t9 * t12;
+    const double t14 = t3 * t6;
+    const double t15 = t4 * t5;
     const double t16 = t14 + t15;
-    const double t17 = t16 * t12;
-    const double t18 = phi_dot * t7;
+    const double t17 = t9 * t16;
+    const double t18 = phi_dot * t5;
+    const double L = p->L;
     const double t19 = L * t18;
-    double rest = t5 - t5;
-    rest += t6 - t6;
+    double rest = t7 - t7;
+    rest += t8 - t8;
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
     if (!(rest >= 0.0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    B_dot[0] = t5;
-    B_dot[1] = t6;
+    B_dot[0] = t7;
+    B_dot[1] = t8;
     B_dot[2] = 0.0;
     B_dot[3] = 0.0;
     B_dot[4] = t13;
@@ -321,10 +315,9 @@ rear_car_status rear_car_constraint_jacobian_dot(const double q[4], const double
 }
 
 rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_car_params *p, double B_pinv[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -334,14 +327,15 @@ rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -349,19 +343,19 @@ rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = 1.0 / t14;
     const double t19 = t8 * t9;
-    const double t20 = t7 * t4;
-    const double t21 = t6 * t3;
+    const double t20 = t6 * t4;
+    const double t21 = t5 * t3;
     const double t22 = t20 - t21;
-    const double t23 = t22 * t3;
+    const double t23 = t3 * t22;
     const double t24 = t19 - t23;
     const double t25 = t18 * t24;
-    const double t26 = t7 * t3;
+    const double t26 = t6 * t3;
     const double t27 = t18 * t26;
-    const double t28 = t6 * t4;
-    const double t29 = t28 + t26;
-    const double t30 = t29 * t3;
-    const double t31 = t8 * t12;
-    const double t32 = t30 + t31;
+    const double t28 = t8 * t12;
+    const double t29 = t5 * t4;
+    const double t30 = t29 + t26;
+    const double t31 = t3 * t30;
+    const double t32 = t28 + t31;
     const double t33 = t18 * t32;
     const double t34 = -t33;
     const double t35 = t18 * t21;
@@ -395,9 +389,8 @@ rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_
 
 rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_params *p, double N_B[16]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -406,15 +399,16 @@ rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_p
         return REAR_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    rear_car_sincos(theta, &t3, &t4);
+    double t5, t6;
+    rear_car_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -424,12 +418,12 @@ rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_p
     const double t19 = t13 * t18;
     const double t20 = t9 * t12;
     const double t21 = t18 * t20;
-    const double t22 = t3 * t12;
+    const double t22 = t5 * t12;
     const double t23 = t18 * t22;
     const double t24 = t10 * t18;
-    const double t25 = t9 * t3;
+    const double t25 = t9 * t5;
     const double t26 = t18 * t25;
-    const double t27 = t5 * t18;
+    const double t27 = t7 * t18;
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -462,12 +456,9 @@ rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_p
 }
 
 rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double qd[4], const rear_car_params *p, double N_B_dot[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -477,14 +468,15 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -493,14 +485,16 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t18 / t19;
-    const double t21 = t7 * t4;
-    const double t22 = t6 * t4;
+    const double t21 = t6 * t4;
+    const double t22 = t5 * t4;
     const double t23 = 2.0 * t15;
-    const double t24 = 2.0 * t5;
+    const double t24 = 2.0 * t7;
     const double t25 = t23 + t24;
     const double t26 = t22 * t25;
+    const double theta_dot = qd[2];
     const double t27 = theta_dot * t26;
-    const double t28 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t28 = phi_dot * t6;
     const double t29 = t3 * t28;
     const double t30 = 2.0 * t29;
     const double t31 = t27 + t30;
@@ -512,14 +506,14 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     const double t37 = t4 * t36;
     const double t38 = t4 * t37;
     const double t39 = 2.0 + t38;
-    const double t40 = t7 * t39;
-    const double t41 = t7 * t40;
-    const double t42 = t5 + t15;
+    const double t40 = t6 * t39;
+    const double t41 = t6 * t40;
+    const double t42 = t7 + t15;
     const double t43 = t41 - t42;
     const double t44 = t4 * t43;
     const double t45 = theta_dot * t44;
-    const double t46 = phi_dot * t6;
-    const double t47 = t7 * t46;
+    const double t46 = phi_dot * t5;
+    const double t47 = t6 * t46;
     const double t48 = t3 * t47;
     const double t49 = 2.0 * t48;
     const double t50 = t45 - t49;
@@ -527,7 +521,7 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     const double t52 = t20 * t51;
     const double t53 = t4 * t28;
     const double t54 = t18 * t53;
-    const double t55 = t6 * t3;
+    const double t55 = t5 * t3;
     const double t56 = t55 * t42;
     const double t57 = theta_dot * t56;
     const double t58 = t54 - t57;
@@ -543,7 +537,7 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     const double t68 = t65 - t67;
     const double t69 = t22 * t68;
     const double t70 = t20 * t69;
-    const double t71 = t7 * t3;
+    const double t71 = t6 * t3;
     const double t72 = t71 * t42;
     const double t73 = theta_dot * t72;
     const double t74 = t4 * t46;
@@ -589,14 +583,9 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
 }
 
 rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_car_params *p, double B_G_pinv[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -606,27 +595,30 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
+    const double t21 = t6 * t20;
     const double t22 = t3 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
+    const double t25 = t5 * t20;
     const double t26 = t3 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
@@ -634,10 +626,12 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
     const double t34 = t3 * t33;
     const double t35 = t3 * t34;
     const double t36 = t30 + t35;
+    const double Theta_2 = p->Theta_2;
     const double t37 = Theta_2 * t36;
     const double t38 = fabs(t37);
     const double t39 = fabs(Theta_1);
@@ -648,7 +642,7 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t44 = t39 + t43;
     const double t45 = fabs(Theta_2);
     const double t46 = t44 * t45;
-    const double t47 = t5 * t46;
+    const double t47 = t7 * t46;
     const double t48 = fabs(m_1);
     const double t49 = t48 + t40;
     const double t50 = t49 * t45;
@@ -657,16 +651,16 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t53 = t13 * t50;
     const double t54 = t52 + t53;
     const double t55 = t54 * 3.552713678800501e-15;
-    const double t56 = t7 * t3;
+    const double t56 = t6 * t3;
     const double t57 = t18 + t32;
     const double t58 = t57 - t33;
     const double t59 = t4 * t58;
     const double t60 = t4 * t59;
-    const double t61 = m_2 * t5;
+    const double t61 = m_2 * t7;
     const double t62 = t60 + t61;
     const double t63 = t56 * t62;
     const double t64 = Theta_2 * t63;
-    const double t65 = t6 * t4;
+    const double t65 = t5 * t4;
     const double t66 = t65 * t37;
     const double t67 = t64 + t66;
     const double t68 = L * t67;
@@ -674,7 +668,7 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t70 = t56 * t37;
     const double t71 = t69 - t70;
     const double t72 = t4 * t71;
-    const double t73 = t6 * t3;
+    const double t73 = t5 * t3;
     const double t74 = t3 * t73;
     const double t75 = t37 * t74;
     const double t76 = t72 + t75;
@@ -692,7 +686,7 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t88 = t78 * t87;
     const double t89 = t73 * t62;
     const double t90 = Theta_2 * t89;
-    const double t91 = t7 * t4;
+    const double t91 = t6 * t4;
     const double t92 = t91 * t37;
     const double t93 = t90 - t92;
     const double t94 = L * t93;
@@ -706,12 +700,12 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t102 = t78 * t101;
     const double t103 = t73 * t86;
     const double t104 = t78 * t103;
-    const double t105 = t5 * t31;
+    const double t105 = t7 * t31;
     const double t106 = (-2.0) + t105;
     const double t107 = t81 + t106;
     const double t108 = m_2 * t107;
     const double t109 = t18 - t33;
-    const double t110 = t5 * t109;
+    const double t110 = t7 * t109;
     const double t111 = t108 + t110;
     const double t112 = t4 * t111;
     const double t113 = t4 * t112;
@@ -721,7 +715,7 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t117 = t115 + t116;
     const double t118 = L / t77;
     const double t119 = t117 * t118;
-    const double t120 = t5 * t82;
+    const double t120 = t7 * t82;
     const double t121 = Theta_2 * t120;
     const double t122 = t121 - t37;
     const double t123 = t4 * t122;
@@ -754,13 +748,8 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
 
 rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const rear_car_params *p, double N_BG[16]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -769,39 +758,44 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
         return REAR_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    rear_car_sincos(theta, &t3, &t4);
+    double t5, t6;
+    rear_car_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
-    const double t22 = t3 * t21;
+    const double t21 = t4 * t20;
+    const double t22 = t5 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
-    const double t26 = t3 * t25;
+    const double t25 = t3 * t20;
+    const double t26 = t5 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
     const double t29 = t12 * t28;
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
-    const double t34 = t3 * t33;
-    const double t35 = t3 * t34;
+    const double t34 = t5 * t33;
+    const double t35 = t5 * t34;
     const double t36 = t30 + t35;
+    const double Theta_2 = p->Theta_2;
     const double t37 = Theta_2 * t36;
     const double t38 = fabs(t37);
     const double t39 = fabs(Theta_1);
@@ -812,7 +806,7 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     const double t44 = t39 + t43;
     const double t45 = fabs(Theta_2);
     const double t46 = t44 * t45;
-    const double t47 = t5 * t46;
+    const double t47 = t7 * t46;
     const double t48 = fabs(m_1);
     const double t49 = t48 + t40;
     const double t50 = t49 * t45;
@@ -823,21 +817,21 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     const double t55 = t54 * 3.552713678800501e-15;
     const double t56 = Theta_2 * t31;
     const double t57 = t56 / t37;
-    const double t58 = t7 * t4;
+    const double t58 = t4 * t6;
     const double t59 = t18 * t58;
-    const double t60 = t6 * t3;
+    const double t60 = t3 * t5;
     const double t61 = m_2 * t60;
     const double t62 = t59 - t61;
     const double t63 = t58 * t62;
     const double t64 = t57 * t63;
-    const double t65 = t7 * t3;
+    const double t65 = t4 * t5;
     const double t66 = m_2 * t65;
-    const double t67 = t6 * t4;
+    const double t67 = t3 * t6;
     const double t68 = t18 * t67;
     const double t69 = t66 + t68;
     const double t70 = t58 * t69;
     const double t71 = t57 * t70;
-    const double t72 = t3 * t58;
+    const double t72 = t5 * t58;
     const double t73 = L * Theta_2;
     const double t74 = t33 * t73;
     const double t75 = t74 / t37;
@@ -846,16 +840,16 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     const double t78 = t57 * t77;
     const double t79 = t67 * t69;
     const double t80 = t57 * t79;
-    const double t81 = t3 * t67;
+    const double t81 = t5 * t67;
     const double t82 = t81 * t75;
     const double t83 = t73 / t37;
-    const double t84 = t3 * t62;
+    const double t84 = t5 * t62;
     const double t85 = t83 * t84;
-    const double t86 = t3 * t69;
+    const double t86 = t5 * t69;
     const double t87 = t83 * t86;
     const double t88 = Theta_2 * t33;
     const double t89 = t88 / t37;
-    const double t90 = t5 * t89;
+    const double t90 = t7 * t89;
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -919,10 +913,9 @@ rear_car_status rear_car_control_matrix(const double q[4], const rear_car_params
 }
 
 rear_car_status rear_car_projected_control_matrix(const double q[4], const rear_car_params *p, double M_tilde[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -932,14 +925,15 @@ rear_car_status rear_car_projected_control_matrix(const double q[4], const rear_
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -973,63 +967,8 @@ rear_car_status rear_car_projected_control_matrix(const double q[4], const rear_
 
 rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], const rear_car_params *p, double M_tilde_pinv[8]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
-    const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    if (!(100000.0 >= t2)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    double t3, t4;
-    rear_car_sincos(phi, &t3, &t4);
-    const double t5 = L * t4;
-    const double t6 = fabs(t5);
-    const double t7 = fabs(L);
-    const double t8 = t7 * 3.552713678800501e-15;
-    double t9, t10;
-    rear_car_sincos(theta, &t9, &t10);
-    const double t11 = t3 / t5;
-    if (!(t6 > t8)) {
-        const double t12 = t3 * t3;
-        const double t13 = t9 * t5;
-        const double t14 = t13 * t13;
-        const double t15 = t12 + t14;
-        const double t16 = t10 * t5;
-        const double t17 = t16 * t16;
-        const double t18 = t15 + t17;
-        const double t19 = t5 * t5;
-        const double t20 = 1.0 + t19;
-        const double t21 = t20 * 1.262177448353619e-29;
-        if (!(t18 > t21)) {
-            return REAR_CAR_CONSTRAINT_RANK;
-        }
-        return REAR_CAR_ACTUATION_RANK;
-    }
-    double rest = t10 - t10;
-    rest += t9 - t9;
-    rest += t11 - t11;
-    if (!(rest >= 0.0)) {
-        return REAR_CAR_NOT_FINITE;
-    }
-    M_tilde_pinv[0] = t10;
-    M_tilde_pinv[1] = t9;
-    M_tilde_pinv[2] = t11;
-    M_tilde_pinv[3] = 0.0;
-    M_tilde_pinv[4] = 0.0;
-    M_tilde_pinv[5] = 0.0;
-    M_tilde_pinv[6] = 0.0;
-    M_tilde_pinv[7] = 1.0;
-    return REAR_CAR_OK;
-}
-
-rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car_params *p, double F_B[8]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double t1 = fabs(theta);
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -1041,6 +980,61 @@ rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car
     rear_car_sincos(theta, &t3, &t4);
     double t5, t6;
     rear_car_sincos(phi, &t5, &t6);
+    const double L = p->L;
+    const double t7 = L * t6;
+    const double t8 = fabs(t7);
+    const double t9 = fabs(L);
+    const double t10 = t9 * 3.552713678800501e-15;
+    const double t11 = t5 / t7;
+    if (!(t8 > t10)) {
+        const double t12 = t5 * t5;
+        const double t13 = t3 * t7;
+        const double t14 = t13 * t13;
+        const double t15 = t12 + t14;
+        const double t16 = t4 * t7;
+        const double t17 = t16 * t16;
+        const double t18 = t15 + t17;
+        const double t19 = t7 * t7;
+        const double t20 = 1.0 + t19;
+        const double t21 = t20 * 1.262177448353619e-29;
+        if (!(t18 > t21)) {
+            return REAR_CAR_CONSTRAINT_RANK;
+        }
+        return REAR_CAR_ACTUATION_RANK;
+    }
+    double rest = t4 - t4;
+    rest += t3 - t3;
+    rest += t11 - t11;
+    if (!(rest >= 0.0)) {
+        return REAR_CAR_NOT_FINITE;
+    }
+    M_tilde_pinv[0] = t4;
+    M_tilde_pinv[1] = t3;
+    M_tilde_pinv[2] = t11;
+    M_tilde_pinv[3] = 0.0;
+    M_tilde_pinv[4] = 0.0;
+    M_tilde_pinv[5] = 0.0;
+    M_tilde_pinv[6] = 0.0;
+    M_tilde_pinv[7] = 1.0;
+    return REAR_CAR_OK;
+}
+
+rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car_params *p, double F_B[8]) {
+    const double theta = q[2];
+    const double t1 = fabs(theta);
+    const double phi = q[3];
+    const double t2 = fabs(phi);
+    if (!(100000.0 >= t1)) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    if (!(100000.0 >= t2)) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    double t3, t4;
+    rear_car_sincos(theta, &t3, &t4);
+    double t5, t6;
+    rear_car_sincos(phi, &t5, &t6);
+    const double L = p->L;
     const double t7 = L * t6;
     const double t8 = t4 * t7;
     const double t9 = fabs(t8);
@@ -1081,14 +1075,9 @@ rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car
 }
 
 rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car_params *p, double G_tilde[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -1098,14 +1087,15 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1114,11 +1104,14 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t18 / t19;
-    const double t21 = t7 * t7;
+    const double t21 = t6 * t6;
     const double t22 = t4 * t21;
     const double t23 = t4 * t22;
+    const double m_2 = p->m_2;
     const double t24 = m_2 * t18;
+    const double Theta_1 = p->Theta_1;
     const double t25 = Theta_1 + t24;
+    const double m_1 = p->m_1;
     const double t26 = m_1 + m_2;
     const double t27 = t26 * t18;
     const double t28 = t27 - t25;
@@ -1127,29 +1120,29 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     const double t31 = t25 + t30;
     const double t32 = t23 * t31;
     const double t33 = t20 * t32;
-    const double t34 = t6 * t7;
+    const double t34 = t5 * t6;
     const double t35 = t4 * t34;
     const double t36 = t4 * t35;
     const double t37 = t36 * t31;
     const double t38 = t20 * t37;
     const double t39 = L / t19;
-    const double t40 = t7 * t4;
+    const double t40 = t6 * t4;
     const double t41 = t3 * t40;
     const double t42 = t41 * t31;
     const double t43 = t39 * t42;
-    const double t44 = t6 * t6;
+    const double t44 = t5 * t5;
     const double t45 = t4 * t44;
     const double t46 = t4 * t45;
     const double t47 = t46 * t31;
     const double t48 = t20 * t47;
-    const double t49 = t6 * t4;
+    const double t49 = t5 * t4;
     const double t50 = t3 * t49;
     const double t51 = t50 * t31;
     const double t52 = t39 * t51;
     const double t53 = t4 * t4;
     const double t54 = t53 + (-2.0);
     const double t55 = t25 * t54;
-    const double t56 = t5 * t27;
+    const double t56 = t7 * t27;
     const double t57 = t55 + t56;
     const double t58 = t4 * t57;
     const double t59 = t4 * t58;
@@ -1159,6 +1152,7 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
+    const double Theta_2 = p->Theta_2;
     double rest = t33 - t33;
     rest += t38 - t38;
     rest += t43 - t43;
@@ -1189,17 +1183,9 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
 }
 
 rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const double qd[4], const rear_car_params *p, double C_tilde[16]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -1209,14 +1195,15 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1227,46 +1214,53 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t20 = t14 * t19;
     const double t21 = t14 * t20;
     const double t22 = t18 / t21;
-    const double t23 = t7 * t4;
-    const double t24 = x_dot * t7;
-    const double t25 = y_dot * t6;
+    const double t23 = t6 * t4;
+    const double x_dot = qd[0];
+    const double t24 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t25 = y_dot * t5;
     const double t26 = t24 + t25;
     const double t27 = t4 * t26;
     const double t28 = L * t27;
+    const double theta_dot = qd[2];
     const double t29 = theta_dot * t3;
     const double t30 = t28 + t29;
-    const double t31 = t5 * t18;
+    const double t31 = t7 * t18;
     const double t32 = t4 * t4;
     const double t33 = t32 + (-2.0);
     const double t34 = t14 + t33;
     const double t35 = t31 + t34;
-    const double t36 = t7 * t35;
+    const double t36 = t6 * t35;
+    const double m_2 = p->m_2;
     const double t37 = m_2 * t36;
-    const double t38 = t6 * t4;
+    const double t38 = t5 * t4;
     const double t39 = t3 * t38;
+    const double m_1 = p->m_1;
     const double t40 = m_1 + m_2;
     const double t41 = t40 * t18;
     const double t42 = t39 * t41;
     const double t43 = t37 - t42;
     const double t44 = t4 * t43;
     const double t45 = m_2 * t18;
+    const double Theta_1 = p->Theta_1;
     const double t46 = Theta_1 + t45;
     const double t47 = t40 + t46;
-    const double t48 = t6 * t3;
+    const double t48 = t5 * t3;
     const double t49 = t3 * t48;
     const double t50 = t3 * t49;
     const double t51 = t47 * t50;
     const double t52 = t44 - t51;
     const double t53 = t4 * t52;
-    const double t54 = t5 + t15;
+    const double t54 = t7 + t15;
     const double t55 = 1.0 - t54;
-    const double t56 = t7 * t55;
+    const double t56 = t6 * t55;
     const double t57 = m_2 * t56;
     const double t58 = t53 + t57;
     const double t59 = t30 * t58;
     const double t60 = 2.0 * t40;
     const double t61 = t46 - t60;
-    const double t62 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t62 = phi_dot * t6;
     const double t63 = t3 * t62;
     const double t64 = t14 * t63;
     const double t65 = t61 * t64;
@@ -1276,7 +1270,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t69 = 2.0 - t32;
     const double t70 = t4 * t30;
     const double t71 = t69 * t70;
-    const double t72 = t6 * t71;
+    const double t72 = t5 * t71;
     const double t73 = t14 * t62;
     const double t74 = t72 + t73;
     const double t75 = t3 * t74;
@@ -1295,26 +1289,26 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t88 = t40 * t87;
     const double t89 = t88 - t46;
     const double t90 = t3 * t89;
-    const double t91 = t7 * t90;
+    const double t91 = t6 * t90;
     const double t92 = m_2 * t38;
     const double t93 = t91 + t92;
     const double t94 = t4 * t93;
     const double t95 = (-2.0) + t31;
-    const double t96 = t6 * t95;
+    const double t96 = t5 * t95;
     const double t97 = m_2 * t96;
     const double t98 = t94 + t97;
     const double t99 = t4 * t98;
-    const double t100 = t7 * t3;
+    const double t100 = t6 * t3;
     const double t101 = t100 * t47;
     const double t102 = t99 + t101;
     const double t103 = t4 * t102;
-    const double t104 = t5 * t14;
+    const double t104 = t7 * t14;
     const double t105 = 1.0 - t104;
-    const double t106 = t6 * t105;
+    const double t106 = t5 * t105;
     const double t107 = m_2 * t106;
     const double t108 = t103 + t107;
     const double t109 = t30 * t108;
-    const double t110 = phi_dot * t6;
+    const double t110 = phi_dot * t5;
     const double t111 = t3 * t110;
     const double t112 = t14 * t111;
     const double t113 = t61 * t112;
@@ -1358,18 +1352,18 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t151 = t40 * t150;
     const double t152 = t46 + t151;
     const double t153 = t3 * t152;
-    const double t154 = t6 * t153;
+    const double t154 = t5 * t153;
     const double t155 = m_2 * t23;
     const double t156 = t154 + t155;
     const double t157 = t4 * t156;
-    const double t158 = t7 * t95;
+    const double t158 = t6 * t95;
     const double t159 = m_2 * t158;
     const double t160 = t157 + t159;
     const double t161 = t4 * t160;
     const double t162 = t48 * t47;
     const double t163 = t161 - t162;
     const double t164 = t4 * t163;
-    const double t165 = t7 * t105;
+    const double t165 = t6 * t105;
     const double t166 = m_2 * t165;
     const double t167 = t164 + t166;
     const double t168 = t30 * t167;
@@ -1400,7 +1394,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t193 = t40 * t192;
     const double t194 = t46 * t69;
     const double t195 = t193 + t194;
-    const double t196 = t6 * t195;
+    const double t196 = t5 * t195;
     const double t197 = m_2 * t117;
     const double t198 = t196 + t197;
     const double t199 = t4 * t198;
@@ -1408,7 +1402,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t201 = m_2 * t200;
     const double t202 = t199 + t201;
     const double t203 = t4 * t202;
-    const double t204 = t6 * t47;
+    const double t204 = t5 * t47;
     const double t205 = t203 - t204;
     const double t206 = t4 * t205;
     const double t207 = t100 * t105;
@@ -1422,10 +1416,10 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t215 = L * t214;
     const double t216 = t4 * t32;
     const double t217 = t4 * t216;
-    const double t218 = 3.0 * t5;
+    const double t218 = 3.0 * t7;
     const double t219 = t217 + t218;
     const double t220 = t30 * t219;
-    const double t221 = t6 * t220;
+    const double t221 = t5 * t220;
     const double t222 = t4 * t62;
     const double t223 = t14 * t222;
     const double t224 = t221 - t223;
@@ -1435,7 +1429,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t228 = t46 * t227;
     const double t229 = t215 + t228;
     const double t230 = t4 * t229;
-    const double t231 = t6 * t30;
+    const double t231 = t5 * t30;
     const double t232 = t46 * t231;
     const double t233 = t230 - t232;
     const double t234 = t4 * t233;
@@ -1447,7 +1441,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t240 = t32 + t95;
     const double t241 = t40 * t240;
     const double t242 = t239 + t241;
-    const double t243 = t7 * t242;
+    const double t243 = t6 * t242;
     const double t244 = m_2 * t39;
     const double t245 = t243 + t244;
     const double t246 = t4 * t245;
@@ -1455,7 +1449,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t248 = m_2 * t247;
     const double t249 = t246 + t248;
     const double t250 = t4 * t249;
-    const double t251 = t7 * t47;
+    const double t251 = t6 * t47;
     const double t252 = t250 + t251;
     const double t253 = t4 * t252;
     const double t254 = t48 * t105;
@@ -1469,7 +1463,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t262 = L * t261;
     const double t263 = t14 * t110;
     const double t264 = 2.0 * t263;
-    const double t265 = t7 * t220;
+    const double t265 = t6 * t220;
     const double t266 = t4 * t110;
     const double t267 = t14 * t266;
     const double t268 = t265 + t267;
@@ -1478,7 +1472,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t271 = t46 * t270;
     const double t272 = t262 + t271;
     const double t273 = t4 * t272;
-    const double t274 = t7 * t30;
+    const double t274 = t6 * t30;
     const double t275 = t46 * t274;
     const double t276 = t273 + t275;
     const double t277 = t4 * t276;
@@ -1548,14 +1542,9 @@ rear_car_status rear_car_projected_applied_force(const double q[4], const double
 }
 
 rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_params *p, double G_bar[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -1564,29 +1553,33 @@ rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_p
         return REAR_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    rear_car_sincos(theta, &t3, &t4);
+    rear_car_sincos(phi, &t3, &t4);
     double t5, t6;
-    rear_car_sincos(phi, &t5, &t6);
-    const double t7 = L * t6;
-    const double t8 = t4 * t7;
+    rear_car_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = L * t4;
+    const double t8 = t6 * t7;
     const double t9 = fabs(t8);
     const double t10 = fabs(L);
     const double t11 = t10 * 3.552713678800501e-15;
     const double t12 = L * L;
+    const double m_2 = p->m_2;
     const double t13 = m_2 * t12;
+    const double Theta_1 = p->Theta_1;
     const double t14 = Theta_1 + t13;
+    const double m_1 = p->m_1;
     const double t15 = m_1 + m_2;
     const double t16 = t15 * t12;
     const double t17 = t16 - t14;
-    const double t18 = t6 * t17;
-    const double t19 = t6 * t18;
+    const double t18 = t4 * t17;
+    const double t19 = t4 * t18;
     const double t20 = t14 + t19;
     const double t21 = t8 * t8;
     const double t22 = 1.0 / t21;
     const double t23 = t20 * t22;
     if (!(t9 > t11)) {
-        const double t24 = t5 * t5;
-        const double t25 = t3 * t7;
+        const double t24 = t3 * t3;
+        const double t25 = t5 * t7;
         const double t26 = t25 * t25;
         const double t27 = t24 + t26;
         const double t28 = t27 + t21;
@@ -1598,6 +1591,7 @@ rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_p
         }
         return REAR_CAR_CONSTRAINT_RANK;
     }
+    const double Theta_2 = p->Theta_2;
     double rest = t23 - t23;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0)) {
@@ -1611,15 +1605,9 @@ rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_p
 }
 
 rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double qd[4], const rear_car_params *p, double C_bar[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -1629,14 +1617,15 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -1645,11 +1634,14 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
     const double t18 = fabs(t12);
     const double t19 = fabs(L);
     const double t20 = t19 * 3.552713678800501e-15;
-    const double t21 = t6 * t4;
+    const double t21 = t5 * t4;
     const double t22 = t3 * t21;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t23 = m_1 + m_2;
     const double t24 = L * L;
     const double t25 = m_2 * t24;
+    const double Theta_1 = p->Theta_1;
     const double t26 = Theta_1 + t25;
     const double t27 = t23 + t26;
     const double t28 = t22 * t27;
@@ -1666,23 +1658,25 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
     const double t39 = t21 * t38;
     const double t40 = t26 * t39;
     const double t41 = t36 + t40;
+    const double theta_dot = qd[2];
     const double t42 = theta_dot * t41;
-    const double t43 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t43 = phi_dot * t6;
     const double t44 = t3 * t43;
     const double t45 = (-1.0) + t24;
     const double t46 = t44 * t45;
     const double t47 = t26 * t46;
     const double t48 = t42 + t47;
     const double t49 = t4 * t48;
-    const double t50 = theta_dot * t6;
+    const double t50 = theta_dot * t5;
     const double t51 = t26 * t50;
     const double t52 = t49 + t51;
     const double t53 = t4 * t52;
     const double t54 = t26 * t44;
     const double t55 = t53 + t54;
-    const double t56 = t7 * t24;
-    const double t57 = t7 * t56;
-    const double t58 = t7 * t57;
+    const double t56 = t6 * t24;
+    const double t57 = t6 * t56;
+    const double t58 = t6 * t57;
     const double t59 = t4 * t58;
     const double t60 = t4 * t59;
     const double t61 = t4 * t60;
@@ -1728,9 +1722,8 @@ rear_car_status rear_car_minimal_applied_force(const double q[4], const double q
 
 rear_car_status rear_car_minimal_control_matrix(const double q[4], const rear_car_params *p, double M_bar[4]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double L = p->L;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -1742,6 +1735,7 @@ rear_car_status rear_car_minimal_control_matrix(const double q[4], const rear_ca
     rear_car_sincos(theta, &t3, &t4);
     double t5, t6;
     rear_car_sincos(phi, &t5, &t6);
+    const double L = p->L;
     const double t7 = L * t6;
     const double t8 = t4 * t7;
     const double t9 = fabs(t8);
@@ -1775,14 +1769,9 @@ rear_car_status rear_car_minimal_control_matrix(const double q[4], const rear_ca
 }
 
 rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[4], const rear_car_params *p, double qd_admissible[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -1792,31 +1781,35 @@ rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
     const double t18 = L / t14;
-    const double t19 = x_dot * t7;
-    const double t20 = y_dot * t6;
+    const double x_dot = qd[0];
+    const double t19 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t20 = y_dot * t5;
     const double t21 = t19 + t20;
     const double t22 = t4 * t21;
     const double t23 = L * t22;
+    const double theta_dot = qd[2];
     const double t24 = theta_dot * t3;
     const double t25 = t23 + t24;
-    const double t26 = t7 * t4;
+    const double t26 = t6 * t4;
     const double t27 = t25 * t26;
     const double t28 = t18 * t27;
-    const double t29 = t6 * t4;
+    const double t29 = t5 * t4;
     const double t30 = t25 * t29;
     const double t31 = t18 * t30;
     const double t32 = 1.0 / t14;
@@ -1825,6 +1818,7 @@ rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
+    const double phi_dot = qd[3];
     double rest = t28 - t28;
     rest += t31 - t31;
     rest += t34 - t34;
@@ -1840,18 +1834,9 @@ rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[
 }
 
 rear_car_status rear_car_admissible_acceleration(const double q[4], const double qd[4], const double qdd[4], const rear_car_params *p, double qdd_admissible[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double x_ddot = qdd[0];
-    const double y_ddot = qdd[1];
-    const double theta_ddot = qdd[2];
-    const double phi_ddot = qdd[3];
-    const double L = p->L;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -1861,45 +1846,52 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    const double t18 = y_ddot * t7;
+    const double y_ddot = qdd[1];
+    const double t18 = y_ddot * t6;
     const double t19 = t14 * t18;
     const double t20 = t14 * t19;
-    const double t21 = x_dot * t7;
-    const double t22 = y_dot * t6;
+    const double x_dot = qd[0];
+    const double t21 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t22 = y_dot * t5;
     const double t23 = t21 + t22;
     const double t24 = t4 * t23;
     const double t25 = L * t24;
+    const double theta_dot = qd[2];
     const double t26 = theta_dot * t3;
     const double t27 = t25 + t26;
     const double t28 = t8 * t3;
     const double t29 = t27 * t28;
     const double t30 = t27 * t29;
     const double t31 = t20 - t30;
-    const double t32 = t6 * t31;
-    const double t33 = x_ddot * t7;
-    const double t34 = t7 * t33;
+    const double t32 = t5 * t31;
+    const double x_ddot = qdd[0];
+    const double t33 = x_ddot * t6;
+    const double t34 = t6 * t33;
     const double t35 = t14 * t34;
     const double t36 = t14 * t35;
     const double t37 = t32 + t36;
     const double t38 = t4 * t37;
     const double t39 = L * t38;
-    const double t40 = theta_ddot * t7;
+    const double theta_ddot = qdd[2];
+    const double t40 = theta_ddot * t6;
     const double t41 = t14 * t40;
     const double t42 = t14 * t41;
-    const double t43 = t6 * t3;
+    const double t43 = t5 * t3;
     const double t44 = t3 * t43;
     const double t45 = t27 * t44;
     const double t46 = t27 * t45;
@@ -1907,7 +1899,8 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t48 = t3 * t47;
     const double t49 = t39 + t48;
     const double t50 = t4 * t49;
-    const double t51 = phi_dot * t7;
+    const double phi_dot = qd[3];
+    const double t51 = phi_dot * t6;
     const double t52 = t3 * t51;
     const double t53 = t14 * t52;
     const double t54 = t27 * t53;
@@ -1916,11 +1909,11 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t57 = t14 * t56;
     const double t58 = L / t57;
     const double t59 = t55 * t58;
-    const double t60 = y_ddot * t6;
+    const double t60 = y_ddot * t5;
     const double t61 = t33 + t60;
     const double t62 = t56 * t61;
-    const double t63 = t6 * t62;
-    const double t64 = t7 * t4;
+    const double t63 = t5 * t62;
+    const double t64 = t6 * t4;
     const double t65 = t3 * t64;
     const double t66 = t27 * t65;
     const double t67 = t27 * t66;
@@ -1928,10 +1921,10 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t69 = t63 + t68;
     const double t70 = t4 * t69;
     const double t71 = L * t70;
-    const double t72 = theta_ddot * t6;
+    const double t72 = theta_ddot * t5;
     const double t73 = t14 * t72;
     const double t74 = t14 * t73;
-    const double t75 = t7 * t3;
+    const double t75 = t6 * t3;
     const double t76 = t3 * t75;
     const double t77 = t27 * t76;
     const double t78 = t27 * t77;
@@ -1939,7 +1932,7 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t80 = t3 * t79;
     const double t81 = t71 + t80;
     const double t82 = t4 * t81;
-    const double t83 = phi_dot * t6;
+    const double t83 = phi_dot * t5;
     const double t84 = t3 * t83;
     const double t85 = t14 * t84;
     const double t86 = t27 * t85;
@@ -1961,6 +1954,7 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
+    const double phi_ddot = qdd[3];
     double rest = t59 - t59;
     rest += t88 - t88;
     rest += t101 - t101;
@@ -1996,19 +1990,9 @@ rear_car_status rear_car_projected_configuration(const double q[4], const rear_c
 }
 
 rear_car_status rear_car_inverse_dynamics(const double q[4], const double qd[4], const double qdd[4], const rear_car_params *p, double u[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double theta_dot = qd[2];
-    const double x_ddot = qdd[0];
-    const double y_ddot = qdd[1];
-    const double theta_ddot = qdd[2];
-    const double phi_ddot = qdd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -2018,25 +2002,31 @@ rear_car_status rear_car_inverse_dynamics(const double q[4], const double qd[4],
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = L * t4;
-    const double t6 = fabs(t5);
-    const double t7 = fabs(L);
-    const double t8 = t7 * 3.552713678800501e-15;
-    const double t9 = 1.0 / t5;
-    double t10, t11;
-    rear_car_sincos(theta, &t10, &t11);
-    const double t12 = y_ddot * t11;
-    const double t13 = x_ddot * t10;
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = L * t4;
+    const double t8 = fabs(t7);
+    const double t9 = fabs(L);
+    const double t10 = t9 * 3.552713678800501e-15;
+    const double t11 = 1.0 / t7;
+    const double y_ddot = qdd[1];
+    const double t12 = y_ddot * t6;
+    const double x_ddot = qdd[0];
+    const double t13 = x_ddot * t5;
     const double t14 = t12 - t13;
     const double t15 = t3 * t14;
+    const double theta_dot = qd[2];
     const double t16 = theta_dot * theta_dot;
     const double t17 = t4 * t16;
     const double t18 = L * t17;
     const double t19 = t15 - t18;
+    const double m_2 = p->m_2;
     const double t20 = m_2 * t19;
+    const double m_1 = p->m_1;
     const double t21 = m_1 + m_2;
-    const double t22 = x_ddot * t11;
-    const double t23 = y_ddot * t10;
+    const double t22 = x_ddot * t6;
+    const double t23 = y_ddot * t5;
     const double t24 = t22 + t23;
     const double t25 = t4 * t24;
     const double t26 = t21 * t25;
@@ -2044,21 +2034,25 @@ rear_car_status rear_car_inverse_dynamics(const double q[4], const double qd[4],
     const double t28 = L * t27;
     const double t29 = L * L;
     const double t30 = m_2 * t29;
+    const double Theta_1 = p->Theta_1;
     const double t31 = Theta_1 + t30;
+    const double theta_ddot = qdd[2];
     const double t32 = theta_ddot * t3;
     const double t33 = t31 * t32;
     const double t34 = t28 + t33;
-    const double t35 = t9 * t34;
+    const double t35 = t11 * t34;
+    const double phi_ddot = qdd[3];
+    const double Theta_2 = p->Theta_2;
     const double t36 = phi_ddot * Theta_2;
-    if (!(t6 > t8)) {
+    if (!(t8 > t10)) {
         const double t37 = t3 * t3;
-        const double t38 = t10 * t5;
+        const double t38 = t5 * t7;
         const double t39 = t38 * t38;
         const double t40 = t37 + t39;
-        const double t41 = t11 * t5;
+        const double t41 = t6 * t7;
         const double t42 = t41 * t41;
         const double t43 = t40 + t42;
-        const double t44 = t5 * t5;
+        const double t44 = t7 * t7;
         const double t45 = 1.0 + t44;
         const double t46 = t45 * 1.262177448353619e-29;
         if (!(t43 > t46)) {
@@ -2091,18 +2085,18 @@ rear_car_status rear_car_inverse_dynamics_residual(const double q[4], const doub
 rear_car_status rear_car_actuator_velocity(const double q[4], const double qd[4], const rear_car_params *p, double nu[2]) {
     (void)p;
     const double theta = q[2];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double phi_dot = qd[3];
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2, t3;
     rear_car_sincos(theta, &t2, &t3);
+    const double x_dot = qd[0];
     const double t4 = x_dot * t3;
+    const double y_dot = qd[1];
     const double t5 = y_dot * t2;
     const double t6 = t4 + t5;
+    const double phi_dot = qd[3];
     double rest = t6 - t6;
     rest += phi_dot - phi_dot;
     if (!(rest >= 0.0)) {
@@ -2114,31 +2108,30 @@ rear_car_status rear_car_actuator_velocity(const double q[4], const double qd[4]
 }
 
 rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_params *p, double G_nu[4]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2, t3;
     rear_car_sincos(phi, &t2, &t3);
+    const double L = p->L;
     const double t4 = L * t3;
     const double t5 = fabs(t4);
     const double t6 = fabs(L);
     const double t7 = t6 * 3.552713678800501e-15;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t8 = m_1 + m_2;
     const double t9 = t2 / t4;
     const double t10 = L * L;
     const double t11 = m_2 * t10;
+    const double Theta_1 = p->Theta_1;
     const double t12 = Theta_1 + t11;
     const double t13 = t12 * t9;
     const double t14 = t9 * t13;
     const double t15 = t8 + t14;
+    const double theta = q[2];
     if (!(t5 > t7)) {
         const double t16 = t2 * t2;
         double t17, t18;
@@ -2157,6 +2150,7 @@ rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_
         }
         return REAR_CAR_ACTUATION_RANK;
     }
+    const double Theta_2 = p->Theta_2;
     double rest = t15 - t15;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0)) {
@@ -2170,15 +2164,9 @@ rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_
 }
 
 rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], const rear_car_params *p, double bias_nu[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -2188,14 +2176,15 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -2205,13 +2194,18 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
     const double t19 = fabs(L);
     const double t20 = t19 * 3.552713678800501e-15;
     const double t21 = L * L;
+    const double m_2 = p->m_2;
     const double t22 = m_2 * t21;
+    const double Theta_1 = p->Theta_1;
     const double t23 = Theta_1 + t22;
     const double t24 = t4 * t15;
     const double t25 = t23 / t24;
-    const double t26 = x_dot * t7;
-    const double t27 = y_dot * t6;
+    const double x_dot = qd[0];
+    const double t26 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t27 = y_dot * t5;
     const double t28 = t26 + t27;
+    const double phi_dot = qd[3];
     const double t29 = phi_dot * t3;
     const double t30 = t28 * t29;
     const double t31 = t25 * t30;
@@ -2235,19 +2229,8 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
 
 rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4], const double u[2], const rear_car_params *p, double qdd[4]) {
     const double theta = q[2];
-    const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double K_r = u[0];
-    const double T = u[1];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
+    const double phi = q[3];
     const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -2256,39 +2239,44 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
         return REAR_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
-    const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    rear_car_sincos(theta, &t3, &t4);
+    double t5, t6;
+    rear_car_sincos(phi, &t5, &t6);
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t8 = L * t6;
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
-    const double t22 = t3 * t21;
+    const double t21 = t4 * t20;
+    const double t22 = t5 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
-    const double t26 = t3 * t25;
+    const double t25 = t3 * t20;
+    const double t26 = t5 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
     const double t29 = t12 * t28;
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
-    const double t34 = t3 * t33;
-    const double t35 = t3 * t34;
+    const double t34 = t5 * t33;
+    const double t35 = t5 * t34;
     const double t36 = t30 + t35;
+    const double Theta_2 = p->Theta_2;
     const double t37 = Theta_2 * t36;
     const double t38 = fabs(t37);
     const double t39 = fabs(Theta_1);
@@ -2299,7 +2287,7 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t44 = t39 + t43;
     const double t45 = fabs(Theta_2);
     const double t46 = t44 * t45;
-    const double t47 = t5 * t46;
+    const double t47 = t7 * t46;
     const double t48 = fabs(m_1);
     const double t49 = t48 + t40;
     const double t50 = t49 * t45;
@@ -2311,35 +2299,40 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t56 = 1.0 / t37;
     const double t57 = Theta_2 * t12;
     const double t58 = t12 * t57;
+    const double theta_dot = qd[2];
     const double t59 = theta_dot * t20;
-    const double t60 = theta_dot * t7;
+    const double t60 = theta_dot * t4;
     const double t61 = t59 * t60;
-    const double t62 = K_r * t7;
+    const double K_r = u[0];
+    const double t62 = K_r * t4;
     const double t63 = t61 + t62;
-    const double t64 = theta_dot * t6;
+    const double t64 = theta_dot * t3;
+    const double y_dot = qd[1];
     const double t65 = y_dot * t64;
+    const double x_dot = qd[0];
     const double t66 = x_dot * t60;
     const double t67 = t65 + t66;
     const double t68 = 1.0 / t14;
     const double t69 = t8 * t9;
-    const double t70 = t7 * t4;
-    const double t71 = t6 * t3;
+    const double t70 = t4 * t6;
+    const double t71 = t3 * t5;
     const double t72 = t70 - t71;
-    const double t73 = t72 * t3;
+    const double t73 = t5 * t72;
     const double t74 = t69 - t73;
     const double t75 = t68 * t74;
     const double t76 = t67 * t75;
-    const double t77 = t7 * t3;
+    const double t77 = t4 * t5;
     const double t78 = t68 * t77;
-    const double t79 = phi_dot * t3;
+    const double phi_dot = qd[3];
+    const double t79 = phi_dot * t5;
     const double t80 = L * t79;
     const double t81 = theta_dot * t80;
     const double t82 = theta_dot + phi_dot;
-    const double t83 = t72 * t82;
+    const double t83 = t82 * t72;
     const double t84 = x_dot * t83;
-    const double t85 = t6 * t4;
+    const double t85 = t3 * t6;
     const double t86 = t85 + t77;
-    const double t87 = t86 * t82;
+    const double t87 = t82 * t86;
     const double t88 = y_dot * t87;
     const double t89 = t84 + t88;
     const double t90 = t81 + t89;
@@ -2348,7 +2341,7 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t93 = t18 * t92;
     const double t94 = t8 * t68;
     const double t95 = t94 * t90;
-    const double t96 = t4 * t8;
+    const double t96 = t6 * t8;
     const double t97 = t68 * t96;
     const double t98 = t67 * t97;
     const double t99 = t95 - t98;
@@ -2358,10 +2351,10 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t103 = t58 * t102;
     const double t104 = t9 * t57;
     const double t105 = t59 * t64;
-    const double t106 = K_r * t6;
+    const double t106 = K_r * t3;
     const double t107 = t105 + t106;
-    const double t108 = t86 * t3;
-    const double t109 = t8 * t12;
+    const double t108 = t8 * t12;
+    const double t109 = t5 * t86;
     const double t110 = t108 + t109;
     const double t111 = t68 * t110;
     const double t112 = t67 * t111;
@@ -2374,7 +2367,7 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t119 = t107 - t118;
     const double t120 = t104 * t119;
     const double t121 = t103 + t120;
-    const double t122 = t3 * t57;
+    const double t122 = t5 * t57;
     const double t123 = t20 * t67;
     const double t124 = t33 * t99;
     const double t125 = t123 + t124;
@@ -2387,7 +2380,7 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t132 = t9 * t131;
     const double t133 = t132 * t119;
     const double t134 = t130 + t133;
-    const double t135 = t3 * t131;
+    const double t135 = t5 * t131;
     const double t136 = t135 * t125;
     const double t137 = t134 - t136;
     const double t138 = t56 * t137;
@@ -2395,12 +2388,13 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t140 = t122 * t102;
     const double t141 = t135 * t119;
     const double t142 = t140 + t141;
-    const double t143 = Theta_2 * t3;
-    const double t144 = t3 * t143;
+    const double t143 = Theta_2 * t5;
+    const double t144 = t5 * t143;
     const double t145 = t144 * t125;
     const double t146 = t142 - t145;
     const double t147 = t56 * t146;
     const double t148 = t99 + t147;
+    const double T = u[1];
     const double t149 = T * t36;
     const double t150 = t56 * t149;
     if (!(t14 > t17)) {
@@ -2424,19 +2418,9 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
 }
 
 rear_car_status rear_car_multipliers(const double q[4], const double qd[4], const double u[2], const rear_car_params *p, double lambda_B[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double K_r = u[0];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(phi);
+    const double theta = q[2];
     const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
@@ -2446,27 +2430,30 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     }
     double t3, t4;
     rear_car_sincos(phi, &t3, &t4);
-    const double t5 = t3 * t3;
-    double t6, t7;
-    rear_car_sincos(theta, &t6, &t7);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double t7 = t3 * t3;
+    const double L = p->L;
     const double t8 = L * t4;
-    const double t9 = t6 * t8;
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t5 + t10;
-    const double t12 = t7 * t8;
+    const double t11 = t7 + t10;
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
     const double t18 = m_1 + m_2;
     const double t19 = t9 * t18;
     const double t20 = L * m_2;
-    const double t21 = t7 * t20;
+    const double t21 = t6 * t20;
     const double t22 = t3 * t21;
     const double t23 = t19 + t22;
     const double t24 = t9 * t23;
-    const double t25 = t6 * t20;
+    const double t25 = t5 * t20;
     const double t26 = t3 * t25;
     const double t27 = t12 * t18;
     const double t28 = t26 - t27;
@@ -2474,10 +2461,12 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t30 = t24 - t29;
     const double t31 = L * L;
     const double t32 = m_2 * t31;
+    const double Theta_1 = p->Theta_1;
     const double t33 = Theta_1 + t32;
     const double t34 = t3 * t33;
     const double t35 = t3 * t34;
     const double t36 = t30 + t35;
+    const double Theta_2 = p->Theta_2;
     const double t37 = Theta_2 * t36;
     const double t38 = fabs(t37);
     const double t39 = fabs(Theta_1);
@@ -2488,7 +2477,7 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t44 = t39 + t43;
     const double t45 = fabs(Theta_2);
     const double t46 = t44 * t45;
-    const double t47 = t5 * t46;
+    const double t47 = t7 * t46;
     const double t48 = fabs(m_1);
     const double t49 = t48 + t40;
     const double t50 = t49 * t45;
@@ -2499,10 +2488,10 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t55 = t54 * 3.552713678800501e-15;
     const double t56 = 1.0 / t14;
     const double t57 = t8 * t9;
-    const double t58 = t7 * t4;
-    const double t59 = t6 * t3;
+    const double t58 = t6 * t4;
+    const double t59 = t5 * t3;
     const double t60 = t58 - t59;
-    const double t61 = t60 * t3;
+    const double t61 = t3 * t60;
     const double t62 = t57 - t61;
     const double t63 = t56 * t62;
     const double t64 = Theta_2 * t12;
@@ -2515,12 +2504,12 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t71 = t69 * t70;
     const double t72 = 1.0 - t71;
     const double t73 = t63 * t72;
-    const double t74 = t6 * t4;
-    const double t75 = t7 * t3;
-    const double t76 = t74 + t75;
-    const double t77 = t76 * t3;
-    const double t78 = t8 * t12;
-    const double t79 = t77 + t78;
+    const double t74 = t8 * t12;
+    const double t75 = t5 * t4;
+    const double t76 = t6 * t3;
+    const double t77 = t75 + t76;
+    const double t78 = t3 * t77;
+    const double t79 = t74 + t78;
     const double t80 = t56 * t79;
     const double t81 = t9 * t64;
     const double t82 = t18 * t81;
@@ -2535,22 +2524,26 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t91 = t70 * t90;
     const double t92 = t89 * t91;
     const double t93 = t87 - t92;
+    const double theta_dot = qd[2];
     const double t94 = theta_dot * t20;
-    const double t95 = theta_dot * t7;
+    const double t95 = theta_dot * t6;
     const double t96 = t94 * t95;
-    const double t97 = theta_dot * t6;
+    const double t97 = theta_dot * t5;
+    const double y_dot = qd[1];
     const double t98 = y_dot * t97;
+    const double x_dot = qd[0];
     const double t99 = x_dot * t95;
     const double t100 = t98 + t99;
     const double t101 = t100 * t63;
-    const double t102 = t56 * t75;
+    const double t102 = t56 * t76;
+    const double phi_dot = qd[3];
     const double t103 = phi_dot * t3;
     const double t104 = L * t103;
     const double t105 = theta_dot * t104;
     const double t106 = theta_dot + phi_dot;
-    const double t107 = t60 * t106;
+    const double t107 = t106 * t60;
     const double t108 = x_dot * t107;
-    const double t109 = t76 * t106;
+    const double t109 = t106 * t77;
     const double t110 = y_dot * t109;
     const double t111 = t108 + t110;
     const double t112 = t105 + t111;
@@ -2567,21 +2560,21 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t123 = t93 * t122;
     const double t124 = Theta_2 * t9;
     const double t125 = t3 * t124;
-    const double t126 = t25 * t125;
-    const double t127 = t82 - t126;
-    const double t128 = t70 * t127;
-    const double t129 = t63 * t128;
-    const double t130 = t9 * t124;
-    const double t131 = t18 * t130;
-    const double t132 = t68 + t131;
-    const double t133 = t132 * t70;
-    const double t134 = 1.0 - t133;
-    const double t135 = t80 * t134;
-    const double t136 = t129 + t135;
-    const double t137 = t33 * t125;
-    const double t138 = t70 * t137;
-    const double t139 = t89 * t138;
-    const double t140 = t136 + t139;
+    const double t126 = t33 * t125;
+    const double t127 = t70 * t126;
+    const double t128 = t89 * t127;
+    const double t129 = t25 * t125;
+    const double t130 = t82 - t129;
+    const double t131 = t70 * t130;
+    const double t132 = t63 * t131;
+    const double t133 = t9 * t124;
+    const double t134 = t18 * t133;
+    const double t135 = t68 + t134;
+    const double t136 = t135 * t70;
+    const double t137 = 1.0 - t136;
+    const double t138 = t80 * t137;
+    const double t139 = t132 + t138;
+    const double t140 = t128 + t139;
     const double t141 = t94 * t97;
     const double t142 = t56 * t59;
     const double t143 = t142 * t112;
@@ -2594,32 +2587,33 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t150 = t141 + t149;
     const double t151 = t140 * t150;
     const double t152 = t123 - t151;
-    const double t153 = t18 * t125;
-    const double t154 = Theta_2 * t3;
-    const double t155 = t3 * t154;
-    const double t156 = t21 * t155;
-    const double t157 = t153 + t156;
-    const double t158 = t70 * t157;
-    const double t159 = t80 * t158;
-    const double t160 = t18 * t67;
-    const double t161 = t25 * t155;
-    const double t162 = t160 - t161;
-    const double t163 = t70 * t162;
-    const double t164 = t63 * t163;
-    const double t165 = t159 - t164;
-    const double t166 = t33 * t155;
-    const double t167 = t166 * t70;
-    const double t168 = 1.0 - t167;
-    const double t169 = t89 * t168;
-    const double t170 = t165 + t169;
+    const double t153 = Theta_2 * t3;
+    const double t154 = t3 * t153;
+    const double t155 = t33 * t154;
+    const double t156 = t155 * t70;
+    const double t157 = 1.0 - t156;
+    const double t158 = t89 * t157;
+    const double t159 = t18 * t125;
+    const double t160 = t21 * t154;
+    const double t161 = t159 + t160;
+    const double t162 = t70 * t161;
+    const double t163 = t80 * t162;
+    const double t164 = t18 * t67;
+    const double t165 = t25 * t154;
+    const double t166 = t164 - t165;
+    const double t167 = t70 * t166;
+    const double t168 = t63 * t167;
+    const double t169 = t163 - t168;
+    const double t170 = t158 + t169;
     const double t171 = t20 * t100;
     const double t172 = t33 * t119;
     const double t173 = t171 + t172;
     const double t174 = t170 * t173;
     const double t175 = t152 - t174;
-    const double t176 = t7 * t93;
-    const double t177 = t6 * t140;
+    const double t176 = t6 * t93;
+    const double t177 = t5 * t140;
     const double t178 = t176 - t177;
+    const double K_r = u[0];
     const double t179 = K_r * t178;
     const double t180 = t175 + t179;
     const double t181 = t102 * t72;
@@ -2627,26 +2621,26 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t183 = t181 - t182;
     const double t184 = t116 * t91;
     const double t185 = t183 + t184;
-    const double t186 = t185 * t122;
-    const double t187 = t142 * t134;
-    const double t188 = t102 * t128;
+    const double t186 = t6 * t185;
+    const double t187 = t142 * t137;
+    const double t188 = t102 * t131;
     const double t189 = t187 - t188;
-    const double t190 = t116 * t138;
+    const double t190 = t116 * t127;
     const double t191 = t189 + t190;
-    const double t192 = t191 * t150;
+    const double t192 = t5 * t191;
     const double t193 = t186 + t192;
-    const double t194 = t102 * t163;
-    const double t195 = t142 * t158;
-    const double t196 = t194 + t195;
-    const double t197 = t116 * t168;
-    const double t198 = t196 + t197;
-    const double t199 = t198 * t173;
-    const double t200 = t193 + t199;
-    const double t201 = t7 * t185;
-    const double t202 = t6 * t191;
-    const double t203 = t201 + t202;
-    const double t204 = K_r * t203;
-    const double t205 = t200 + t204;
+    const double t194 = K_r * t193;
+    const double t195 = t185 * t122;
+    const double t196 = t191 * t150;
+    const double t197 = t195 + t196;
+    const double t198 = t102 * t167;
+    const double t199 = t142 * t162;
+    const double t200 = t198 + t199;
+    const double t201 = t116 * t157;
+    const double t202 = t200 + t201;
+    const double t203 = t202 * t173;
+    const double t204 = t197 + t203;
+    const double t205 = t194 + t204;
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -2665,40 +2659,40 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
 
 rear_car_status rear_car_energy(const double q[4], const double qd[4], const rear_car_params *p, double T_U[2]) {
     const double theta = q[2];
-    const double x_dot = qd[0];
-    const double y_dot = qd[1];
-    const double theta_dot = qd[2];
-    const double phi_dot = qd[3];
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
     const double t1 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    const double t2 = L * L;
-    const double t3 = m_2 * t2;
-    const double t4 = Theta_1 + t3;
-    const double t5 = theta_dot * t4;
-    const double t6 = 0.5 * t5;
-    const double t7 = L * m_2;
-    double t8, t9;
-    rear_car_sincos(theta, &t8, &t9);
-    const double t10 = y_dot * t9;
-    const double t11 = x_dot * t8;
+    double t2, t3;
+    rear_car_sincos(theta, &t2, &t3);
+    const double L = p->L;
+    const double t4 = L * L;
+    const double m_2 = p->m_2;
+    const double t5 = m_2 * t4;
+    const double Theta_1 = p->Theta_1;
+    const double t6 = Theta_1 + t5;
+    const double theta_dot = qd[2];
+    const double t7 = theta_dot * t6;
+    const double t8 = 0.5 * t7;
+    const double t9 = L * m_2;
+    const double y_dot = qd[1];
+    const double t10 = y_dot * t3;
+    const double x_dot = qd[0];
+    const double t11 = x_dot * t2;
     const double t12 = t10 - t11;
-    const double t13 = t7 * t12;
-    const double t14 = t6 + t13;
+    const double t13 = t9 * t12;
+    const double t14 = t8 + t13;
     const double t15 = theta_dot * t14;
+    const double m_1 = p->m_1;
     const double t16 = m_1 + m_2;
     const double t17 = x_dot * x_dot;
     const double t18 = y_dot * y_dot;
     const double t19 = t17 + t18;
     const double t20 = t16 * t19;
     const double t21 = 0.5 * t20;
+    const double phi_dot = qd[3];
     const double t22 = phi_dot * phi_dot;
+    const double Theta_2 = p->Theta_2;
     const double t23 = Theta_2 * t22;
     const double t24 = 0.5 * t23;
     const double t25 = t21 + t24;
@@ -2713,11 +2707,10 @@ rear_car_status rear_car_energy(const double q[4], const double qd[4], const rea
 }
 
 rear_car_status rear_car_singularity(const double q[4], const rear_car_params *p, double measure[2]) {
-    const double theta = q[2];
     const double phi = q[3];
-    const double L = p->L;
-    const double t1 = fabs(theta);
-    const double t2 = fabs(phi);
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
@@ -2725,49 +2718,52 @@ rear_car_status rear_car_singularity(const double q[4], const rear_car_params *p
         return REAR_CAR_ANGLE_RANGE;
     }
     double t3, t4;
-    rear_car_sincos(theta, &t3, &t4);
-    const double t5 = 1.0 != 0.0 ? t3 / 1.0 : 0.0;
-    double t6, t7;
-    rear_car_sincos(phi, &t6, &t7);
-    const double t8 = t4 * t7;
-    const double t9 = t3 * t6;
-    const double t10 = t8 - t9;
-    const double t11 = -t10;
-    const double t12 = L * t7;
+    rear_car_sincos(phi, &t3, &t4);
+    double t5, t6;
+    rear_car_sincos(theta, &t5, &t6);
+    const double L = p->L;
+    const double t7 = L * t4;
+    const double t8 = -t7;
+    const double t9 = t7 * t7;
+    const double t10 = 1.0 + t9;
+    const double t11 = sqrt(t10);
+    const double t12 = t11 != 0.0 ? t8 / t11 : 0.0;
     const double t13 = t12 * t12;
-    const double t14 = 1.0 + t13;
-    const double t15 = sqrt(t14);
-    const double t16 = t15 != 0.0 ? t11 / t15 : 0.0;
-    const double t17 = t5 * t16;
-    const double t18 = -t4;
-    const double t19 = 1.0 != 0.0 ? t18 / 1.0 : 0.0;
-    const double t20 = t3 * t7;
-    const double t21 = t4 * t6;
-    const double t22 = t20 + t21;
-    const double t23 = t15 != 0.0 ? t22 / t15 : 0.0;
-    const double t24 = t19 * t23;
-    const double t25 = t17 - t24;
-    const double t26 = t25 * t25;
-    const double t27 = -t12;
-    const double t28 = t15 != 0.0 ? t27 / t15 : 0.0;
-    const double t29 = t5 * t28;
-    const double t30 = t29 * t29;
-    const double t31 = t26 + t30;
-    const double t32 = t19 * t28;
-    const double t33 = t32 * t32;
-    const double t34 = t31 + t33;
-    const double t35 = t4 * t32;
-    const double t36 = t3 * t29;
-    const double t37 = t35 - t36;
-    const double t38 = t37 * t37;
-    const double t39 = t34 != 0.0 ? t38 / t34 : 0.0;
-    const double t40 = 1.0 != 0.0 ? t39 / 1.0 : 0.0;
-    double rest = t34 - t34;
-    rest += t40 - t40;
+    const double t14 = t5 * t4;
+    const double t15 = t6 * t3;
+    const double t16 = t14 + t15;
+    const double t17 = t11 != 0.0 ? t16 / t11 : 0.0;
+    const double t18 = t6 * t6;
+    const double t19 = t18 * t17;
+    const double t20 = t17 * t19;
+    const double t21 = t13 + t20;
+    const double t22 = t6 * t4;
+    const double t23 = t5 * t3;
+    const double t24 = t22 - t23;
+    const double t25 = -t24;
+    const double t26 = t11 != 0.0 ? t25 / t11 : 0.0;
+    const double t27 = t5 * t26;
+    const double t28 = t6 * t17;
+    const double t29 = 2.0 * t28;
+    const double t30 = t27 + t29;
+    const double t31 = t26 * t30;
+    const double t32 = t5 * t31;
+    const double t33 = t21 + t32;
+    const double t34 = t6 * t12;
+    const double t35 = t34 * t34;
+    const double t36 = t5 * t12;
+    const double t37 = t36 * t36;
+    const double t38 = t27 + t28;
+    const double t39 = t38 * t38;
+    const double t40 = t37 + t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 != 0.0 ? t13 / t41 : 0.0;
+    double rest = t33 - t33;
+    rest += t42 - t42;
     if (!(rest >= 0.0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    measure[0] = t34;
-    measure[1] = t40;
+    measure[0] = t33;
+    measure[1] = t42;
     return REAR_CAR_OK;
 }

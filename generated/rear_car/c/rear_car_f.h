@@ -50,7 +50,7 @@
  * forward_dynamics                     40     96      2      0      2      0
  * multipliers                          59    132      2      0      2      0
  * energy                                7     16      0      0      1      0
- * singularity                           7     16      7      1      2      0
+ * singularity                           9     20      4      1      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -51,19 +51,13 @@ static void skate_sincos(const double x, double *sine, double *cosine) {
     const double ci = zc - 0.5;
     const double cz = z * ci;
     const double cos_r = 1.0 + cz;
-    const double quarter = k * 0.25;
-    const double pushed = quarter + 6755399441055744.0;
-    const double whole = pushed - 6755399441055744.0;
-    const double four = whole * 4.0;
+    const double pushed = k + 2.7021597764222976e+16;
+    const double four = pushed - 2.7021597764222976e+16;
     const double m = k - four;
-    const double m2 = m * m;
-    const double fade = 4.0 - m2;
-    const double odd = m * fade;
-    const double turn = odd * 0.3333333333333333;
-    const double bend = 7.0 - m2;
-    const double even = m2 * bend;
-    const double sixth = even * 0.16666666666666666;
-    const double keep = 1.0 - sixth;
+    const double size = fabs(m);
+    const double keep = 1.0 - size;
+    const double fade = 2.0 - size;
+    const double turn = m * fade;
     const double ss = keep * sin_r;
     const double sc = turn * cos_r;
     const double sine_ = ss + sc;
@@ -83,8 +77,8 @@ skate_params skate_default_params(void) {
 
 skate_status skate_mass_matrix(const double q[3], const skate_params *p, double G[9]) {
     (void)q;
-    const double m_s = p->m_s;
     const double Theta_s = p->Theta_s;
+    const double m_s = p->m_s;
     double rest = Theta_s - Theta_s;
     rest += m_s - m_s;
     if (!(rest >= 0.0)) {
@@ -171,13 +165,13 @@ skate_status skate_constraint_jacobian(const double q[3], const skate_params *p,
 skate_status skate_constraint_jacobian_dot(const double q[3], const double qd[3], const skate_params *p, double B_dot[3]) {
     (void)p;
     const double phi = q[0];
-    const double phi_dot = qd[0];
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     double t2, t3;
     skate_sincos(phi, &t2, &t3);
+    const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
     const double t5 = phi_dot * t2;
     double rest = t4 - t4;
@@ -245,13 +239,13 @@ skate_status skate_nullspace_projector(const double q[3], const skate_params *p,
 skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3], const skate_params *p, double N_B_dot[9]) {
     (void)p;
     const double phi = q[0];
-    const double phi_dot = qd[0];
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     double t2, t3;
     skate_sincos(phi, &t2, &t3);
+    const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
     const double t5 = t2 * t4;
     const double t6 = 2.0 * t5;
@@ -280,55 +274,55 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
 
 skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params *p, double B_G_pinv[3]) {
     const double phi = q[0];
-    const double m_s = p->m_s;
-    const double Theta_s = p->Theta_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const double t2 = m_s * Theta_s;
-    const double t3 = fabs(t2);
-    const double t4 = fabs(Theta_s);
-    const double t5 = fabs(m_s);
-    const double t6 = t4 * t5;
-    const double t7 = t6 * 2.6645352591003757e-15;
-    double t8, t9;
-    skate_sincos(phi, &t8, &t9);
-    const double t10 = -t9;
-    if (!(t3 > t7)) {
+    double t2, t3;
+    skate_sincos(phi, &t2, &t3);
+    const double m_s = p->m_s;
+    const double Theta_s = p->Theta_s;
+    const double t4 = m_s * Theta_s;
+    const double t5 = fabs(t4);
+    const double t6 = fabs(Theta_s);
+    const double t7 = fabs(m_s);
+    const double t8 = t6 * t7;
+    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t10 = -t3;
+    if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
-    double rest = t8 - t8;
+    double rest = t2 - t2;
     rest += t10 - t10;
     if (!(rest >= 0.0)) {
         return SKATE_NOT_FINITE;
     }
     B_G_pinv[0] = 0.0;
-    B_G_pinv[1] = t8;
+    B_G_pinv[1] = t2;
     B_G_pinv[2] = t10;
     return SKATE_OK;
 }
 
 skate_status skate_weighted_nullspace_projector(const double q[3], const skate_params *p, double N_BG[9]) {
     const double phi = q[0];
-    const double m_s = p->m_s;
-    const double Theta_s = p->Theta_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const double t2 = m_s * Theta_s;
-    const double t3 = fabs(t2);
-    const double t4 = fabs(Theta_s);
-    const double t5 = fabs(m_s);
-    const double t6 = t4 * t5;
-    const double t7 = t6 * 2.6645352591003757e-15;
-    double t8, t9;
-    skate_sincos(phi, &t8, &t9);
-    const double t10 = t9 * t9;
-    const double t11 = t8 * t9;
-    const double t12 = t8 * t8;
-    if (!(t3 > t7)) {
+    double t2, t3;
+    skate_sincos(phi, &t2, &t3);
+    const double m_s = p->m_s;
+    const double Theta_s = p->Theta_s;
+    const double t4 = m_s * Theta_s;
+    const double t5 = fabs(t4);
+    const double t6 = fabs(Theta_s);
+    const double t7 = fabs(m_s);
+    const double t8 = t6 * t7;
+    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t10 = t3 * t3;
+    const double t11 = t2 * t3;
+    const double t12 = t2 * t2;
+    if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
     double rest = t10 - t10;
@@ -430,7 +424,7 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     const double t4 = fabs(t3);
     const double t5 = t2 / t3;
     if (!(t4 > 2.6645352591003757e-15)) {
-        if (!(1.0 > 7.099748146989106e-30)) {
+        if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
@@ -450,20 +444,20 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
 
 skate_status skate_projected_mass_matrix(const double q[3], const skate_params *p, double G_tilde[9]) {
     const double phi = q[0];
-    const double m_s = p->m_s;
-    const double Theta_s = p->Theta_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     double t2, t3;
     skate_sincos(phi, &t2, &t3);
+    const double m_s = p->m_s;
     const double t4 = m_s * t3;
     const double t5 = t3 * t4;
     const double t6 = t2 * t3;
     const double t7 = m_s * t6;
     const double t8 = m_s * t2;
     const double t9 = t2 * t8;
+    const double Theta_s = p->Theta_s;
     double rest = Theta_s - Theta_s;
     rest += t5 - t5;
     rest += t7 - t7;
@@ -485,16 +479,16 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
 
 skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[3], const skate_params *p, double C_tilde[9]) {
     const double phi = q[0];
-    const double phi_dot = qd[0];
-    const double m_s = p->m_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     double t2, t3;
     skate_sincos(phi, &t2, &t3);
+    const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
     const double t5 = t2 * t4;
+    const double m_s = p->m_s;
     const double t6 = m_s * t5;
     const double t7 = -t6;
     const double t8 = t3 * t4;
@@ -543,8 +537,6 @@ skate_status skate_projected_applied_force(const double q[3], const double qd[3]
 
 skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p, double G_bar[4]) {
     const double phi = q[0];
-    const double m_s = p->m_s;
-    const double Theta_s = p->Theta_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
@@ -553,13 +545,15 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
     skate_sincos(phi, &t2, &t3);
     const double t4 = fabs(t3);
     const double t5 = t3 * t3;
+    const double m_s = p->m_s;
     const double t6 = m_s / t5;
     if (!(t4 > 2.6645352591003757e-15)) {
-        if (!(1.0 > 7.099748146989106e-30)) {
+        if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
+    const double Theta_s = p->Theta_s;
     double rest = Theta_s - Theta_s;
     rest += t6 - t6;
     if (!(rest >= 0.0)) {
@@ -574,8 +568,6 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
 
 skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3], const skate_params *p, double C_bar[4]) {
     const double phi = q[0];
-    const double phi_dot = qd[0];
-    const double m_s = p->m_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
@@ -583,13 +575,15 @@ skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3]
     double t2, t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = fabs(t3);
+    const double phi_dot = qd[0];
     const double t5 = phi_dot * t2;
     const double t6 = t3 * t3;
     const double t7 = t3 * t6;
+    const double m_s = p->m_s;
     const double t8 = m_s / t7;
     const double t9 = t5 * t8;
     if (!(t4 > 2.6645352591003757e-15)) {
-        if (!(1.0 > 7.099748146989106e-30)) {
+        if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
@@ -634,7 +628,7 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     const double t4 = fabs(t3);
     const double t5 = 1.0 / t3;
     if (!(t4 > 2.6645352591003757e-15)) {
-        if (!(1.0 > 7.099748146989106e-30)) {
+        if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
@@ -653,20 +647,20 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
 skate_status skate_admissible_velocity(const double q[3], const double qd[3], const skate_params *p, double qd_admissible[3]) {
     (void)p;
     const double phi = q[0];
-    const double phi_dot = qd[0];
-    const double x_dot = qd[1];
-    const double y_dot = qd[2];
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     double t2, t3;
     skate_sincos(phi, &t2, &t3);
+    const double x_dot = qd[1];
     const double t4 = x_dot * t3;
+    const double y_dot = qd[2];
     const double t5 = y_dot * t2;
     const double t6 = t4 + t5;
     const double t7 = t3 * t6;
     const double t8 = t2 * t6;
+    const double phi_dot = qd[0];
     double rest = phi_dot - phi_dot;
     rest += t7 - t7;
     rest += t8 - t8;
@@ -682,12 +676,6 @@ skate_status skate_admissible_velocity(const double q[3], const double qd[3], co
 skate_status skate_admissible_acceleration(const double q[3], const double qd[3], const double qdd[3], const skate_params *p, double qdd_admissible[3]) {
     (void)p;
     const double phi = q[0];
-    const double phi_dot = qd[0];
-    const double x_dot = qd[1];
-    const double y_dot = qd[2];
-    const double phi_ddot = qdd[0];
-    const double x_ddot = qdd[1];
-    const double y_ddot = qdd[2];
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
@@ -695,11 +683,16 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     double t2, t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
+    const double x_ddot = qdd[1];
     const double t5 = x_ddot * t4;
+    const double y_ddot = qdd[2];
     const double t6 = y_ddot * t3;
+    const double x_dot = qd[1];
     const double t7 = x_dot * t3;
+    const double y_dot = qd[2];
     const double t8 = y_dot * t2;
     const double t9 = t7 + t8;
+    const double phi_dot = qd[0];
     const double t10 = phi_dot * t9;
     const double t11 = t6 - t10;
     const double t12 = t2 * t11;
@@ -710,6 +703,7 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     const double t17 = t15 + t16;
     const double t18 = t2 * t17;
     const double t19 = t14 + t18;
+    const double phi_ddot = qdd[0];
     double rest = phi_ddot - phi_ddot;
     rest += t13 - t13;
     rest += t19 - t19;
@@ -742,28 +736,28 @@ skate_status skate_projected_configuration(const double q[3], const skate_params
 skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const double qdd[3], const skate_params *p, double u[2]) {
     (void)qd;
     const double phi = q[0];
-    const double phi_ddot = qdd[0];
-    const double x_ddot = qdd[1];
-    const double y_ddot = qdd[2];
-    const double m_s = p->m_s;
-    const double Theta_s = p->Theta_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const double t2 = phi_ddot * Theta_s;
-    double t3, t4;
-    skate_sincos(phi, &t3, &t4);
-    const double t5 = x_ddot * t4;
-    const double t6 = y_ddot * t3;
+    double t2, t3;
+    skate_sincos(phi, &t2, &t3);
+    const double phi_ddot = qdd[0];
+    const double Theta_s = p->Theta_s;
+    const double t4 = phi_ddot * Theta_s;
+    const double x_ddot = qdd[1];
+    const double t5 = x_ddot * t3;
+    const double y_ddot = qdd[2];
+    const double t6 = y_ddot * t2;
     const double t7 = t5 + t6;
+    const double m_s = p->m_s;
     const double t8 = m_s * t7;
-    double rest = t2 - t2;
+    double rest = t4 - t4;
     rest += t8 - t8;
     if (!(rest >= 0.0)) {
         return SKATE_NOT_FINITE;
     }
-    u[0] = t2;
+    u[0] = t4;
     u[1] = t8;
     return SKATE_OK;
 }
@@ -782,18 +776,18 @@ skate_status skate_inverse_dynamics_residual(const double q[3], const double qd[
 skate_status skate_actuator_velocity(const double q[3], const double qd[3], const skate_params *p, double nu[2]) {
     (void)p;
     const double phi = q[0];
-    const double phi_dot = qd[0];
-    const double x_dot = qd[1];
-    const double y_dot = qd[2];
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     double t2, t3;
     skate_sincos(phi, &t2, &t3);
+    const double x_dot = qd[1];
     const double t4 = x_dot * t3;
+    const double y_dot = qd[2];
     const double t5 = y_dot * t2;
     const double t6 = t4 + t5;
+    const double phi_dot = qd[0];
     double rest = phi_dot - phi_dot;
     rest += t6 - t6;
     if (!(rest >= 0.0)) {
@@ -806,8 +800,8 @@ skate_status skate_actuator_velocity(const double q[3], const double qd[3], cons
 
 skate_status skate_actuator_mass_matrix(const double q[3], const skate_params *p, double G_nu[4]) {
     (void)q;
-    const double m_s = p->m_s;
     const double Theta_s = p->Theta_s;
+    const double m_s = p->m_s;
     double rest = Theta_s - Theta_s;
     rest += m_s - m_s;
     if (!(rest >= 0.0)) {
@@ -831,52 +825,52 @@ skate_status skate_actuator_bias(const double q[3], const double qd[3], const sk
 
 skate_status skate_forward_dynamics(const double q[3], const double qd[3], const double u[2], const skate_params *p, double qdd[3]) {
     const double phi = q[0];
-    const double phi_dot = qd[0];
-    const double x_dot = qd[1];
-    const double y_dot = qd[2];
-    const double T = u[0];
-    const double K = u[1];
-    const double m_s = p->m_s;
-    const double Theta_s = p->Theta_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const double t2 = m_s * Theta_s;
-    const double t3 = fabs(t2);
-    const double t4 = fabs(Theta_s);
-    const double t5 = fabs(m_s);
-    const double t6 = t4 * t5;
-    const double t7 = t6 * 2.6645352591003757e-15;
-    const double t8 = 1.0 / Theta_s;
-    const double t9 = T * t8;
-    double t10, t11;
-    skate_sincos(phi, &t10, &t11);
-    const double t12 = K * t11;
-    const double t13 = x_dot * t11;
-    const double t14 = y_dot * t10;
+    double t2, t3;
+    skate_sincos(phi, &t2, &t3);
+    const double m_s = p->m_s;
+    const double Theta_s = p->Theta_s;
+    const double t4 = m_s * Theta_s;
+    const double t5 = fabs(t4);
+    const double t6 = fabs(Theta_s);
+    const double t7 = fabs(m_s);
+    const double t8 = t6 * t7;
+    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t10 = 1.0 / Theta_s;
+    const double T = u[0];
+    const double t11 = T * t10;
+    const double K = u[1];
+    const double t12 = K * t3;
+    const double x_dot = qd[1];
+    const double t13 = x_dot * t3;
+    const double y_dot = qd[2];
+    const double t14 = y_dot * t2;
     const double t15 = t13 + t14;
+    const double phi_dot = qd[0];
     const double t16 = phi_dot * t15;
-    const double t17 = t10 * t16;
+    const double t17 = t2 * t16;
     const double t18 = m_s * t17;
     const double t19 = t12 - t18;
     const double t20 = 1.0 / m_s;
     const double t21 = t19 * t20;
-    const double t22 = t11 * t16;
+    const double t22 = t3 * t16;
     const double t23 = m_s * t22;
-    const double t24 = K * t10;
+    const double t24 = K * t2;
     const double t25 = t23 + t24;
     const double t26 = t20 * t25;
-    if (!(t3 > t7)) {
+    if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
-    double rest = t9 - t9;
+    double rest = t11 - t11;
     rest += t21 - t21;
     rest += t26 - t26;
     if (!(rest >= 0.0)) {
         return SKATE_NOT_FINITE;
     }
-    qdd[0] = t9;
+    qdd[0] = t11;
     qdd[1] = t21;
     qdd[2] = t26;
     return SKATE_OK;
@@ -885,29 +879,29 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
 skate_status skate_multipliers(const double q[3], const double qd[3], const double u[2], const skate_params *p, double lambda_B[1]) {
     (void)u;
     const double phi = q[0];
-    const double phi_dot = qd[0];
-    const double x_dot = qd[1];
-    const double y_dot = qd[2];
-    const double m_s = p->m_s;
-    const double Theta_s = p->Theta_s;
     const double t1 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const double t2 = m_s * Theta_s;
-    const double t3 = fabs(t2);
-    const double t4 = fabs(Theta_s);
-    const double t5 = fabs(m_s);
-    const double t6 = t4 * t5;
-    const double t7 = t6 * 2.6645352591003757e-15;
-    double t8, t9;
-    skate_sincos(phi, &t8, &t9);
-    const double t10 = x_dot * t9;
-    const double t11 = y_dot * t8;
+    double t2, t3;
+    skate_sincos(phi, &t2, &t3);
+    const double m_s = p->m_s;
+    const double Theta_s = p->Theta_s;
+    const double t4 = m_s * Theta_s;
+    const double t5 = fabs(t4);
+    const double t6 = fabs(Theta_s);
+    const double t7 = fabs(m_s);
+    const double t8 = t6 * t7;
+    const double t9 = t8 * 2.6645352591003757e-15;
+    const double x_dot = qd[1];
+    const double t10 = x_dot * t3;
+    const double y_dot = qd[2];
+    const double t11 = y_dot * t2;
     const double t12 = t10 + t11;
+    const double phi_dot = qd[0];
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
-    if (!(t3 > t7)) {
+    if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
     double rest = t14 - t14;
@@ -921,16 +915,16 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
 skate_status skate_energy(const double q[3], const double qd[3], const skate_params *p, double T_U[2]) {
     (void)q;
     const double phi_dot = qd[0];
-    const double x_dot = qd[1];
-    const double y_dot = qd[2];
-    const double m_s = p->m_s;
-    const double Theta_s = p->Theta_s;
     const double t1 = phi_dot * phi_dot;
+    const double Theta_s = p->Theta_s;
     const double t2 = Theta_s * t1;
     const double t3 = 0.5 * t2;
+    const double x_dot = qd[1];
     const double t4 = x_dot * x_dot;
+    const double y_dot = qd[2];
     const double t5 = y_dot * y_dot;
     const double t6 = t4 + t5;
+    const double m_s = p->m_s;
     const double t7 = m_s * t6;
     const double t8 = 0.5 * t7;
     const double t9 = t3 + t8;
@@ -944,32 +938,9 @@ skate_status skate_energy(const double q[3], const double qd[3], const skate_par
 }
 
 skate_status skate_singularity(const double q[3], const skate_params *p, double measure[2]) {
+    (void)q;
     (void)p;
-    const double phi = q[0];
-    const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
-        return SKATE_ANGLE_RANGE;
-    }
-    double t2, t3;
-    skate_sincos(phi, &t2, &t3);
-    const double t4 = 1.0 != 0.0 ? t2 / 1.0 : 0.0;
-    const double t5 = t4 * t4;
-    const double t6 = -t3;
-    const double t7 = 1.0 != 0.0 ? t6 / 1.0 : 0.0;
-    const double t8 = t7 * t7;
-    const double t9 = t5 + t8;
-    const double t10 = t3 * t7;
-    const double t11 = t2 * t4;
-    const double t12 = t10 - t11;
-    const double t13 = t12 * t12;
-    const double t14 = t9 != 0.0 ? t13 / t9 : 0.0;
-    const double t15 = 1.0 != 0.0 ? t14 / 1.0 : 0.0;
-    double rest = t9 - t9;
-    rest += t15 - t15;
-    if (!(rest >= 0.0)) {
-        return SKATE_NOT_FINITE;
-    }
-    measure[0] = t9;
-    measure[1] = t15;
+    measure[0] = 1.0;
+    measure[1] = 1.0;
     return SKATE_OK;
 }

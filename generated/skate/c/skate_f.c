@@ -43,19 +43,13 @@ static void skate_sincos_f(const float x, float *sine, float *cosine) {
     const float zzc = z * zc;
     const float rest = lost + zzc;
     const float cos_r = near_ + rest;
-    const float quarter = k * 0.25f;
-    const float pushed = quarter + 12582912.0f;
-    const float whole = pushed - 12582912.0f;
-    const float four = whole * 4.0f;
+    const float pushed = k + 50331650.0f;
+    const float four = pushed - 50331650.0f;
     const float m = k - four;
-    const float m2 = m * m;
-    const float fade = 4.0f - m2;
-    const float odd = m * fade;
-    const float turn = odd * 0.33333334f;
-    const float bend = 7.0f - m2;
-    const float even = m2 * bend;
-    const float sixth = even * 0.16666667f;
-    const float keep = 1.0f - sixth;
+    const float size = fabsf(m);
+    const float keep = 1.0f - size;
+    const float fade = 2.0f - size;
+    const float turn = m * fade;
     const float ss = keep * sin_r;
     const float sc = turn * cos_r;
     const float sine_ = ss + sc;
@@ -75,8 +69,8 @@ skate_params_f skate_default_params_f(void) {
 
 skate_status skate_mass_matrix_f(const float q[3], const skate_params_f *p, float G[9]) {
     (void)q;
-    const float m_s = p->m_s;
     const float Theta_s = p->Theta_s;
+    const float m_s = p->m_s;
     float rest = Theta_s - Theta_s;
     rest += m_s - m_s;
     if (!(rest >= 0.0f)) {
@@ -163,13 +157,13 @@ skate_status skate_constraint_jacobian_f(const float q[3], const skate_params_f 
 skate_status skate_constraint_jacobian_dot_f(const float q[3], const float qd[3], const skate_params_f *p, float B_dot[3]) {
     (void)p;
     const float phi = q[0];
-    const float phi_dot = qd[0];
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     float t2, t3;
     skate_sincos_f(phi, &t2, &t3);
+    const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
     const float t5 = phi_dot * t2;
     float rest = t4 - t4;
@@ -237,13 +231,13 @@ skate_status skate_nullspace_projector_f(const float q[3], const skate_params_f 
 skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3], const skate_params_f *p, float N_B_dot[9]) {
     (void)p;
     const float phi = q[0];
-    const float phi_dot = qd[0];
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     float t2, t3;
     skate_sincos_f(phi, &t2, &t3);
+    const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
     const float t5 = t2 * t4;
     const float t6 = 2.0f * t5;
@@ -272,55 +266,55 @@ skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3]
 
 skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params_f *p, float B_G_pinv[3]) {
     const float phi = q[0];
-    const float m_s = p->m_s;
-    const float Theta_s = p->Theta_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const float t2 = m_s * Theta_s;
-    const float t3 = fabsf(t2);
-    const float t4 = fabsf(Theta_s);
-    const float t5 = fabsf(m_s);
-    const float t6 = t4 * t5;
-    const float t7 = t6 * 1.4305115e-06f;
-    float t8, t9;
-    skate_sincos_f(phi, &t8, &t9);
-    const float t10 = -t9;
-    if (!(t3 > t7)) {
+    float t2, t3;
+    skate_sincos_f(phi, &t2, &t3);
+    const float m_s = p->m_s;
+    const float Theta_s = p->Theta_s;
+    const float t4 = m_s * Theta_s;
+    const float t5 = fabsf(t4);
+    const float t6 = fabsf(Theta_s);
+    const float t7 = fabsf(m_s);
+    const float t8 = t6 * t7;
+    const float t9 = t8 * 1.4305115e-06f;
+    const float t10 = -t3;
+    if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
-    float rest = t8 - t8;
+    float rest = t2 - t2;
     rest += t10 - t10;
     if (!(rest >= 0.0f)) {
         return SKATE_NOT_FINITE;
     }
     B_G_pinv[0] = 0.0f;
-    B_G_pinv[1] = t8;
+    B_G_pinv[1] = t2;
     B_G_pinv[2] = t10;
     return SKATE_OK;
 }
 
 skate_status skate_weighted_nullspace_projector_f(const float q[3], const skate_params_f *p, float N_BG[9]) {
     const float phi = q[0];
-    const float m_s = p->m_s;
-    const float Theta_s = p->Theta_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const float t2 = m_s * Theta_s;
-    const float t3 = fabsf(t2);
-    const float t4 = fabsf(Theta_s);
-    const float t5 = fabsf(m_s);
-    const float t6 = t4 * t5;
-    const float t7 = t6 * 1.4305115e-06f;
-    float t8, t9;
-    skate_sincos_f(phi, &t8, &t9);
-    const float t10 = t9 * t9;
-    const float t11 = t8 * t9;
-    const float t12 = t8 * t8;
-    if (!(t3 > t7)) {
+    float t2, t3;
+    skate_sincos_f(phi, &t2, &t3);
+    const float m_s = p->m_s;
+    const float Theta_s = p->Theta_s;
+    const float t4 = m_s * Theta_s;
+    const float t5 = fabsf(t4);
+    const float t6 = fabsf(Theta_s);
+    const float t7 = fabsf(m_s);
+    const float t8 = t6 * t7;
+    const float t9 = t8 * 1.4305115e-06f;
+    const float t10 = t3 * t3;
+    const float t11 = t2 * t3;
+    const float t12 = t2 * t2;
+    if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
     float rest = t10 - t10;
@@ -422,7 +416,7 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
     const float t4 = fabsf(t3);
     const float t5 = t2 / t3;
     if (!(t4 > 1.4305115e-06f)) {
-        if (!(1.0f > 2.046363e-12f)) {
+        if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
@@ -442,20 +436,20 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
 
 skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_f *p, float G_tilde[9]) {
     const float phi = q[0];
-    const float m_s = p->m_s;
-    const float Theta_s = p->Theta_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     float t2, t3;
     skate_sincos_f(phi, &t2, &t3);
+    const float m_s = p->m_s;
     const float t4 = m_s * t3;
     const float t5 = t3 * t4;
     const float t6 = t2 * t3;
     const float t7 = m_s * t6;
     const float t8 = m_s * t2;
     const float t9 = t2 * t8;
+    const float Theta_s = p->Theta_s;
     float rest = Theta_s - Theta_s;
     rest += t5 - t5;
     rest += t7 - t7;
@@ -477,16 +471,16 @@ skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_
 
 skate_status skate_projected_coriolis_matrix_f(const float q[3], const float qd[3], const skate_params_f *p, float C_tilde[9]) {
     const float phi = q[0];
-    const float phi_dot = qd[0];
-    const float m_s = p->m_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     float t2, t3;
     skate_sincos_f(phi, &t2, &t3);
+    const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
     const float t5 = t2 * t4;
+    const float m_s = p->m_s;
     const float t6 = m_s * t5;
     const float t7 = -t6;
     const float t8 = t3 * t4;
@@ -535,8 +529,6 @@ skate_status skate_projected_applied_force_f(const float q[3], const float qd[3]
 
 skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f *p, float G_bar[4]) {
     const float phi = q[0];
-    const float m_s = p->m_s;
-    const float Theta_s = p->Theta_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
@@ -545,13 +537,15 @@ skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f 
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = fabsf(t3);
     const float t5 = t3 * t3;
+    const float m_s = p->m_s;
     const float t6 = m_s / t5;
     if (!(t4 > 1.4305115e-06f)) {
-        if (!(1.0f > 2.046363e-12f)) {
+        if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
+    const float Theta_s = p->Theta_s;
     float rest = Theta_s - Theta_s;
     rest += t6 - t6;
     if (!(rest >= 0.0f)) {
@@ -566,8 +560,6 @@ skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f 
 
 skate_status skate_minimal_coriolis_matrix_f(const float q[3], const float qd[3], const skate_params_f *p, float C_bar[4]) {
     const float phi = q[0];
-    const float phi_dot = qd[0];
-    const float m_s = p->m_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
@@ -575,13 +567,15 @@ skate_status skate_minimal_coriolis_matrix_f(const float q[3], const float qd[3]
     float t2, t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = fabsf(t3);
+    const float phi_dot = qd[0];
     const float t5 = phi_dot * t2;
     const float t6 = t3 * t3;
     const float t7 = t3 * t6;
+    const float m_s = p->m_s;
     const float t8 = m_s / t7;
     const float t9 = t5 * t8;
     if (!(t4 > 1.4305115e-06f)) {
-        if (!(1.0f > 2.046363e-12f)) {
+        if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
@@ -626,7 +620,7 @@ skate_status skate_minimal_control_matrix_f(const float q[3], const skate_params
     const float t4 = fabsf(t3);
     const float t5 = 1.0f / t3;
     if (!(t4 > 1.4305115e-06f)) {
-        if (!(1.0f > 2.046363e-12f)) {
+        if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
@@ -645,20 +639,20 @@ skate_status skate_minimal_control_matrix_f(const float q[3], const skate_params
 skate_status skate_admissible_velocity_f(const float q[3], const float qd[3], const skate_params_f *p, float qd_admissible[3]) {
     (void)p;
     const float phi = q[0];
-    const float phi_dot = qd[0];
-    const float x_dot = qd[1];
-    const float y_dot = qd[2];
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     float t2, t3;
     skate_sincos_f(phi, &t2, &t3);
+    const float x_dot = qd[1];
     const float t4 = x_dot * t3;
+    const float y_dot = qd[2];
     const float t5 = y_dot * t2;
     const float t6 = t4 + t5;
     const float t7 = t3 * t6;
     const float t8 = t2 * t6;
+    const float phi_dot = qd[0];
     float rest = phi_dot - phi_dot;
     rest += t7 - t7;
     rest += t8 - t8;
@@ -674,12 +668,6 @@ skate_status skate_admissible_velocity_f(const float q[3], const float qd[3], co
 skate_status skate_admissible_acceleration_f(const float q[3], const float qd[3], const float qdd[3], const skate_params_f *p, float qdd_admissible[3]) {
     (void)p;
     const float phi = q[0];
-    const float phi_dot = qd[0];
-    const float x_dot = qd[1];
-    const float y_dot = qd[2];
-    const float phi_ddot = qdd[0];
-    const float x_ddot = qdd[1];
-    const float y_ddot = qdd[2];
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
@@ -687,11 +675,16 @@ skate_status skate_admissible_acceleration_f(const float q[3], const float qd[3]
     float t2, t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
+    const float x_ddot = qdd[1];
     const float t5 = x_ddot * t4;
+    const float y_ddot = qdd[2];
     const float t6 = y_ddot * t3;
+    const float x_dot = qd[1];
     const float t7 = x_dot * t3;
+    const float y_dot = qd[2];
     const float t8 = y_dot * t2;
     const float t9 = t7 + t8;
+    const float phi_dot = qd[0];
     const float t10 = phi_dot * t9;
     const float t11 = t6 - t10;
     const float t12 = t2 * t11;
@@ -702,6 +695,7 @@ skate_status skate_admissible_acceleration_f(const float q[3], const float qd[3]
     const float t17 = t15 + t16;
     const float t18 = t2 * t17;
     const float t19 = t14 + t18;
+    const float phi_ddot = qdd[0];
     float rest = phi_ddot - phi_ddot;
     rest += t13 - t13;
     rest += t19 - t19;
@@ -734,28 +728,28 @@ skate_status skate_projected_configuration_f(const float q[3], const skate_param
 skate_status skate_inverse_dynamics_f(const float q[3], const float qd[3], const float qdd[3], const skate_params_f *p, float u[2]) {
     (void)qd;
     const float phi = q[0];
-    const float phi_ddot = qdd[0];
-    const float x_ddot = qdd[1];
-    const float y_ddot = qdd[2];
-    const float m_s = p->m_s;
-    const float Theta_s = p->Theta_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const float t2 = phi_ddot * Theta_s;
-    float t3, t4;
-    skate_sincos_f(phi, &t3, &t4);
-    const float t5 = x_ddot * t4;
-    const float t6 = y_ddot * t3;
+    float t2, t3;
+    skate_sincos_f(phi, &t2, &t3);
+    const float phi_ddot = qdd[0];
+    const float Theta_s = p->Theta_s;
+    const float t4 = phi_ddot * Theta_s;
+    const float x_ddot = qdd[1];
+    const float t5 = x_ddot * t3;
+    const float y_ddot = qdd[2];
+    const float t6 = y_ddot * t2;
     const float t7 = t5 + t6;
+    const float m_s = p->m_s;
     const float t8 = m_s * t7;
-    float rest = t2 - t2;
+    float rest = t4 - t4;
     rest += t8 - t8;
     if (!(rest >= 0.0f)) {
         return SKATE_NOT_FINITE;
     }
-    u[0] = t2;
+    u[0] = t4;
     u[1] = t8;
     return SKATE_OK;
 }
@@ -774,18 +768,18 @@ skate_status skate_inverse_dynamics_residual_f(const float q[3], const float qd[
 skate_status skate_actuator_velocity_f(const float q[3], const float qd[3], const skate_params_f *p, float nu[2]) {
     (void)p;
     const float phi = q[0];
-    const float phi_dot = qd[0];
-    const float x_dot = qd[1];
-    const float y_dot = qd[2];
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
     float t2, t3;
     skate_sincos_f(phi, &t2, &t3);
+    const float x_dot = qd[1];
     const float t4 = x_dot * t3;
+    const float y_dot = qd[2];
     const float t5 = y_dot * t2;
     const float t6 = t4 + t5;
+    const float phi_dot = qd[0];
     float rest = phi_dot - phi_dot;
     rest += t6 - t6;
     if (!(rest >= 0.0f)) {
@@ -798,8 +792,8 @@ skate_status skate_actuator_velocity_f(const float q[3], const float qd[3], cons
 
 skate_status skate_actuator_mass_matrix_f(const float q[3], const skate_params_f *p, float G_nu[4]) {
     (void)q;
-    const float m_s = p->m_s;
     const float Theta_s = p->Theta_s;
+    const float m_s = p->m_s;
     float rest = Theta_s - Theta_s;
     rest += m_s - m_s;
     if (!(rest >= 0.0f)) {
@@ -823,52 +817,52 @@ skate_status skate_actuator_bias_f(const float q[3], const float qd[3], const sk
 
 skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const float u[2], const skate_params_f *p, float qdd[3]) {
     const float phi = q[0];
-    const float phi_dot = qd[0];
-    const float x_dot = qd[1];
-    const float y_dot = qd[2];
-    const float T = u[0];
-    const float K = u[1];
-    const float m_s = p->m_s;
-    const float Theta_s = p->Theta_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const float t2 = m_s * Theta_s;
-    const float t3 = fabsf(t2);
-    const float t4 = fabsf(Theta_s);
-    const float t5 = fabsf(m_s);
-    const float t6 = t4 * t5;
-    const float t7 = t6 * 1.4305115e-06f;
-    const float t8 = 1.0f / Theta_s;
-    const float t9 = T * t8;
-    float t10, t11;
-    skate_sincos_f(phi, &t10, &t11);
-    const float t12 = K * t11;
-    const float t13 = x_dot * t11;
-    const float t14 = y_dot * t10;
+    float t2, t3;
+    skate_sincos_f(phi, &t2, &t3);
+    const float m_s = p->m_s;
+    const float Theta_s = p->Theta_s;
+    const float t4 = m_s * Theta_s;
+    const float t5 = fabsf(t4);
+    const float t6 = fabsf(Theta_s);
+    const float t7 = fabsf(m_s);
+    const float t8 = t6 * t7;
+    const float t9 = t8 * 1.4305115e-06f;
+    const float t10 = 1.0f / Theta_s;
+    const float T = u[0];
+    const float t11 = T * t10;
+    const float K = u[1];
+    const float t12 = K * t3;
+    const float x_dot = qd[1];
+    const float t13 = x_dot * t3;
+    const float y_dot = qd[2];
+    const float t14 = y_dot * t2;
     const float t15 = t13 + t14;
+    const float phi_dot = qd[0];
     const float t16 = phi_dot * t15;
-    const float t17 = t10 * t16;
+    const float t17 = t2 * t16;
     const float t18 = m_s * t17;
     const float t19 = t12 - t18;
     const float t20 = 1.0f / m_s;
     const float t21 = t19 * t20;
-    const float t22 = t11 * t16;
+    const float t22 = t3 * t16;
     const float t23 = m_s * t22;
-    const float t24 = K * t10;
+    const float t24 = K * t2;
     const float t25 = t23 + t24;
     const float t26 = t20 * t25;
-    if (!(t3 > t7)) {
+    if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
-    float rest = t9 - t9;
+    float rest = t11 - t11;
     rest += t21 - t21;
     rest += t26 - t26;
     if (!(rest >= 0.0f)) {
         return SKATE_NOT_FINITE;
     }
-    qdd[0] = t9;
+    qdd[0] = t11;
     qdd[1] = t21;
     qdd[2] = t26;
     return SKATE_OK;
@@ -877,29 +871,29 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
 skate_status skate_multipliers_f(const float q[3], const float qd[3], const float u[2], const skate_params_f *p, float lambda_B[1]) {
     (void)u;
     const float phi = q[0];
-    const float phi_dot = qd[0];
-    const float x_dot = qd[1];
-    const float y_dot = qd[2];
-    const float m_s = p->m_s;
-    const float Theta_s = p->Theta_s;
     const float t1 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    const float t2 = m_s * Theta_s;
-    const float t3 = fabsf(t2);
-    const float t4 = fabsf(Theta_s);
-    const float t5 = fabsf(m_s);
-    const float t6 = t4 * t5;
-    const float t7 = t6 * 1.4305115e-06f;
-    float t8, t9;
-    skate_sincos_f(phi, &t8, &t9);
-    const float t10 = x_dot * t9;
-    const float t11 = y_dot * t8;
+    float t2, t3;
+    skate_sincos_f(phi, &t2, &t3);
+    const float m_s = p->m_s;
+    const float Theta_s = p->Theta_s;
+    const float t4 = m_s * Theta_s;
+    const float t5 = fabsf(t4);
+    const float t6 = fabsf(Theta_s);
+    const float t7 = fabsf(m_s);
+    const float t8 = t6 * t7;
+    const float t9 = t8 * 1.4305115e-06f;
+    const float x_dot = qd[1];
+    const float t10 = x_dot * t3;
+    const float y_dot = qd[2];
+    const float t11 = y_dot * t2;
     const float t12 = t10 + t11;
+    const float phi_dot = qd[0];
     const float t13 = phi_dot * m_s;
     const float t14 = t12 * t13;
-    if (!(t3 > t7)) {
+    if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
     float rest = t14 - t14;
@@ -913,16 +907,16 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
 skate_status skate_energy_f(const float q[3], const float qd[3], const skate_params_f *p, float T_U[2]) {
     (void)q;
     const float phi_dot = qd[0];
-    const float x_dot = qd[1];
-    const float y_dot = qd[2];
-    const float m_s = p->m_s;
-    const float Theta_s = p->Theta_s;
     const float t1 = phi_dot * phi_dot;
+    const float Theta_s = p->Theta_s;
     const float t2 = Theta_s * t1;
     const float t3 = 0.5f * t2;
+    const float x_dot = qd[1];
     const float t4 = x_dot * x_dot;
+    const float y_dot = qd[2];
     const float t5 = y_dot * y_dot;
     const float t6 = t4 + t5;
+    const float m_s = p->m_s;
     const float t7 = m_s * t6;
     const float t8 = 0.5f * t7;
     const float t9 = t3 + t8;
@@ -936,32 +930,9 @@ skate_status skate_energy_f(const float q[3], const float qd[3], const skate_par
 }
 
 skate_status skate_singularity_f(const float q[3], const skate_params_f *p, float measure[2]) {
+    (void)q;
     (void)p;
-    const float phi = q[0];
-    const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
-        return SKATE_ANGLE_RANGE;
-    }
-    float t2, t3;
-    skate_sincos_f(phi, &t2, &t3);
-    const float t4 = 1.0f != 0.0f ? t2 / 1.0f : 0.0f;
-    const float t5 = t4 * t4;
-    const float t6 = -t3;
-    const float t7 = 1.0f != 0.0f ? t6 / 1.0f : 0.0f;
-    const float t8 = t7 * t7;
-    const float t9 = t5 + t8;
-    const float t10 = t3 * t7;
-    const float t11 = t2 * t4;
-    const float t12 = t10 - t11;
-    const float t13 = t12 * t12;
-    const float t14 = t9 != 0.0f ? t13 / t9 : 0.0f;
-    const float t15 = 1.0f != 0.0f ? t14 / 1.0f : 0.0f;
-    float rest = t9 - t9;
-    rest += t15 - t15;
-    if (!(rest >= 0.0f)) {
-        return SKATE_NOT_FINITE;
-    }
-    measure[0] = t9;
-    measure[1] = t15;
+    measure[0] = 1.0f;
+    measure[1] = 1.0f;
     return SKATE_OK;
 }

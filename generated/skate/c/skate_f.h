@@ -50,7 +50,7 @@
  * forward_dynamics                      3     15      2      0      1      0
  * multipliers                           1      7      0      0      1      0
  * energy                                2      7      0      0      0      0
- * singularity                           2      5      4      0      1      0
+ * singularity                           0      0      0      0      0      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -31,14 +31,14 @@
  * orthogonal_complement                 1      6      2      0      2      0
  * projected_mass_matrix                27     79      1      0      2      0
  * projected_coriolis_matrix            64    152      1      0      2      0
- * projected_potential_force            19     52      3      0      2      0
+ * projected_potential_force            14     45      1      0      2      0
  * projected_applied_force               8     27      1      0      2      0
  * minimal_mass_matrix                   8     31      1      0      2      0
  * minimal_coriolis_matrix              22     67      3      0      2      0
  * minimal_potential_force               5     18      1      0      2      0
  * minimal_applied_force                 1      7      1      0      2      0
  * minimal_control_matrix                0      0      0      0      0      0
- * admissible_velocity                  13     41      3      0      2      0
+ * admissible_velocity                  16     43      3      0      2      0
  * admissible_acceleration              27     63      1      0      2      0
  * projected_configuration              47     79      3      0      7      0
  * inverse_dynamics                     16     50      1      0      2      0
@@ -49,7 +49,7 @@
  * forward_dynamics                     45    118      2      0      2      0
  * multipliers                          55    150      2      0      2      0
  * energy                               11     32      0      0      2      0
- * singularity                          10     23      7      2      2      0
+ * singularity                          10     23      6      2      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.
