@@ -1,7 +1,7 @@
 """The choices an expert makes by hand for the forms `part` and `range`: cheap, and far from singular.
 
-Among all choices those count whose determinant never falls below a hundredth of the best choice's at the same state
-(if none does, the one that comes closest); of these the one with the fewest operations in CasADi.
+Among all choices those count whose determinant never falls below a ten-thousandth of the best choice's at the same
+state (if none does, the one that comes closest); of these the one with the fewest operations in CasADi.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from symgen.bench.peers.mechanics import Mechanics, mechanics
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange
 
-FAR_ENOUGH = 1e-2
+FAR_ENOUGH = 1e-4
 MOST_CHOICES = 3000
 MOST_COUNTED = 30
 Choice = tuple[int, ...]
