@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen.graph.angles import share_angles
-from symgen.graph.polynomial import refactor
+from symgen.graph.polynomial import Multiplier, refactored
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import topological
 
@@ -16,6 +16,7 @@ class Factoring:
     def __init__(self, graph: Graph, parameters: Sequence[Scalar]) -> None:
         self._graph = graph
         self._fixed: dict[Scalar, bool] = dict.fromkeys(parameters, True)
+        self._multipliers: dict[frozenset[Scalar], Multiplier] = {}
 
     def fixed(self, node: Scalar) -> bool:
         """Whether a scalar depends on parameters only."""
@@ -25,8 +26,11 @@ class Factoring:
 
     def shorten(self, outputs: Sequence[Scalar], kept: frozenset[Scalar] = frozenset()) -> tuple[Scalar, ...]:
         """The scalars multiplied out, cancelled and factored where they are not too long."""
-        shared = share_angles(self._graph, outputs)
-        return tuple(refactor(self._graph, shared, lambda node: node in kept or self.fixed(node), self.fixed))
+        multiplier = self._multipliers.get(kept)
+        if multiplier is None:
+            multiplier = Multiplier(self._graph, lambda node: node in kept or self.fixed(node))
+            self._multipliers[kept] = multiplier
+        return tuple(refactored(self._graph, share_angles(self._graph, outputs), multiplier, self.fixed))
 
     def common_sums(self, components: Sequence[Scalar]) -> frozenset[Scalar]:
         """The sums that are factors of two components or more: what a vector is a multiple of."""

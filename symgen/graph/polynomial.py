@@ -14,8 +14,9 @@ from typing import TypeAlias
 
 from symgen.graph.scalar import Graph, Scalar
 
-Monomial: TypeAlias = "tuple[tuple[Scalar, int], ...]"
-Polynomial: TypeAlias = "dict[Monomial, Fraction]"
+# Atoms are given by their serial numbers, which sort and hash faster than the scalars themselves.
+Monomial: TypeAlias = tuple[tuple[int, int], ...]
+Polynomial: TypeAlias = dict[Monomial, Fraction]
 
 # Outputs beyond these are left as they are: nothing becomes shorter by multiplying out a long sum of long products.
 MOST_TERMS = 120
@@ -53,7 +54,7 @@ class Multiplier:
         if (value := node.constant) is not None:
             return {(): value} if value else {}
         if node.op in ("add", "sub") and self._whole(node):
-            return {((node, 1),): Fraction(1)}
+            return {((node.serial, 1),): Fraction(1)}
         match node.op:
             case "add":
                 return _sum(self._expand(node.args[0]), self._expand(node.args[1]), 1)
@@ -66,12 +67,12 @@ class Multiplier:
             case "div":
                 return self._times(self._expand(node.args[0]), self._inverse(node.args[1]))
             case _:
-                return {((node, 1),): Fraction(1)}
+                return {((node.serial, 1),): Fraction(1)}
 
     def _inverse(self, node: Scalar) -> Polynomial:
         terms = self._expand(node)
         if len(terms) != 1:
-            return {((node, -1),): Fraction(1)}
+            return {((node.serial, -1),): Fraction(1)}
         ((key, value),) = terms.items()
         return {tuple((atom, -power) for atom, power in key): 1 / value}
 
@@ -93,8 +94,8 @@ def _product(a: Monomial, b: Monomial) -> Monomial:
     return _key(powers)
 
 
-def _key(powers: dict[Scalar, int]) -> Monomial:
-    return tuple(sorted(((a, p) for a, p in powers.items() if p), key=lambda entry: entry[0].serial))
+def _key(powers: dict[int, int]) -> Monomial:
+    return tuple(sorted(entry for entry in powers.items() if entry[1]))
 
 
 def _sum(a: Polynomial, b: Polynomial, sign: int) -> Polynomial:
@@ -106,34 +107,43 @@ def _sum(a: Polynomial, b: Polynomial, sign: int) -> Polynomial:
 
 def reduced(graph: Graph, terms: Polynomial) -> Polynomial:
     """No square of a sine is left (which makes cancellation certain), then squares are put where they save terms."""
+    nodes = graph.nodes
+    if not any(power >= 2 and nodes[atom].op in ("sin", "cos") for key in terms for atom, power in key):
+        return terms
     work = dict(terms)
     pending = list(work)
     while pending:
         key = pending.pop()
-        square = next((atom for atom, power in key if atom.op == "sin" and power >= 2), None)
+        square = next((atom for atom, power in key if power >= 2 and nodes[atom].op == "sin"), None)
         if square is None or key not in work:
             continue
         value = work.pop(key)
-        for factor, sign in (({square: -2}, 1), ({square: -2, graph.trig("cos", square.args[0]): 2}, -1)):
-            powers = dict(key)
-            for atom, power in factor.items():
-                powers[atom] = powers.get(atom, 0) + power
-            fresh = _key(powers)
-            total = work.get(fresh, Fraction(0)) + sign * value
-            if total:
-                work[fresh] = total
-                pending.append(fresh)
-            else:
-                work.pop(fresh, None)
+        powers = dict(key)
+        powers[square] -= 2
+        pending += _put(work, powers, value)
+        cosine = graph.trig("cos", nodes[square].args[0]).serial
+        powers[cosine] = powers.get(cosine, 0) + 2
+        pending += _put(work, powers, -value)
     return _with_sines(graph, work)
+
+
+def _put(work: Polynomial, powers: dict[int, int], value: Fraction) -> list[Monomial]:
+    """Adds a term; returns its key where one stands now."""
+    key = _key(powers)
+    total = work.get(key, 0) + value
+    if total:
+        work[key] = total
+        return [key]
+    work.pop(key, None)
+    return []
 
 
 def _with_sines(graph: Graph, terms: Polynomial) -> Polynomial:
     """k T - k T c^2 = k T s^2 wherever both terms stand."""
     work = dict(terms)
-    for key in sorted(work, key=lambda k: [(a.serial, p) for a, p in k]):
+    for key in sorted(work):
         value = work.get(key)
-        square = next((atom for atom, power in key if atom.op == "cos" and power >= 2), None)
+        square = next((atom for atom, power in key if power >= 2 and graph.nodes[atom].op == "cos"), None)
         if value is None or square is None:
             continue
         powers = dict(key)
@@ -141,14 +151,9 @@ def _with_sines(graph: Graph, terms: Polynomial) -> Polynomial:
         partner = _key(powers)
         if work.get(partner) == -value:
             del work[key], work[partner]
-            sine = graph.trig("sin", square.args[0])
+            sine = graph.trig("sin", graph.nodes[square].args[0]).serial
             powers[sine] = powers.get(sine, 0) + 2
-            fresh = _key(powers)
-            total = work.get(fresh, Fraction(0)) - value
-            if total:
-                work[fresh] = total
-            else:
-                work.pop(fresh, None)
+            _put(work, powers, -value)
     return work
 
 
@@ -165,21 +170,17 @@ def factored(graph: Graph, terms: Polynomial, first: Callable[[Scalar], bool]) -
         ((key, value),) = inner.items()
         return _multiply(graph, value, _product(key, shared), first)
     counts = Counter(atom for key in inner for atom, power in key if power > 0)
-    best = max(counts, key=lambda atom: (counts[atom], -atom.serial), default=None)
+    best = max(counts, key=lambda atom: (counts[atom], -atom), default=None)
     if best is None or counts[best] == 1:
-        total = graph.sum(_multiply(graph, value, key, first) for key, value in _ordered(inner))
+        total = graph.sum(_multiply(graph, value, key, first) for key, value in sorted(inner.items()))
     else:
         chosen = {key: value for key, value in inner.items() if dict(key).get(best, 0) > 0}
         quotient = {_product(key, ((best, -1),)): value for key, value in chosen.items()}
         rest = {key: value for key, value in inner.items() if key not in chosen}
-        total = best * factored(graph, quotient, first)
+        total = graph.nodes[best] * factored(graph, quotient, first)
         if rest:
             total = total + factored(graph, rest, first)
     return _multiply(graph, Fraction(1), shared, first, total)
-
-
-def _ordered(terms: Polynomial) -> list[tuple[Monomial, Fraction]]:
-    return sorted(terms.items(), key=lambda entry: [(a.serial, p) for a, p in entry[0]])
 
 
 def _common(terms: Polynomial) -> Monomial:
@@ -192,22 +193,20 @@ def _common(terms: Polynomial) -> Monomial:
 def _multiply(
     graph: Graph, value: Fraction, key: Monomial, first: Callable[[Scalar], bool], rest: Scalar | None = None
 ) -> Scalar:
-    above = [(atom, power) for atom, power in key if power > 0]
-    ranked = sorted(above, key=lambda entry: (not first(entry[0]), entry[0].serial))
-    fixed = graph.product(atom for atom, power in ranked if first(atom) for _ in range(power))
-    moving = graph.product(atom for atom, power in ranked if not first(atom) for _ in range(power))
-    below = graph.product(atom for atom, power in key for _ in range(-power))
+    above = [(graph.nodes[atom], power) for atom, power in key if power > 0]
+    fixed = graph.product(atom for atom, power in above if first(atom) for _ in range(power))
+    moving = graph.product(atom for atom, power in above if not first(atom) for _ in range(power))
+    below = graph.product(graph.nodes[atom] for atom, power in key for _ in range(-power))
     weight = fixed if below.is_one else fixed / below
     if rest is not None:
         moving = moving * rest
     return graph.const(value) * (weight * moving)
 
 
-def refactor(
-    graph: Graph, outputs: Sequence[Scalar], whole: Callable[[Scalar], bool], first: Callable[[Scalar], bool]
+def refactored(
+    graph: Graph, outputs: Sequence[Scalar], multiplier: Multiplier, first: Callable[[Scalar], bool]
 ) -> list[Scalar]:
     """Each output multiplied out and factored again; the output itself where that would be too long."""
-    multiplier = Multiplier(graph, whole)
     result = []
     for output in outputs:
         terms = multiplier.polynomial(output) if output.size <= MOST_OPERATIONS else None

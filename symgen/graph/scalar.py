@@ -79,6 +79,8 @@ class Graph:
 
     def __init__(self) -> None:
         self._nodes: dict[tuple[object, ...], Scalar] = {}
+        # every scalar at the place of its serial number
+        self.nodes: list[Scalar] = []
         self.products = Products(self)
         self._by_value: dict[int, Scalar] = {}
         self._angles: dict[int, tuple[int, int]] = {}
@@ -106,7 +108,8 @@ class Graph:
         return node
 
     def _new(self, key: tuple[object, ...], op: str, args: tuple[Scalar, ...], payload: object) -> Scalar:
-        node = self._nodes[key] = Scalar(self, len(self._nodes), op, args, payload)
+        node = self._nodes[key] = Scalar(self, len(self.nodes), op, args, payload)
+        self.nodes.append(node)
         if op == "const":
             assert isinstance(payload, Fraction)
             node.value = residue(payload)
