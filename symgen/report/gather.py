@@ -63,7 +63,9 @@ CAPTIONS: Mapping[str, str] = {
 
 
 def path_charts(model: Model) -> tuple[Chart, ...]:
-    """The charts of every path of the model."""
+    """The charts of every path of the model; drawing is imported only where there is something to draw."""
+    if not model.paths:
+        return ()
     from symgen.paths.charts import charts
     from symgen.paths.figures import figure_data
 
