@@ -16,7 +16,9 @@ from symgen.graph.scalar import Graph, Scalar
 
 # Atoms are given by their serial numbers, which sort and hash faster than the scalars themselves.
 Monomial: TypeAlias = tuple[tuple[int, int], ...]
-Polynomial: TypeAlias = dict[Monomial, Fraction]
+# Whole coefficients are integers: their arithmetic is many times faster than that of fractions.
+Coefficient: TypeAlias = int | Fraction
+Polynomial: TypeAlias = dict[Monomial, Coefficient]
 
 # Outputs beyond these are left as they are: nothing becomes shorter by multiplying out a long sum of long products.
 MOST_TERMS = 120
@@ -34,11 +36,12 @@ class Multiplier:
         self._graph = graph
         self._whole = whole
         self._known: dict[Scalar, Polynomial] = {}
+        self._circle = Circle(graph)
 
     def polynomial(self, node: Scalar) -> Polynomial | None:
         """The scalar as a reduced polynomial, or None where it has too many terms."""
         try:
-            return reduced(self._graph, self._expand(node))
+            return reduced(self._circle, self._expand(node))
         except _TooLongError:
             return None
 
@@ -52,9 +55,9 @@ class Multiplier:
 
     def _expanded(self, node: Scalar) -> Polynomial:
         if (value := node.constant) is not None:
-            return {(): value} if value else {}
+            return {(): _whole(value)} if value else {}
         if node.op in ("add", "sub") and self._whole(node):
-            return {((node.serial, 1),): Fraction(1)}
+            return {((node.serial, 1),): 1}
         match node.op:
             case "add":
                 return _sum(self._expand(node.args[0]), self._expand(node.args[1]), 1)
@@ -67,14 +70,14 @@ class Multiplier:
             case "div":
                 return self._times(self._expand(node.args[0]), self._inverse(node.args[1]))
             case _:
-                return {((node.serial, 1),): Fraction(1)}
+                return {((node.serial, 1),): 1}
 
     def _inverse(self, node: Scalar) -> Polynomial:
         terms = self._expand(node)
         if len(terms) != 1:
-            return {((node.serial, -1),): Fraction(1)}
+            return {((node.serial, -1),): 1}
         ((key, value),) = terms.items()
-        return {tuple((atom, -power) for atom, power in key): 1 / value}
+        return {tuple((atom, -power) for atom, power in key): _whole(1 / Fraction(value))}
 
     def _times(self, a: Polynomial, b: Polynomial) -> Polynomial:
         if len(a) * len(b) > 8 * MOST_TERMS:
@@ -83,11 +86,19 @@ class Multiplier:
         for left, x in a.items():
             for right, y in b.items():
                 key = _product(left, right)
-                result[key] = result.get(key, Fraction(0)) + x * y
-        return reduced(self._graph, {key: value for key, value in result.items() if value})
+                result[key] = result.get(key, 0) + x * y
+        return reduced(self._circle, {key: value for key, value in result.items() if value})
+
+
+def _whole(value: Fraction) -> Coefficient:
+    return value.numerator if value.denominator == 1 else value
 
 
 def _product(a: Monomial, b: Monomial) -> Monomial:
+    if not b:
+        return a
+    if not a:
+        return b
     powers = dict(a)
     for atom, power in b:
         powers[atom] = powers.get(atom, 0) + power
@@ -95,39 +106,64 @@ def _product(a: Monomial, b: Monomial) -> Monomial:
 
 
 def _key(powers: dict[int, int]) -> Monomial:
-    return tuple(sorted(entry for entry in powers.items() if entry[1]))
+    return tuple(sorted([entry for entry in powers.items() if entry[1]]))
 
 
 def _sum(a: Polynomial, b: Polynomial, sign: int) -> Polynomial:
     result = dict(a)
     for key, value in b.items():
-        result[key] = result.get(key, Fraction(0)) + sign * value
+        result[key] = result.get(key, 0) + sign * value
     return {key: value for key, value in result.items() if value}
 
 
-def reduced(graph: Graph, terms: Polynomial) -> Polynomial:
+class Circle:
+    """Which atoms are sines and cosines, and the cosine or sine of the same angle."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._partners: dict[tuple[str, int], int | None] = {}
+
+    def partner(self, name: str, atom: int) -> int | None:
+        """For an atom that is a sine (`name` "sin") or a cosine ("cos") its partner on the circle, else None."""
+        key = name, atom
+        if key not in self._partners:
+            node = self._graph.nodes[atom]
+            other = "cos" if name == "sin" else "sin"
+            self._partners[key] = self._graph.trig(other, node.args[0]).serial if node.op == name else None
+        return self._partners[key]
+
+    def square(self, name: str, key: Monomial) -> int | None:
+        """The first sine or cosine that stands in the monomial as a square."""
+        for atom, power in key:
+            if power >= 2 and self.partner(name, atom) is not None:
+                return atom
+        return None
+
+
+def reduced(circle: Circle, terms: Polynomial) -> Polynomial:
     """No square of a sine is left (which makes cancellation certain), then squares are put where they save terms."""
-    nodes = graph.nodes
-    if not any(power >= 2 and nodes[atom].op in ("sin", "cos") for key in terms for atom, power in key):
+    squared = [key for key in terms if any(power >= 2 for _, power in key)]
+    pending = [key for key in squared if circle.square("sin", key) is not None]
+    if not pending and not any(circle.square("cos", key) is not None for key in squared):
         return terms
     work = dict(terms)
-    pending = list(work)
     while pending:
         key = pending.pop()
-        square = next((atom for atom, power in key if power >= 2 and nodes[atom].op == "sin"), None)
+        square = circle.square("sin", key)
         if square is None or key not in work:
             continue
         value = work.pop(key)
         powers = dict(key)
         powers[square] -= 2
         pending += _put(work, powers, value)
-        cosine = graph.trig("cos", nodes[square].args[0]).serial
+        cosine = circle.partner("sin", square)
+        assert cosine is not None
         powers[cosine] = powers.get(cosine, 0) + 2
         pending += _put(work, powers, -value)
-    return _with_sines(graph, work)
+    return _with_sines(circle, work)
 
 
-def _put(work: Polynomial, powers: dict[int, int], value: Fraction) -> list[Monomial]:
+def _put(work: Polynomial, powers: dict[int, int], value: Coefficient) -> list[Monomial]:
     """Adds a term; returns its key where one stands now."""
     key = _key(powers)
     total = work.get(key, 0) + value
@@ -138,12 +174,11 @@ def _put(work: Polynomial, powers: dict[int, int], value: Fraction) -> list[Mono
     return []
 
 
-def _with_sines(graph: Graph, terms: Polynomial) -> Polynomial:
+def _with_sines(circle: Circle, terms: Polynomial) -> Polynomial:
     """k T - k T c^2 = k T s^2 wherever both terms stand."""
     work = dict(terms)
-    for key in sorted(work):
-        value = work.get(key)
-        square = next((atom for atom, power in key if power >= 2 and graph.nodes[atom].op == "cos"), None)
+    for key in sorted(key for key in terms if circle.square("cos", key) is not None):
+        value, square = work.get(key), circle.square("cos", key)
         if value is None or square is None:
             continue
         powers = dict(key)
@@ -151,7 +186,8 @@ def _with_sines(graph: Graph, terms: Polynomial) -> Polynomial:
         partner = _key(powers)
         if work.get(partner) == -value:
             del work[key], work[partner]
-            sine = graph.trig("sin", graph.nodes[square].args[0]).serial
+            sine = circle.partner("cos", square)
+            assert sine is not None
             powers[sine] = powers.get(sine, 0) + 2
             _put(work, powers, -value)
     return work
@@ -180,7 +216,7 @@ def factored(graph: Graph, terms: Polynomial, first: Callable[[Scalar], bool]) -
         total = graph.nodes[best] * factored(graph, quotient, first)
         if rest:
             total = total + factored(graph, rest, first)
-    return _multiply(graph, Fraction(1), shared, first, total)
+    return _multiply(graph, 1, shared, first, total)
 
 
 def _common(terms: Polynomial) -> Monomial:
@@ -191,7 +227,7 @@ def _common(terms: Polynomial) -> Monomial:
 
 
 def _multiply(
-    graph: Graph, value: Fraction, key: Monomial, first: Callable[[Scalar], bool], rest: Scalar | None = None
+    graph: Graph, value: Coefficient, key: Monomial, first: Callable[[Scalar], bool], rest: Scalar | None = None
 ) -> Scalar:
     above = [(graph.nodes[atom], power) for atom, power in key if power > 0]
     fixed = graph.product(atom for atom, power in above if first(atom) for _ in range(power))
