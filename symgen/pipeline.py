@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symgen.background import Background, Receive
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.dynamics.catalogue import BY_NAME
@@ -22,7 +21,6 @@ from symgen.dynamics.select import Derivations, derive_quantities
 from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
 from symgen.emit.operations import count_operations
-from symgen.emit.python import emit_python
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.schedule import schedule
 from symgen.model.load import load_model
@@ -31,6 +29,7 @@ from symgen.model.names import did_you_mean
 from symgen.results import LargestError, Options, Result, Summary, WrongUseError
 
 if TYPE_CHECKING:
+    from symgen.background import Background, Receive
     from symgen.report.facts import Facts
     from symgen.report.files import ReportFiles
     from symgen.verify.certificate import Certificate
@@ -64,7 +63,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     model = load_model(path)
     outputs = _outputs(model, options)
     wanted = "report" in options.parts
-    with Background(lambda receive: _report(model, receive)) if wanted else nullcontext() as reporting:
+    with _reporting(model) if wanted else nullcontext() as reporting:
         progress("deriving")
         derived = _derive(model, outputs, options)
         if reporting is not None:
@@ -128,6 +127,8 @@ def _code(derived: _Derived, options: Options) -> dict[str, str | bytes]:
         for scalar in options.scalars:
             files |= emit_c(derived.model, derived.programs[scalar])
     if "python" in options.parts:
+        from symgen.emit.python import emit_python
+
         files |= emit_python(derived.model, derived.program)
     files["derivation.json"] = derivation_json(
         derived.model, derived.derivations, derived.structure, derived.program
@@ -153,6 +154,12 @@ def _facts(derived: _Derived) -> Facts:
     operations = {kernel.name: count_operations(kernel.statements) for kernel in derived.program.kernels}
     decisions = tuple((decision.what, decision.why) for decision in derived.structure.decisions)
     return Facts(operations, (*decisions, *derived.derivations.absent))
+
+
+def _reporting(model: Model) -> Background[ReportFiles]:
+    from symgen.background import Background
+
+    return Background(lambda receive: _report(model, receive))
 
 
 def _report(model: Model, receive: Receive) -> ReportFiles:
