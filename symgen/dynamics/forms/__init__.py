@@ -1,0 +1,1 @@
+"""Forms: the ways in which one quantity can be computed, each with everything it divides by."""

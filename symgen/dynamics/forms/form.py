@@ -1,0 +1,61 @@
+"""A form: one way to compute one quantity, with its guards and the list of all its denominators.
+
+Forms are data; one module builds each of them.  Whether a form may be chosen by itself is decided on its `divisors`
+(`symgen.dynamics.admissibility`), never on the way it was built.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from symgen.dynamics.guards import Guard
+from symgen.graph.matrix import Vector
+from symgen.graph.scalar import Scalar
+from symgen.graph.traverse import cost, topological
+
+FormName: TypeAlias = Literal["minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"]
+FORM_NAMES: tuple[FormName, ...] = ("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt")
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """Outputs (row-major), the guards that decide on a status, and the denominators and pivots of the outputs.
+
+    `divisors` holds every scalar that is not a number and by which the outputs divide, apart from those that the
+    model's own expressions divide by.  `name` is one of `FORM_NAMES` for u; forms of other quantities have their own.
+    """
+
+    name: str
+    quantity: str
+    outputs: Vector
+    guards: tuple[Guard, ...]
+    divisors: tuple[Scalar, ...]
+
+    @property
+    def weight(self) -> int:
+        """Counted cost of a regular state: outputs and tested denominators."""
+        return cost((*self.outputs, *(guard.denominator for guard in self.guards))).weight
+
+
+def form(
+    name: str, quantity: str, outputs: Sequence[Scalar], guards: Iterable[Guard], own: Sequence[Scalar] = ()
+) -> Form:
+    """The form of these outputs; `own` are the model's expressions, whose denominators are not the form's.
+
+    The denominators are read off the graph, so that none can be forgotten.
+    """
+    kept = tuple(guard for guard in guards if guard.denominator.constant is None)
+    given = set(divisors(own))
+    return Form(name, quantity, tuple(outputs), kept, tuple(d for d in divisors(outputs) if d not in given))
+
+
+def divisors(outputs: Iterable[Scalar]) -> tuple[Scalar, ...]:
+    """Every scalar the outputs divide by, numbers left out, in the order of evaluation."""
+    found = {
+        node.args[1]: None
+        for node in topological(outputs)
+        if node.op in ("div", "ratio_or_zero") and node.args[1].constant is None
+    }
+    return tuple(found)
