@@ -32,6 +32,11 @@ class Factoring:
             self._multipliers[kept] = multiplier
         return tuple(refactored(self._graph, share_angles(self._graph, outputs), multiplier, self.fixed))
 
+    def cancelled(self, scalar: Scalar) -> Scalar:
+        """The scalar multiplied out and factored where that makes it shorter."""
+        (shorter,) = self.shorten((scalar,))
+        return shorter if shorter.size < scalar.size else scalar
+
     def common_sums(self, components: Sequence[Scalar]) -> frozenset[Scalar]:
         """The sums that are factors of two components or more: what a vector is a multiple of."""
         seen: dict[Scalar, int] = {}

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.factoring import Factoring
 from symgen.graph.calculus import derivative_along, gradient
-from symgen.graph.matrix import Matrix, Vector, dot, matvec, subtract_vectors
+from symgen.graph.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.translate import translate
 from symgen.graph.traverse import cost, substitute
@@ -18,18 +19,28 @@ from symgen.model.model import Model
 
 
 class Mechanics:
-    """A model's energies, forces and constraint rows as scalars of one graph."""
+    """A model's energies, forces and constraint rows as scalars of one graph.
 
-    def __init__(self, model: Model) -> None:
+    `change` describes the system in other coordinates on the graph of `base`; q, qd and qdd are then those.
+    """
+
+    def __init__(self, model: Model, base: Mechanics | None = None, change: AbsoluteAngles | None = None) -> None:
         self.model = model
-        self.graph = graph = Graph()
-        self.q: Vector = tuple(graph.symbol(c.name) for c in model.coordinates)
-        self.qd: Vector = tuple(graph.symbol(c.rate) for c in model.coordinates)
-        self.qdd: Vector = tuple(graph.symbol(c.acceleration) for c in model.coordinates)
+        graph = Graph() if base is None else base.graph
+        self.graph: Graph = graph
+        self.change = change
+        mark = "" if change is None else " absolute"
+        self.q: Vector = tuple(graph.symbol(c.name + mark) for c in model.coordinates)
+        self.qd: Vector = tuple(graph.symbol(c.rate + mark) for c in model.coordinates)
+        self.qdd: Vector = tuple(graph.symbol(c.acceleration + mark) for c in model.coordinates)
         self.parameters: Vector = tuple(graph.symbol(p.name) for p in model.parameters)
         self.u: Vector = tuple(graph.symbol(i.name) for i in model.inputs)
-        names = {node.payload: node for node in (*self.q, *self.qd, *self.parameters)}
-        self.names: dict[str, Scalar] = {str(name): node for name, node in names.items()}
+        q, qd = (self.q, self.qd) if change is None else (change.relative(self.q), change.relative(self.qd))
+        self.names: dict[str, Scalar] = {
+            **{c.name: node for c, node in zip(model.coordinates, q, strict=True)},
+            **{c.rate: node for c, node in zip(model.coordinates, qd, strict=True)},
+            **{p.name: node for p, node in zip(model.parameters, self.parameters, strict=True)},
+        }
         for definition in model.definitions:
             self.names[definition.name] = translate(graph, definition.value, self.names)
         self.factoring = Factoring(graph, self.parameters)
@@ -107,7 +118,7 @@ class Mechanics:
     def applied_force(self) -> Vector:
         """Q_a(q, q_dot), on the right-hand side."""
         forces = {f.coordinate: translate(self.graph, f.expression, self.names) for f in self.model.applied_forces}
-        return tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates)
+        return self._components(tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates))
 
     def applied_force_at(self, velocity: Vector) -> Vector:
         """Q_a along another velocity."""
@@ -192,14 +203,17 @@ class Mechanics:
         columns = [
             {name: translate(self.graph, value, self.names) for name, value in i.acts_on} for i in self.model.inputs
         ]
-        return tuple(
-            tuple(column.get(c.name, self.graph.zero) for column in columns) for c in self.model.coordinates
-        )
+        given = (tuple(column.get(c.name, self.graph.zero) for c in self.model.coordinates) for column in columns)
+        return transpose(tuple(map(self._components, given)), self.n)
+
+    def _components(self, force: Vector) -> Vector:
+        """A generalized force of the model's coordinates in those of this system."""
+        return force if self.change is None else self.change.forces(force)
 
     @cached_property
     def inputs(self) -> tuple[Vector, ...]:
         """The columns of M."""
-        return tuple(tuple(row[k] for row in self.control_matrix) for k in range(self.m))
+        return transpose(self.control_matrix, self.m)
 
     @cached_property
     def applied_balance(self) -> Vector:

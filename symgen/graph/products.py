@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -67,6 +68,12 @@ class Products:
             return None
         rest = {f: c - lost.count(f) for f, c in left.items() if c != lost.count(f)}
         return k1 * (self._product(rest) * angle)
+
+    def quotient(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction = 1) -> Scalar:
+        """`a` over a number times powers of its factors, which are left out instead of divided by."""
+        coefficient, own = self.monomial(a)
+        rest = {f: count - powers.get(f, 0) for f, count in own.items()}
+        return Fraction(coefficient) / number * self._product({f: count for f, count in rest.items() if count})
 
     def _product(self, powers: dict[Scalar, int]) -> Scalar:
         factors = sorted(powers.items(), key=lambda entry: entry[0].serial)
