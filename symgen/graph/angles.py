@@ -12,10 +12,13 @@ from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import topological
 
 
-def share_angles(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
-    """The outputs with derivable sines and cosines replaced by products of the evaluated ones."""
-    needed = _angles(outputs)
-    kept: list[tuple[Scalar, dict[Scalar, int]]] = []
+def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Scalar] = ()) -> list[Scalar]:
+    """The outputs with derivable sines and cosines replaced by products of the evaluated ones.
+
+    The pairs of the angles in `evaluated` exist already.
+    """
+    needed = [angle for angle in angles_of(outputs) if angle not in evaluated]
+    kept = [(angle, graph.angle_form(angle)) for angle in evaluated]
     image: dict[Scalar, Scalar] = {}
     for angle in needed:
         form = graph.angle_form(angle)
@@ -36,7 +39,7 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
     return _replace(graph, outputs, image)
 
 
-def _angles(outputs: Sequence[Scalar]) -> list[Scalar]:
+def angles_of(outputs: Sequence[Scalar]) -> list[Scalar]:
     """The arguments of all sines and cosines, simple ones first."""
     arguments = {node.args[0] for node in topological(outputs) if node.op in ("sin", "cos")}
     graph = next(iter(arguments)).graph if arguments else None

@@ -145,13 +145,15 @@ class _Filler:
 
 def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     tests = limits.tests(derived.guards)
-    roots = list(_roots(tests))
-    shared = share_angles(mechanics.graph, [*derived.outputs, *roots])
-    image = dict(zip(roots, shared[len(derived.outputs) :], strict=True))
+    roots = [node for test in tests for node in (test.size, test.limit)]
+    regular = share_angles(mechanics.graph, [*derived.outputs, *roots])
+    outputs = regular[: len(derived.outputs)]
+    image = dict(zip(roots, regular[len(outputs) :], strict=True))
     writer = _Writer(mechanics, ARGUMENTS[derived.name])
-    outputs = shared[: len(derived.outputs)]
-    regular = [*outputs, *(image[node] for test in tests for node in (test.size, test.limit))]
     arguments = _angles(regular)
+    # what only a failure looks at must not decide which angles a regular state evaluates
+    causes = list(_causes(tests))
+    image |= zip(causes, share_angles(mechanics.graph, causes, arguments), strict=True)
     computed = {argument for argument in arguments if _angles([argument])}
     plain = [argument for argument in arguments if argument not in computed]
     angles = writer.angle_block(plain)
@@ -178,8 +180,8 @@ def _angles(outputs: Sequence[Node]) -> list[Node]:
     return list(dict.fromkeys(node.args[0] for node in topological(outputs) if node.op in ("sin", "cos")))
 
 
-def _roots(tests: Sequence[_Test]) -> list[Node]:
-    return [node for test in tests for node in (test.size, test.limit, *_roots(test.first))]
+def _causes(tests: Sequence[_Test]) -> list[Node]:
+    return [node for test in tests for cause in test.first for node in (cause.size, cause.limit, *_causes([cause]))]
 
 
 class _Writer:
@@ -242,8 +244,10 @@ class _Writer:
         if test.first:
             saved = dict(self._written), dict(self._pairs), dict(self._done)
             inner = [image[node] for t in test.first for node in (t.size, t.limit)]
+            angles = [angle for angle in _angles(inner) if angle not in self._pairs]
             statements = self.write(inner)
-            first = Block(tuple(statements), tuple(self.check(t, image) for t in test.first))
+            sizes, ranges = self.range_checks(angles)
+            first = Block((*statements, *sizes), (*ranges, *(self.check(t, image) for t in test.first)))
             self._written, self._pairs, self._done = saved
         return Check(test.status, self.operand(image[test.size]), self.operand(image[test.limit]), first=first)
 
