@@ -42,15 +42,12 @@ class _Row:
     right: Scalar
 
 
-def range_form(mechanics: Mechanics, generic: Genericity, cause: tuple[Guard, ...]) -> Form | None:
-    """u by the range form, or None where it does not apply.
-
-    `mechanics` may be in absolute angles; `cause` tells a drop of the rank of B from one of the input equations.
-    """
+def range_form(mechanics: Mechanics, generic: Genericity) -> Form | None:
+    """u by the range form, or None where it does not apply; `mechanics` may be in absolute angles."""
     drives = _drive_rows(mechanics)
     if drives is None or not generic.full_actuation or generic.rank < generic.r or generic.m - generic.delta > 1:
         return None
-    solved = _Elimination(mechanics, drives).solve(generic.m - generic.delta, cause)
+    solved = _Elimination(mechanics, drives).solve(generic.m - generic.delta)
     if solved is None:
         return None
     outputs, guards = solved
@@ -90,7 +87,7 @@ class _Elimination:
             if p.range is not None and (p.range[0] > 0 or p.range[1] < 0)
         }
 
-    def solve(self, internal: int, cause: tuple[Guard, ...]) -> tuple[Vector, tuple[Guard, ...]] | None:
+    def solve(self, internal: int) -> tuple[Vector, tuple[Guard, ...]] | None:
         """u and its guards; None where the core is too large."""
         self._share_points()
         self._turn_pairs()
@@ -110,6 +107,7 @@ class _Elimination:
         if size:
             scale = magnitude(graph, [forms.denominator()])[0]
             degree = 1 if forms.single else 2
+            cause = (self._regularity(names, columns),)
             guards.append(Guard(Status.ACTUATION_RANK, forms.denominator(), degree, cause, scale))
         u = self._drive_forces(particular, homogeneous=False)
         if internal:
@@ -256,6 +254,19 @@ class _Elimination:
         taken = self._graph.sum(c * values[j] for j, c in coefficients.items())
         return -taken if homogeneous else row.right - taken
 
+    def _regularity(self, names: Sequence[int], columns: Sequence[Vector]) -> Guard:
+        """Vanishes exactly where the rank of B drops: the rows left of it, those of the drives included, by minors."""
+        graph = self._graph
+        zeros = dict.fromkeys(names, graph.zero)
+        whole = [
+            (*column, *self._drive_forces({**zeros, name: graph.one}, homogeneous=True))
+            for name, column in zip(names, columns, strict=True)
+        ]
+        minors = wedge_all(unit(graph), whole)
+        denominator = graph.sum(value * value for value in minors.values())
+        lengths = [graph.sum(x * x for x in magnitude(graph, column)) for column in whole]
+        return Guard(Status.CONSTRAINT_RANK, denominator, 2, scale=graph.product(lengths))
+
     def _without_content(self, z: Vector) -> Vector:
         """z without the parameters that all its entries have as a factor: only its direction counts."""
         products = self._graph.products
@@ -297,7 +308,8 @@ class _Elimination:
     def _moved(self, guard: Guard, back: dict[Scalar, Scalar]) -> Guard:
         assert guard.scale is not None
         denominator, scale = substitute(self._graph, [guard.denominator, guard.scale], back)
-        return Guard(guard.status, denominator, guard.degree, guard.first, scale)
+        first = tuple(self._moved(cause, back) for cause in guard.first)
+        return Guard(guard.status, denominator, guard.degree, first, scale)
 
 
 def _cross_product(graph: Graph, rows: tuple[Vector, ...], n: int) -> Vector:
