@@ -72,6 +72,8 @@ class Products:
     def quotient(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction = 1) -> Scalar:
         """`a` over a number times powers of its factors, which are left out instead of divided by."""
         coefficient, own = self.monomial(a)
+        if not coefficient:
+            return a
         rest = {f: count - powers.get(f, 0) for f, count in own.items()}
         return Fraction(coefficient) / number * self._product({f: count for f, count in rest.items() if count})
 

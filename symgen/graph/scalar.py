@@ -139,8 +139,9 @@ class Graph:
 
     def raw(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
         """The operation as it stands, past the constructor rules."""
-        if op in ("add", "mul") and args[0].serial > args[1].serial:
-            args = args[::-1]
+        if op in ("add", "mul") and args[0].constant is None:
+            # the order of the constructors: numbers first, then by serial
+            args = args if args[1].constant is None and args[0].serial < args[1].serial else args[::-1]
         usual = self._nodes.get((op, payload, *map(id, args)))
         if usual is not None and usual.op == op and usual.args == args:
             return usual
@@ -291,7 +292,7 @@ class Graph:
         return self._node("pow", (base,), exponent)
 
     def function(self, name: str, args: tuple[Scalar, ...]) -> Scalar:
-        """One of the functions of the expression language, or abs, copysign, ratio_or_zero."""
+        """One of the functions of the expression language, or abs, copysign, ratio_or_zero, min, max."""
         if name in ("sin", "cos"):
             return self.trig(name, args[0])
         first = args[0]

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
 from symgen.dynamics.forms.form import Form, form
@@ -97,12 +98,11 @@ class _Elimination:
         if len(self._passive) > LARGEST_CORE or len(names) - len(self._passive) != internal:
             return None
         graph, size = self._graph, len(self._passive)
-        zero = graph.zero
-        core = tuple(tuple(row.coefficients.get(j, zero) for j in names) for row in self._passive)
+        core = tuple(tuple(row.coefficients.get(j, graph.zero) for j in names) for row in self._passive)
         columns = transpose(core, len(names))
         right = tuple(row.right for row in self._passive)
         forms = ActuationForms(RowForms(graph, (), size, 0), columns, size)
-        particular = dict(zip(names, forms.solve(right) if size else (zero,) * len(names), strict=True))
+        particular = dict(zip(names, self._particular(forms, right), strict=True))
         guards = []
         if size:
             scale = magnitude(graph, [forms.denominator()])[0]
@@ -251,7 +251,11 @@ class _Elimination:
     def _rest(
         self, coefficients: dict[int, Scalar], values: dict[int, Scalar], row: _Row, homogeneous: bool
     ) -> Scalar:
-        taken = self._graph.sum(c * values[j] for j, c in coefficients.items())
+        products = self._graph.products
+        content = self._content(list(coefficients.values()))
+        taken = self._graph.sum(products.quotient(c, content) * values[j] for j, c in coefficients.items())
+        for factor, power in content.items():
+            taken = taken * self._graph.power(factor, Fraction(power))
         return -taken if homogeneous else row.right - taken
 
     def _regularity(self, names: Sequence[int], columns: Sequence[Vector]) -> Guard:
@@ -269,16 +273,25 @@ class _Elimination:
 
     def _without_content(self, z: Vector) -> Vector:
         """z without the parameters that all its entries have as a factor: only its direction counts."""
-        products = self._graph.products
-        monomials = [products.monomial(x) for x in z if not x.is_zero]
+        content = self._content(z)
+        return tuple(self._graph.products.quotient(x, content) for x in z) if content else z
+
+    def _content(self, entries: Sequence[Scalar]) -> dict[Scalar, int]:
+        """The parameters, declared nonzero, that are factors of all entries."""
+        monomials = [self._graph.products.monomial(x)[1] for x in entries if not x.is_zero]
         common = {
-            factor: min(powers.get(factor, 0) for _, powers in monomials)
-            for factor in (monomials[0][1] if monomials else {})
+            factor: min(powers.get(factor, 0) for powers in monomials)
+            for factor in (monomials[0] if monomials else {})
             if factor in self._positive
         }
-        if not any(common.values()):
-            return z
-        return tuple(x if x.is_zero else products.quotient(x, common) for x in z)
+        return {factor: power for factor, power in common.items() if power > 0}
+
+    def _particular(self, forms: ActuationForms, right: Vector) -> Vector:
+        """Any solution of the core serves, because the internal forces are taken out of u afterwards."""
+        if len(right) == 1 and not forms.single:
+            share = right[0] / forms.denominator()
+            return tuple(column[0] * share for column in forms.inputs)
+        return forms.solve(right) if right else (self._graph.zero,) * len(forms.inputs)
 
     def _scale(self, z: Vector, forms: ActuationForms) -> Scalar:
         """What |z|^2 is measured by: its terms' sizes, small together with the minors of the core."""
