@@ -18,7 +18,7 @@ from symgen.ir.kernel import Function, Kernel, Local, Operand, Program, Status
 from symgen.model.model import Model
 from symgen.naming import c_identifiers, file_stem
 
-_WITHOUT_LIBRARY = frozenset({"add", "sub", "mul", "div", "neg", "ratio_or_zero"})
+_WITHOUT_LIBRARY = frozenset({"add", "sub", "mul", "div", "neg", "ratio_or_zero", "min", "max"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +72,17 @@ def status_name(model: Model, status: Status) -> str:
     return f"{model.name.upper()}_{status.name}"
 
 
+def c_names(model: Model, program: Program) -> Names:
+    """Names of the program's C: other files that use its header and parameter struct take their members from here."""
+    prefix, suffix = model.name, _suffix(program)
+    stem = file_stem(model.name) + suffix
+    own = {f"{prefix}_{name}{suffix}" for name in ("params", "default_params", "sincos")}
+    own |= {f"{prefix}_status", f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"}
+    own |= {status_name(model, status) for status in Status}
+    own |= {f"{prefix}_{kernel.name}{suffix}" for kernel in program.kernels}
+    return names_of(model, program, own)
+
+
 def _suffix(program: Program) -> str:
     return "" if program.scalar == "float64" else "_f"
 
@@ -82,10 +93,7 @@ def _view(model: Model, program: Program) -> CView:
     status_type, parameters_type = f"{prefix}_status", f"{prefix}_params{suffix}"
     default_function, sincos = f"{prefix}_default_params{suffix}", f"{prefix}_sincos{suffix}"
     guard, status_guard = f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"
-    own = {status_type, parameters_type, default_function, sincos, guard, status_guard}
-    own |= {status_name(model, status) for status in Status}
-    own |= {f"{prefix}_{kernel.name}{suffix}" for kernel in program.kernels}
-    names = names_of(model, program, own)
+    names = c_names(model, program)
     called = program.sincos is not None and any(
         statement.operation == "sincos" for kernel in program.kernels for statement in all_statements(kernel)
     )

@@ -1,0 +1,205 @@
+"""C99 over many states at once: arrays of components, a loop without branches that compilers turn into vector code.
+
+The loop computes the results of a block of states and one flag for each: every check passed and every result is
+finite. The few states whose flag says no go through the kernel for one state, which alone tells statuses apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from symgen.emit.c import c_names, status_name
+from symgen.emit.comments import c_comment_lines
+from symgen.emit.locals import Names, all_statements, array_arguments, names_of
+from symgen.emit.quantities import meaning
+from symgen.emit.render import render
+from symgen.emit.statements import CStatements, c_type
+from symgen.ir.kernel import Check, Function, Kernel, Local, Operand, Program, Statement, Status
+from symgen.ir.split import names_in, names_of_blocks, split, without_first
+from symgen.model.model import Model
+from symgen.naming import c_identifiers, file_stem
+
+# What is evaluated for many states: sweeps of trajectories, parameter studies, sampling.
+BATCHED = ("inverse_dynamics", "forward_dynamics", "multipliers")
+# States a block: local arrays of rows of this length; a multiple of every vector length in use.
+BLOCK = 64
+_OWN_NAMES = frozenset({"count", "stride", "status", "start", "length", "k", "i", "from", "copy", "result", "LANES"})
+_OWN_NAMES |= {"flag", "flags", "bits", "code", "refused", "rest", "y"}
+
+
+@dataclass(frozen=True, slots=True)
+class ArgumentView:
+    """An array argument: name, length, and the components that the kernel reads."""
+
+    name: str
+    length: int
+
+
+@dataclass(frozen=True, slots=True)
+class RowView:
+    """A component that the loop reads: `argument[index]` of every state."""
+
+    argument: str
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class BatchView:
+    """One function: comment, prototype without semicolon, and what its template fills in."""
+
+    comment: tuple[str, ...]
+    prototype: str
+    single: str
+    arguments: tuple[ArgumentView, ...]
+    rows: tuple[RowView, ...]
+    output: str
+    size: int
+    fixed: tuple[str, ...]
+    body: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class BatchFileView:
+    """Everything the templates of the batch files print."""
+
+    stem: str
+    guard: str
+    plain_stem: str
+    model: str
+    scalar: str
+    lane: str
+    zero: str
+    one: str
+    ok: str
+    block: int
+    functions: tuple[BatchView, ...]
+    inline: str
+    pair: str
+    angle: str
+    pair_body: tuple[str, ...]
+    ratio: str
+
+
+def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
+    """`c/<model>_batch.h`, `.c` (float32: `_batch_f`), or nothing where the program has no quantity of `BATCHED`."""
+    kernels = tuple(kernel for kernel in program.kernels if kernel.name in BATCHED)
+    if not kernels:
+        return {}
+    suffix = "" if program.scalar == "float64" else "_f"
+    plain = file_stem(model.name)
+    stem = f"{plain}_batch{suffix}"
+    pair, ratio = f"{model.name}_sincos{suffix}", f"{model.name}_ratio{suffix}"
+    inline = f"{stem.upper()}_INLINE"
+    own = {f"{model.name}_{kernel.name}{tail}{suffix}" for kernel in program.kernels for tail in ("", "_batch")}
+    own |= {pair, ratio, inline, f"{stem.upper()}_H", f"{model.name}_params{suffix}", *_OWN_NAMES}
+    own |= {status_name(model, status) for status in Status}
+    own |= {f"{argument.name}_one" for kernel in kernels for argument in kernel.arguments}
+    # the members of the parameter struct are those of the other header
+    names = replace(names_of(model, program, own), members=c_names(model, program).members)
+    operations = {statement.operation for kernel in kernels for statement in all_statements(kernel)}
+    angle, pair_body = _pair(program, program.sincos, pair) if program.sincos and "sincos" in operations else ("", ())
+    view = BatchFileView(
+        stem=stem,
+        guard=f"{stem.upper()}_H",
+        plain_stem=f"{plain}{suffix}",
+        model=model.name,
+        scalar=c_type(program.scalar),
+        lane="int64_t" if program.scalar == "float64" else "int32_t",
+        zero="0.0" if program.scalar == "float64" else "0.0f",
+        one="1.0" if program.scalar == "float64" else "1.0f",
+        ok=status_name(model, Status.OK),
+        block=BLOCK,
+        functions=tuple(_function(model, program, kernel, names, (pair, ratio), suffix) for kernel in kernels),
+        inline=inline,
+        pair=pair,
+        angle=angle,
+        pair_body=pair_body,
+        ratio=ratio if "ratio_or_zero" in operations else "",
+    )
+    return {
+        f"c/{stem}.h": render("c/batch.h.jinja", view),
+        f"c/{stem}.c": render("c/batch.c.jinja", view),
+    }
+
+
+def _pair(program: Program, function: Function, name: str) -> tuple[str, tuple[str, ...]]:
+    """The parameter and the body of the sine and cosine, which has to be part of the loop."""
+    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
+    names = c_identifiers(own, {"sine", "cosine", name})
+    printer = CStatements(program.scalar, names, frozenset(own))
+    body = [line for statement in function.statements for line in printer.statement(statement)]
+    sine, cosine = (names[result] for result in function.results)
+    return names[function.parameters[0]], (*body, f"*sine = {sine};", f"*cosine = {cosine};")
+
+
+def _function(
+    model: Model, program: Program, kernel: Kernel, names: Names, private: tuple[str, str], suffix: str
+) -> BatchView:
+    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    single = f"{model.name}_{kernel.name}{suffix}"
+    arguments = tuple(ArgumentView(a.name, a.length) for a in array_arguments(kernel))
+    given = ["size_t count", "size_t stride", *(f"const {scalar} *{a.name}" for a in arguments)]
+    given += [f"const {model.name}_params{suffix} *p", f"{scalar} *{output}", "unsigned char *status"]
+    name = f"{model.name}_{kernel.name}_batch{suffix}"
+    flat = without_first(kernel)
+    parts = split(flat)
+    pair, ratio = private
+    own_pair = None if program.sincos is None else pair
+    printer = _Lanes(CStatements(program.scalar, names.locals, _used(flat), own_pair), ratio)
+    rows = [load for load in flat.loads if load.argument != "p"]
+    fixed = [
+        f"const {scalar} {names.locals[load.local]} = p->{names.members[load.member]};"
+        for load in flat.loads
+        if load.argument == "p"
+    ]
+    fixed += [line for statement in parts.fixed for line in printer.statement(statement)]
+    body = [f"const {scalar} {names.locals[load.local]} = from[{k}][k];" for k, load in enumerate(rows)]
+    body += [line for block in parts.blocks for statement in block.statements for line in printer.statement(statement)]
+    body += printer.flag([check for block in parts.blocks for check in block.checks], kernel.outputs)
+    body += [f"result[{k}][k] = {printer.plain.operand(operand)};" for k, operand in enumerate(kernel.outputs)]
+    return BatchView(
+        comment=c_comment_lines(f"{meaning(kernel.name)}; {output} has {len(kernel.outputs)} rows"),
+        prototype=f"size_t {name}({', '.join(given)})",
+        single=single,
+        arguments=arguments,
+        rows=tuple(RowView(load.argument, load.index) for load in rows),
+        output=output,
+        size=len(kernel.outputs),
+        fixed=tuple(fixed),
+        body=tuple(body),
+    )
+
+
+def _used(kernel: Kernel) -> frozenset[str]:
+    return frozenset(names_of_blocks(kernel.blocks) | names_in(kernel.outputs))
+
+
+@dataclass(frozen=True, slots=True)
+class _Lanes:
+    """Prints statements without branches, and checks as terms of one flag."""
+
+    plain: CStatements
+    ratio: str
+
+    def statement(self, statement: Statement) -> tuple[str, ...]:
+        """One statement as lines; a division that may be left out is a function without branches."""
+        if statement.operation != "ratio_or_zero":
+            return self.plain.statement(statement)
+        operands = ", ".join(map(self.plain.operand, statement.operands))
+        name = self.plain.names[statement.targets[0]]
+        return (f"const {c_type(self.plain.scalar)} {name} = {self.ratio}({operands});",)
+
+    def flag(self, checks: list[Check], outputs: tuple[Operand, ...]) -> list[str]:
+        """The lines that make `flag[k]`: 0 where every check passes and every result is finite."""
+        plain = self.plain
+        zero, one = ("0.0", "1.0") if plain.scalar == "float64" else ("0.0f", "1.0f")
+        results = [plain.names[o.name] for o in dict.fromkeys(outputs) if isinstance(o, Local)]
+        # x - x is 0 for finite x and NaN otherwise
+        rest = " + ".join(f"({y} - {y})" for y in results) or zero
+        lines = [f"{c_type(plain.scalar)} rest = {rest};"]
+        for check in checks:
+            relation = ">=" if check.inclusive else ">"
+            # a sum leaves nothing to skip, so the loop stays free of branches
+            passes = f"{plain.operand(check.value)} {relation} {plain.operand(check.limit)}"
+            lines.append(f"rest += {passes} ? {zero} : {one};")
+        return [*lines, "flag[k] = rest;"]

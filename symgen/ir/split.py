@@ -1,0 +1,75 @@
+"""A kernel cut in two: what depends on parameters only, and what every state needs anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, Statement
+
+
+@dataclass(frozen=True, slots=True)
+class Split:
+    """`fixed` statements use parameters and each other only; `blocks` are the kernel's without them.
+
+    Checks stay in their blocks, those of fixed values too: a state gets its status at the same place as before.
+    """
+
+    fixed: tuple[Statement, ...]
+    blocks: tuple[Block, ...]
+
+
+def split(kernel: Kernel) -> Split:
+    """The statements on the way of a regular state, cut in two; what only a failed check runs stays where it is."""
+    known = {load.local for load in kernel.loads if load.argument == "p"}
+    fixed: list[Statement] = []
+    blocks = []
+    for block in kernel.blocks:
+        kept = []
+        for statement in block.statements:
+            if all(isinstance(o, Literal) or o.name in known for o in statement.operands):
+                fixed.append(statement)
+                known.update(statement.targets)
+            else:
+                kept.append(statement)
+        blocks.append(replace(block, statements=tuple(kept)))
+    return Split(tuple(fixed), tuple(blocks))
+
+
+def without_first(kernel: Kernel) -> Kernel:
+    """The kernel whose checks only pass or fail: what tells one failure from another goes, with all it alone needs."""
+    blocks = [replace(block, checks=tuple(replace(c, first=None) for c in block.checks)) for block in kernel.blocks]
+    needed = names_in(kernel.outputs)
+    kept: list[Block] = []
+    for block in reversed(blocks):
+        needed |= names_in(operand for check in block.checks for operand in (check.value, check.limit))
+        statements = []
+        for statement in reversed(block.statements):
+            if needed.intersection(statement.targets):
+                needed |= names_in(statement.operands)
+                statements.append(statement)
+        kept.append(replace(block, statements=tuple(reversed(statements))))
+    loads = tuple(load for load in kernel.loads if load.local in needed)
+    return replace(kernel, loads=loads, blocks=tuple(reversed(kept)))
+
+
+def names_in(operands: Iterable[Operand]) -> set[str]:
+    """The locals among operands."""
+    return {operand.name for operand in operands if isinstance(operand, Local)}
+
+
+def names_of_blocks(blocks: Sequence[Block]) -> set[str]:
+    """Every local that blocks refer to, what runs only when a check fails included."""
+    found: set[str] = set()
+    for block in blocks:
+        for statement in block.statements:
+            found |= names_in(statement.operands)
+        for check in block.checks:
+            found |= names_of_check(check)
+    return found
+
+
+def names_of_check(check: Check) -> set[str]:
+    """Every local that a check refers to, what it evaluates on failure included."""
+    found = names_in((check.value, check.limit))
+    return found if check.first is None else found | names_of_blocks([check.first])
