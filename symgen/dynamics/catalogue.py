@@ -61,6 +61,10 @@ def _actuation(d: Derivation) -> tuple[Guard, ...]:
     return d.actuation_guards
 
 
+def _inverse_dynamics(d: Derivation) -> tuple[Guard, ...]:
+    return d.inverse_dynamics_guards
+
+
 def _actuator(d: Derivation) -> tuple[Guard, ...]:
     return (*d.space.guards, *d.actuation_guards)
 
@@ -165,7 +169,7 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("admissible_velocity", _n, lambda d: d.admissible, _constraint),
     Entry("admissible_acceleration", _n, lambda d: d.admissible_acceleration(), _constraint),
     Entry("projected_configuration", _n, lambda d: d.projected_configuration(), lambda d: d.newton_guards),
-    Entry("inverse_dynamics", lambda s: (s.m,), lambda d: d.inverse_dynamics, _actuation),
+    Entry("inverse_dynamics", lambda s: (s.m,), lambda d: d.inverse_dynamics, _inverse_dynamics),
     Entry("inverse_dynamics_residual", _n, lambda d: d.inverse_dynamics_residual(), _residual),
     Entry("actuator_velocity", lambda s: (s.m,), lambda d: d.actuator_velocity(), needs=ACTUATORS),
     Entry(

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import combinations
 
+from symgen.dynamics.allocation import InputAllocation
 from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
 from symgen.dynamics.exterior import square as multivector_square
 from symgen.dynamics.genericity import Genericity
@@ -94,7 +95,9 @@ class Derivation:
         if isinstance(self.space, HouseholderSpace):
             # reflections keep lengths: the determinants are at most the products of the columns' lengths
             squares = magnitude(self.graph, [dot(self.graph, column, column) for column in columns])
-            scale = self.graph.sum(self.graph.product(squares[k] for k in subset) for subset in forms.subsets)
+            scale = self.graph.sum(
+                self.graph.product(squares[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
+            )
             if forms.single:
                 scale = self.graph.function("sqrt", (scale,))
         return (Guard(status, forms.denominator(), 1 if forms.single else 2, self.space.guards, scale),)
@@ -261,14 +264,31 @@ class Derivation:
 
     @cached_property
     def inverse_dynamics(self) -> Vector:
-        """u = (W^T M)^+ W^T tau, the minimum-norm least-squares inputs."""
+        """u = (W^T M)^+ W^T tau, the minimum-norm least-squares inputs, or as the model's `allocation` says."""
+        if self._allocation is not None:
+            return self._allocation.solve(self.mechanics.balance)
         return self._solve_inputs(self.mechanics.balance)
+
+    @cached_property
+    def _allocation(self) -> InputAllocation | None:
+        allocation = self.mechanics.model.allocation
+        if allocation is None:
+            return None
+        return InputAllocation(self.mechanics, allocation, self.space, self.generic.alpha)
+
+    @property
+    def inverse_dynamics_guards(self) -> tuple[Guard, ...]:
+        """The denominator of the input equations, with the weights of the inputs."""
+        if self._allocation is None:
+            return self.actuation_guards
+        return self._solvable(self._allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
 
     def inverse_dynamics_residual(self) -> Vector:
         """N_B (tau - M u); nothing is left where the system is fully actuated."""
         if self.generic.full_actuation:
             return (self.graph.zero,) * self.n
-        return residual(self.space, self.mechanics.balance, self.mechanics.inputs, self.inverse_dynamics)
+        least = self._solve_inputs(self.mechanics.balance)
+        return residual(self.space, self.mechanics.balance, self.mechanics.inputs, least)
 
     @cached_property
     def actuator_basis(self) -> Matrix:

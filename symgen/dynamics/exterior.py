@@ -107,10 +107,16 @@ class RowForms:
 
 
 class ActuationForms:
-    """The products M_J ^ omega over the input subsets J of size alpha, for every row subset of `rows`."""
+    """The products M_J ^ omega over the input subsets J of size alpha, for every row subset of `rows`.
 
-    def __init__(self, rows: RowForms, inputs: Sequence[Vector], degree: int) -> None:
+    With `weights` w the sums are those of the columns M_j / sqrt(w_j): each subset counts by the weights outside it.
+    """
+
+    def __init__(
+        self, rows: RowForms, inputs: Sequence[Vector], degree: int, weights: Sequence[Scalar] = ()
+    ) -> None:
         self.graph = rows.graph
+        self.weights = weights
         self.rows = rows
         self.inputs = inputs
         self.degree = degree
@@ -130,10 +136,18 @@ class ActuationForms:
         (product,) = self.products[0]
         return product.get((1 << self.rows.n) - 1, self.graph.zero)
 
+    def importance(self, subset: tuple[int, ...]) -> Scalar:
+        """The factor of a subset's determinants in the sums."""
+        return self.graph.product(w for k, w in enumerate(self.weights) if k not in subset)
+
     def square(self) -> Scalar:
         """Sum of |M_J ^ omega_I|^2; 0 where the rank of B or of the projected control matrix drops."""
         graph = self.graph
-        return graph.sum(square(graph, product) for family in self.products for product in family)
+        return graph.sum(
+            square(graph, product) * self.importance(subset)
+            for family in self.products
+            for subset, product in zip(self.subsets, family, strict=True)
+        )
 
     def denominator(self) -> Scalar:
         """Delta itself when `single`, else the sum of squares."""
@@ -146,9 +160,10 @@ class ActuationForms:
         for form, family in zip(self.rows.forms, self.products, strict=True):
             replaced = self._replaced(form, force)
             for subset, product in zip(self.subsets, family, strict=True):
+                factor = self.importance(subset)
                 for place, k in enumerate(subset):
                     others = subset[:place] + subset[place + 1 :]
-                    term = self._pair(product, replaced[others])
+                    term = self._pair(product, replaced[others]) * factor
                     if (len(subset) - 1 - place) & 1:
                         term = -term
                     numerators[k] = numerators[k] + term

@@ -23,7 +23,7 @@ _KIND = {
 
 @dataclass(frozen=True, slots=True)
 class OperationCounts:
-    """Operations of a straight-line program; `sign` counts neg, abs and copysign, `other` the library's functions."""
+    """Operations of a straight-line program; `sign` counts neg, abs and copysign, `other` functions, min, max."""
 
     add: int
     mul: int

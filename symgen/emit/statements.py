@@ -9,6 +9,7 @@ from symgen.emit.literals import c_literal, numpy_literal
 from symgen.ir.kernel import Block, Check, Literal, Local, Operand, Scalar, Statement, Status
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+_CHOICES = {"min": "<", "max": ">"}
 _C_FUNCTIONS = {"abs": "fabs"}
 _NUMPY_FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2", "pow": "power"}
 
@@ -68,6 +69,8 @@ class CStatements:
         if operation == "ratio_or_zero":
             zero = "0.0f" if self.scalar == "float32" else "0.0"
             return f"{operands[1]} != {zero} ? {operands[0]} / {operands[1]} : {zero}"
+        if operation in _CHOICES:
+            return f"{operands[0]} {_CHOICES[operation]} {operands[1]} ? {operands[0]} : {operands[1]}"
         return f"{self.function(operation)}({', '.join(operands)})"
 
     def _sincos(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
@@ -130,6 +133,8 @@ class NumpyStatements:
             return f"-{operands[0]}"
         if operation == "ratio_or_zero":
             return f"_ratio_or_zero({operands[0]}, {operands[1]})"
+        if operation in _CHOICES:
+            return f"np.where({operands[0]} {_CHOICES[operation]} {operands[1]}, {operands[0]}, {operands[1]})"
         return f"np.{_NUMPY_FUNCTIONS.get(operation, operation)}({', '.join(operands)})"
 
     def _check(self, check: Check, context: str) -> tuple[str, ...]:

@@ -31,6 +31,8 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "mul": lambda a, b: a * b,
     "div": lambda a, b: a / b,
     "neg": lambda a: -a,
+    "min": min,
+    "max": max,
     "ratio_or_zero": lambda a, b: a / b if b else 0.0,
 }
 

@@ -97,7 +97,7 @@ def cost(outputs: Iterable[Scalar]) -> Cost:
     angles: set[int] = set()
     for node in topological(outputs):
         match node.op:
-            case "add" | "sub":
+            case "add" | "sub" | "min" | "max":
                 additive += 1
             case "mul":
                 multiplications += 1

@@ -42,6 +42,8 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "sqrt": _guarded(math.sqrt),
     "copysign": math.copysign,
     "ratio_or_zero": lambda a, b: 0.0 if b == 0.0 else _divide(a, b),
+    "min": lambda a, b: a if a < b else b,
+    "max": lambda a, b: a if a > b else b,
     "tan": _guarded(math.tan),
     "asin": _guarded(math.asin),
     "acos": _guarded(math.acos),

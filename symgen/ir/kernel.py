@@ -38,6 +38,8 @@ OperationName: TypeAlias = Choice[
     "sqrt",
     "copysign",  # magnitude of the first operand, sign of the second
     "ratio_or_zero",  # a / b, and 0 where b == 0
+    "min",  # a where a < b, else b
+    "max",  # a where a > b, else b
     "sincos",  # two targets (sine, cosine); the program's own function
     "tan",
     "asin",

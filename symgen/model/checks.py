@@ -10,6 +10,7 @@ from symgen.model.feasibility import check_motion
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Model
 from symgen.model.reading import key_span, member
+from symgen.model.redundancy import check_redundancy
 from symgen.model.scope import Scope
 from symgen.model.source import MappingNode
 from symgen.model.structure import check_domain, check_geometric, check_kinetic_energy, check_nonholonomic
@@ -67,6 +68,8 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     if whole and kinetic is not None and len(scope.mistakes) == before:
         start = {name: float(value) for name, value in model.configuration}
         _add(scope, check_motion(mechanics, start, model.independent_velocities, _block_spans(tree)))
+        if model.allocation is not None and len(scope.mistakes) == before:
+            _add(scope, check_redundancy(mechanics, start, model.inputs, model.definitions, model.allocation))
 
 
 def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:

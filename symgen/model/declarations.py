@@ -9,6 +9,7 @@ from symgen.diagnostics import Mistake
 from symgen.model.constants import range_of
 from symgen.model.expression import Expression, Number
 from symgen.model.model import AppliedForce, ConstraintRow, Definition, Input, Parameter, Range
+from symgen.model.mechanism import component, is_component
 from symgen.model.names import QUOTING, did_you_mean, is_name
 from symgen.model.parser import parse_expression
 from symgen.model.reading import description_of, entries, member, text_of
@@ -41,7 +42,8 @@ def read_ranges(scope: Scope, tree: MappingNode) -> DeclaredRanges:
             declared = range_of(scope, member(value, "range"), f"the range of `{key.value}`")
             if declared is not None:
                 ranges[key.value] = declared
-    ranged = [name for name, kind in scope.kinds.items() if kind in ("coordinate", "rate", "acceleration", "parameter")]
+    kinds = ("coordinate", "rate", "acceleration", "parameter", "setting")
+    ranged = [name for name, kind in scope.kinds.items() if kind in kinds]
     for key, value in entries(tree.get("ranges")):
         if key.value not in ranged:
             remedy = did_you_mean(key.value, ranged, "name a coordinate, rate, acceleration or parameter")
@@ -92,9 +94,13 @@ def read_definitions(scope: Scope, tree: MappingNode) -> tuple[Definition, ...]:
         if not scope.owns(key):
             continue
         if value is not None and any(
-            scope.kinds[name.name] == "rate" or name.name in scope.rate_definitions for name in names_in(value)
+            _is_rate(scope, name.name) or name.name in scope.rate_definitions for name in names_in(value)
         ):
             scope.rate_definitions.add(key.value)
+        if value is not None and any(
+            is_component(name.name) or name.name in scope.place_definitions for name in names_in(value)
+        ):
+            scope.place_definitions.add(key.value)
         if value is None:
             scope.faulty.add(key.value)
         definitions.append(Definition(key.value, value or Number(Fraction(1)), key.span))
@@ -142,6 +148,10 @@ def read_applied_forces(scope: Scope, tree: MappingNode) -> tuple[AppliedForce, 
             if expression is not None:
                 forces.append(AppliedForce(key.value, expression, key.span))
     return tuple(forces)
+
+
+def _is_rate(scope: Scope, name: str) -> bool:
+    return component(name).is_rate if is_component(name) else scope.kinds[name] == "rate"
 
 
 def _number(value: Expression, values: dict[str, float]) -> float:

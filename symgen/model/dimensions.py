@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 from symgen.diagnostics import Mistake, Span
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
-from symgen.model.model import Model
+from symgen.model.model import Allocation, Model
 from symgen.model.reading import entries, member
 from symgen.model.source import MappingNode, ScalarNode
 from symgen.model.units import NUMBER, SECOND, Unit, parse_unit
@@ -57,7 +57,37 @@ def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
                 what = f"the force of `{column.name}` on `{coordinate}`"
                 needed = f"the generalized force of `{coordinate}`"
                 mistakes.append(_clash(what, input_unit.times(found), needed, force_unit, coefficient))
+    if model.allocation is not None:
+        _check_allocation(model, model.allocation, units, inference)
     return mistakes
+
+
+def _check_allocation(model: Model, allocation: Allocation, units: dict[str, Unit], inference: _Inference) -> None:
+    """Limits and preferred values have their input's unit; a preload that of every input by the root of its weight."""
+    values = {parameter.name: parameter.value for parameter in model.parameters}
+    for limit in allocation.limits:
+        for name, end in ((limit.lower, "lower"), (limit.upper, "upper")):
+            what = f"the {end} limit of `{limit.input}`"
+            inference.agrees(values[name], units.get(limit.input), what, f"`{limit.input}`")
+    for given, name in allocation.preferred:
+        inference.agrees(values[name], units.get(given), f"the preload of `{given}`", f"`{given}`")
+    if allocation.preload is None:
+        return
+    preload = values[allocation.preload]
+    found = inference.of(preload) if any(names_in(preload)) else None
+    weights = {given: values[name] for given, name in allocation.weights}
+    for item in model.inputs:
+        weight = weights.get(item.name, Number(Fraction(1)))
+        factor = inference.of(weight) if item.name not in weights or any(names_in(weight)) else None
+        unit = units.get(item.name)
+        if found is None or factor is None or unit is None:
+            continue
+        needed = unit.times(factor.to_power(Fraction(1, 2)))
+        if found != needed:
+            other = f"`{item.name}` times the root of its weight" if item.name in weights else f"`{item.name}`"
+            # the inputs may differ among themselves: one mistake is enough
+            inference.agrees(preload, needed, "the preload", other)
+            return
 
 
 class _Inference:

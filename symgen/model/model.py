@@ -84,6 +84,35 @@ class Input:
 
 
 @dataclass(frozen=True, slots=True)
+class Limit:
+    """The limits of one input, by the names of the parameters that hold them."""
+
+    input: str
+    lower: str
+    upper: str
+
+
+@dataclass(frozen=True, slots=True)
+class Allocation:
+    """How redundant inputs share the work; its numbers are the last of the model's parameters, named here.
+
+    `weights` and `preferred` are pairs (input, parameter).  `preload` is the parameter that multiplies the one
+    internal-force direction; `preferred` values are approached by all inputs together.
+    """
+
+    weights: tuple[tuple[str, str], ...]
+    preload: str | None
+    preferred: tuple[tuple[str, str], ...]
+    limits: tuple[Limit, ...]
+    span: Span | None = None
+
+    @property
+    def directed(self) -> bool:
+        """Whether it needs the one internal-force direction of m - delta = 1."""
+        return self.preload is not None or bool(self.limits)
+
+
+@dataclass(frozen=True, slots=True)
 class AppliedForce:
     """A further generalized force Q_a(q, q_dot) on the right-hand side of one coordinate's equation."""
 
@@ -174,6 +203,7 @@ class Model:
     report: Literal["full", "short"]
     notices: tuple[Notice, ...]
     text_hash: str
+    allocation: Allocation | None = None
 
     @property
     def n(self) -> int:

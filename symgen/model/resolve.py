@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Literal
 
 from symgen.diagnostics import Notice
+from symgen.model.allocation import declare_settings, read_allocation
 from symgen.model.checks import check_mechanics, notice_empty_outputs
 from symgen.model.constants import constant
 from symgen.model.coordinates import read_coordinates
@@ -36,6 +37,7 @@ ZERO = Number(Fraction(0))
 def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     """The model as far as it can be understood; what cannot is a mistake in `scope`."""
     declare_names(scope, tree)
+    declare_settings(scope, tree)
     ranges = read_ranges(scope, tree)
     parameters = read_parameters(scope, tree, ranges)
     definitions = read_definitions(scope, tree)
@@ -44,6 +46,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     potential = scope.expression(tree.get("potential_energy"), "the potential energy", CONFIGURATION) or ZERO
     constraints = read_constraints(scope, tree)
     inputs = read_inputs(scope, tree)
+    allocation, settings = read_allocation(scope, tree, inputs, parameters, ranges)
     forces = read_applied_forces(scope, tree)
     used = [
         kinetic, potential, *(row.expression for row in constraints), *(force.expression for force in forces),
@@ -60,12 +63,13 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         description=one_line(tree.get("description")),
         source=one_line(tree.get("source")),
         coordinates=coordinates,
-        parameters=parameters,
+        parameters=(*parameters, *settings),
         definitions=definitions,
         kinetic_energy=kinetic,
         potential_energy=potential,
         constraints=constraints,
         inputs=inputs,
+        allocation=allocation,
         applied_forces=forces,
         outputs=_outputs(scope, tree.get("outputs"), bool(inputs)),
         independent_velocities=_coordinate_list(scope, tree.get("independent_velocities"), names),

@@ -125,6 +125,18 @@ _PATH = Record(
         Field("start", Table(Formula()), "where Newton's method begins at t = 0"),
     ),
 )
+_ALLOCATION = Record(
+    "`allocation`",
+    (
+        Field("weights", Table(Formula(), 1), "input: positive weight of its square in the norm; absent: 1"),
+        Field(
+            "preload",
+            Either((Formula(), Table(Formula(), 1))),
+            "internal force along the one direction of m - δ = 1, or input: preferred value",
+        ),
+        Field("limits", Table(Listing(Formula(), 2, 2), 1), "input: [lower, upper]; needs m - δ = 1"),
+    ),
+)
 
 MODEL = Record(
     "the model",
@@ -154,6 +166,7 @@ MODEL = Record(
             "constraint rows by name",
         ),
         Field("inputs", Table(_INPUT), "control forces: the columns of the control matrix"),
+        Field("allocation", _ALLOCATION, "how redundant inputs share the work: members of the parameter struct"),
         Field("applied_forces", Table(Formula()), "coordinate: further generalized force of q, rates, parameters"),
         Field(
             "outputs",
@@ -180,7 +193,7 @@ MODEL = Record(
     ),
     later=(
         "gravity", "frames", "bodies", "rotor_inertias", "points", "joints", "loops", "springs", "rolling", "friction",
-        "urdf", "allocation", "trig_range",
+        "urdf", "trig_range",
     ),
 )  # fmt: skip
 

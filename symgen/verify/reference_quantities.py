@@ -14,6 +14,7 @@ from typing import Any
 
 from flint import arb, arb_mat
 
+from symgen.verify.reference_allocation import allocated
 from symgen.verify.reference_linear import (
     column,
     columns_of,
@@ -133,7 +134,10 @@ class Evaluation:
 
     @cached_property
     def inverse_dynamics(self) -> Any:
-        """u (27)."""
+        """u (27), or as the model's allocation says."""
+        allocation = self.system.model.allocation
+        if allocation is not None:
+            return allocated(self, allocation)
         return self.control_inverse * (self.projector * self.load)
 
     @cached_property
@@ -187,7 +191,7 @@ class Evaluation:
 
 
 def _inverse_dynamics_residual(e: Evaluation) -> Any:
-    return e.projector * (e.load - e.at.control * e.inverse_dynamics)
+    return e.projector * (e.load - e.at.control * (e.control_inverse * (e.projector * e.load)))
 
 
 def _weighted_pseudoinverse(e: Evaluation) -> Any:

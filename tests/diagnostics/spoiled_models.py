@@ -80,7 +80,7 @@ SHAPE = {
     "mapping_for_an_expression": GOOD + "potential_energy: {a: 1}\n",
     "scalar_for_a_coordinate": GOOD.replace("x: {unit: m}", "x: m"),
     "bodies_form": GOOD
-    + "gravity: [0, 0, -9.81]\nbodies: {b: {mass: 1}}\nallocation: {preload: 1}\ntrig_range: wide\n",
+    + "gravity: [0, 0, -9.81]\nbodies: {b: {mass: 1}}\ntrig_range: wide\n",
     "input_on_a_joint": GOOD + "inputs: {T: {joint: a}}\n",
     "comma_in_flow": GOOD + "inputs: {T: {acts_on: {a: atan2(x, l)}}}\n",
     "comma_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, from the vertical"),
@@ -237,6 +237,37 @@ UNITS = {
     "atan2": potential("m*atan2(x, m)"),
 }
 P = "published:\n  - "
+DRIVEN = (
+    GOOD
+    + "inputs:\n  F: {unit: N, acts_on: {x: 1}}\n  T: {unit: N*m, acts_on: {a: 1}}\n"
+    + "  P: {unit: N, acts_on: {x: 1, a: l}}\n"
+)
+TWICE = GOOD + "inputs: {F: {acts_on: {x: 1}}, P: {acts_on: {x: 2}}}\n"
+ALLOCATION = {
+    "unknown_inputs": DRIVEN + "allocation: {weights: {f: 1}, preload: {Q: 1}, limits: {T: [0, 1], x: [0, 1]}}\n",
+    "unknown_key": DRIVEN + "allocation: {weight: {F: 1}}\n",
+    "shapes": DRIVEN + "allocation: {weights: 1, preload: [1, 2], limits: {F: 3, T: [1, 2, 3], P: [1, ]}}\n",
+    "list": DRIVEN + "allocation: [1]\n",
+    "weight_zero": DRIVEN + "allocation: {weights: {F: 0, T: -m}}\n",
+    "weight_range": DRIVEN + "allocation: {weights: {F: 1}}\nranges: {weight_F: [0, 2]}\n",
+    "not_finite": DRIVEN + "allocation: {weights: {F: 1/(m - 2)}}\n",
+    "limits_reversed": DRIVEN + "allocation: {limits: {F: [m, -m]}}\n",
+    "coordinate_in_a_limit": DRIVEN + "allocation: {limits: {F: [-x, x]}}\n",
+    "taken_names": DRIVEN.replace("m: {value: 2", "preload: {value: 1}\n  weight_F: 3\n  m: {value: 2")
+    + "definitions: {limit_T_upper: x}\nallocation: {weights: {F: 1}, preload: 1, limits: {T: [0, 1]}}\n",
+    "setting_in_an_expression": DRIVEN + "allocation: {preload: 1}\npotential_energy: preload*x\n",
+    "units_of_limits": DRIVEN + "allocation: {limits: {F: [-l, 3*m], T: [0, 1]}}\n",
+    "units_of_the_preload": DRIVEN + "allocation: {preload: 2*l}\n",
+    "units_of_preferred_values": DRIVEN + "allocation: {preload: {F: l}}\n",
+    "no_inputs": GOOD + "allocation: {preload: 1}\n",
+    "nothing_to_allocate": GOOD
+    + "inputs: {F: {acts_on: {x: 1}}, T: {acts_on: {a: 1}}}\nallocation: {limits: {F: [-1, 1]}}\n",
+    "too_many_directions": DRIVEN.replace("inputs:\n", "inputs:\n  E: {acts_on: {x: 1}}\n")
+    + "allocation: {preload: 1, limits: {F: [-1, 1]}}\n",
+    "under_actuated": TWICE + "allocation: {preload: 1, limits: {F: [-1, 1]}}\n",
+    "dependent_rows": TWICE
+    + "constraints: {nonholonomic: {b: a_dot, c: 2*a_dot}}\nallocation: {preload: 1, limits: {F: [-1, 1]}}\n",
+}
 PUBLISHED_AND_PATHS = {
     "quantity": GOOD + P + '{equation: "(1)", quantity: mass_matrx, value: [1]}\n',
     "ragged": GOOD + P + '{equation: "(1)", quantity: mass_matrix, value: [[1, 2], [3]]}\n',
@@ -262,5 +293,6 @@ GROUPS = {
     "structure": STRUCTURE,
     "mechanism": MECHANISM,
     "units": UNITS,
+    "allocation": ALLOCATION,
     "published_and_paths": PUBLISHED_AND_PATHS,
 }

@@ -1,0 +1,96 @@
+"""Whether the inputs leave anything to allocate: ranks of B and M at configurations of the mechanism."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from symgen.diagnostics import Mistake, Notice
+from symgen.model.dense import Rows, rank
+from symgen.model.feasibility import SAMPLES, THRESHOLDS
+from symgen.model.gradient import Gradients
+from symgen.model.mechanics import Mechanics
+from symgen.model.model import Allocation, Definition, Input
+from symgen.model.names import counted
+
+
+def check_redundancy(
+    mechanics: Mechanics,
+    start: dict[str, float],
+    inputs: tuple[Input, ...],
+    definitions: tuple[Definition, ...],
+    allocation: Allocation,
+) -> Iterator[Mistake | Notice]:
+    """What the block `allocation` asks for and these inputs cannot do.
+
+    Needed are more inputs than the rank of the projected control matrix, for a preload along one direction and for
+    limits exactly one more than δ, and independent constraints (else that direction has no sign of its own).
+    """
+    samples = list(_samples(mechanics, start, inputs, definitions))
+    if not samples:
+        return
+    (constraints, together), _ = Counter(ranks for ranks, _ in samples).most_common(1)[0]
+    n, m = len(mechanics.coordinates), len(inputs)
+    delta, degree = n - constraints, together - constraints
+    if m == degree:
+        share = f"{counted(m, 'input')} for δ = {delta}, determined by the motion" if m else "the model has no inputs"
+        yield Mistake(
+            f"nothing to allocate: {share}",
+            "remove `allocation`; it shares the work of more inputs than are needed",
+            allocation.span,
+        )
+        return
+    if allocation.directed:
+        yield from _check_direction(mechanics, allocation, m, delta, degree, constraints)
+    for limit in allocation.limits:
+        index = [item.name for item in inputs].index(limit.input)
+        if all(rank([*b, *columns[:index], *columns[index + 1 :]]) < together for _, (b, columns) in samples):
+            yield Notice(
+                f"the motion alone determines `{limit.input}`: no other input can take over what is beyond its limits",
+                allocation.span,
+            )
+
+
+def _check_direction(
+    mechanics: Mechanics, allocation: Allocation, m: int, delta: int, degree: int, constraints: int
+) -> Iterator[Mistake]:
+    """Limits and a single preload need one direction of internal force, with a sign of its own."""
+    if degree < delta:
+        why = f"the inputs reach {degree} of δ = {delta} directions of motion"
+    elif m - delta != 1:
+        why = f"here are m - δ = {m - delta} directions of internal force"
+    elif constraints < len(mechanics.constraints):
+        why = "constraints depend on each other, which leaves this direction without a sign"
+    else:
+        return
+    one = "one direction of internal force (m = δ + 1)"
+    if allocation.preload:
+        remedy = "name a value for each input instead: `preload: {input: value}`"
+        yield Mistake(f"a single `preload` needs {one}: {why}", remedy, allocation.span)
+    if allocation.limits:
+        remedy = "remove `limits`; keeping limits is a quadratic program otherwise, which a kernel does not solve"
+        yield Mistake(f"`limits` need {one}: {why}", remedy, allocation.span)
+
+
+def _samples(
+    mechanics: Mechanics, start: dict[str, float], inputs: tuple[Input, ...], definitions: tuple[Definition, ...]
+) -> Iterator[tuple[tuple[int, int], tuple[Rows, Rows]]]:
+    """(rank B, rank [B; Mᵀ]) with B and the columns of M, where they are clear-cut."""
+    index = {c.name: i for i, c in enumerate(mechanics.coordinates)}
+    named = {definition.name: definition.value for definition in definitions}
+    for q in mechanics.admissible(start, SAMPLES):
+        at = {**mechanics.defaults, **{c.name: x for c, x in zip(mechanics.coordinates, q, strict=True)}}
+        gradients = Gradients(at, index, named)
+        try:
+            b = mechanics.jacobian(q)
+            columns = []
+            for item in inputs:
+                column = [0.0] * len(q)
+                for name, coefficient in item.acts_on:
+                    column[index[name]] = gradients.of(coefficient)[0]
+                columns.append(column)
+        except (ArithmeticError, ValueError):
+            continue
+        low, high = ((rank(b, size), rank([*b, *columns], size)) for size in THRESHOLDS)
+        if low == high:
+            yield low, (b, columns)
