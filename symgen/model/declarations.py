@@ -9,7 +9,6 @@ from symgen.diagnostics import Mistake
 from symgen.model.constants import range_of
 from symgen.model.expression import Expression, Number
 from symgen.model.model import AppliedForce, ConstraintRow, Definition, Input, Parameter, Range
-from symgen.model.mechanism import component, is_component
 from symgen.model.names import QUOTING, did_you_mean, is_name
 from symgen.model.parser import parse_expression
 from symgen.model.reading import description_of, entries, member, text_of
@@ -94,13 +93,9 @@ def read_definitions(scope: Scope, tree: MappingNode) -> tuple[Definition, ...]:
         if not scope.owns(key):
             continue
         if value is not None and any(
-            _is_rate(scope, name.name) or name.name in scope.rate_definitions for name in names_in(value)
+            scope.kinds[name.name] == "rate" or name.name in scope.rate_definitions for name in names_in(value)
         ):
             scope.rate_definitions.add(key.value)
-        if value is not None and any(
-            is_component(name.name) or name.name in scope.place_definitions for name in names_in(value)
-        ):
-            scope.place_definitions.add(key.value)
         if value is None:
             scope.faulty.add(key.value)
         definitions.append(Definition(key.value, value or Number(Fraction(1)), key.span))
@@ -148,10 +143,6 @@ def read_applied_forces(scope: Scope, tree: MappingNode) -> tuple[AppliedForce, 
             if expression is not None:
                 forces.append(AppliedForce(key.value, expression, key.span))
     return tuple(forces)
-
-
-def _is_rate(scope: Scope, name: str) -> bool:
-    return component(name).is_rate if is_component(name) else scope.kinds[name] == "rate"
 
 
 def _number(value: Expression, values: dict[str, float]) -> float:
