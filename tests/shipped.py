@@ -7,6 +7,7 @@ from pathlib import Path
 
 from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
+from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.python import emit_python
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.schedule import schedule
@@ -34,6 +35,7 @@ def sources(name: str) -> dict[str, str]:
     files = emit_python(model(name), programs(name)["float64"])
     for scalar in SCALARS:
         files |= emit_c(model(name), programs(name)[scalar])
+        files |= emit_c_batch(model(name), programs(name)[scalar])
     return files
 
 

@@ -73,7 +73,7 @@ class Certificate:
 
     @property
     def targets(self) -> tuple[str, ...]:
-        """`C float64`, `C float32`, `Python float64`: what was checked."""
+        """`C float64`, `C float64 batch`, `Python float64` and so on: what was checked."""
         return tuple(dict.fromkeys(record.target for record in self.errors))
 
     def worst(self, target: str) -> ErrorRecord:

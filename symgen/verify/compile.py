@@ -23,11 +23,15 @@ SUFFIXES: dict[Scalar, str] = {"float64": "", "float32": "_f"}
 
 @dataclass(frozen=True, slots=True)
 class CSource:
-    """A generated header and source; `stem` names the files without their endings."""
+    """A generated header and source; `stem` names the files without their endings.
+
+    `companions` are further files (name, text) that use the header: kernels over many states.
+    """
 
     stem: str
     header: str
     source: str
+    companions: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +73,13 @@ class Compilation:
 
     def __init__(self, compiler: Compiler, source: CSource, folder: Path) -> None:
         (folder / f"{source.stem}.h").write_text(source.header, encoding="utf-8")
-        path = folder / f"{source.stem}.c"
-        path.write_text(source.source, encoding="utf-8")
+        paths = [folder / f"{source.stem}.c"]
+        paths[0].write_text(source.source, encoding="utf-8")
+        for name, text in source.companions:
+            (folder / name).write_text(text, encoding="utf-8")
+            paths += [folder / name] if name.endswith(".c") else []
         self._target = folder / f"{source.stem}.so"
-        command = [*compiler.command, *FLAGS, "-o", str(self._target), str(path), "-lm"]
+        command = [*compiler.command, *FLAGS, "-o", str(self._target), *map(str, paths), "-lm"]
         self._log = folder / f"{source.stem}.log"
         with self._log.open("wb") as log:
             # in a group of its own: a driver that is killed alone leaves the compiler proper at work

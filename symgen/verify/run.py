@@ -17,6 +17,7 @@ import symgen
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.naming import file_stem
+from symgen.verify.batch import run_batch
 from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, InvariantRecord
 from symgen.verify.comparison import Results, check_laws, compare, failures_of
 from symgen.verify.compile import (
@@ -78,7 +79,7 @@ def verify(
     )
     try:
         with _compilations(compiler, c_sources) as compilations:
-            return _verified(blank, model, kernels, compilations, python_source, states, progress)
+            return _verified(blank, model, kernels, c_sources, compilations, python_source, states, progress)
     except (VerificationError, ReferenceValueError) as fault:
         return replace(blank, failures=(str(fault),))
 
@@ -87,6 +88,7 @@ def _verified(
     blank: Certificate,
     model: Model,
     kernels: Sequence[Kernel],
+    c_sources: Mapping[Scalar, CSource],
     compilations: Mapping[Scalar, Compilation],
     python_source: str | None,
     states: int,
@@ -103,7 +105,7 @@ def _verified(
         samples["float64"] = doubles
     expected = _expected(reference, names, samples, progress)
     progress("verifying: running C and Python")
-    results, failures = _run_c(model, kernels, compilations, samples)
+    results, failures = _run_c(model, kernels, c_sources, compilations, samples)
     if python_source is not None:
         outcomes, faults = _run_python(python_source, kernels, doubles)
         results["Python float64"] = ("float64", outcomes)
@@ -112,13 +114,14 @@ def _verified(
     laws: list[InvariantRecord] = []
     judged: list[str] = []
     for target, (scalar, made) in results.items():
-        twin = next((t for t in judged if results[t] == (scalar, made)), None)
+        twin = next((t for t in judged if _same(made, results[t][1]) and results[t][0] == scalar), None)
         if twin is None:
-            records = [compare(name, target, [e[name] for e in expected[scalar]], made[name]) for name in names]
+            records = [compare(name, target, [e[name] for e in expected[scalar]], made[name]) for name in made]
             found = check_laws(target, reference, samples[scalar], expected[scalar], made)
         else:  # the same bits: C and Python usually agree
-            records = [replace(record, target=target) for record in errors if record.target == twin]
-            found = [replace(law, target=target) for law in laws if law.target == twin]
+            records = [replace(r, target=target) for r in errors if r.target == twin and r.quantity in made]
+            whole = len(made) == len(names)
+            found = [replace(law, target=target) for law in laws if law.target == twin and whole]
         judged.append(target)
         errors += records
         laws += found
@@ -144,12 +147,22 @@ def _verified(
     )
 
 
+def _same(made: Results, others: Results) -> bool:
+    """Whether another target made the same of every state, for all quantities of this one."""
+    return all(others.get(name) == outcomes for name, outcomes in made.items())
+
+
 def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[dict[Scalar, CSource], str | None]:
     """C sources by scalar type, and the Python source, among the files of a model (paths relative to its folder)."""
     texts = {path: content if isinstance(content, str) else content.decode() for path, content in files.items()}
     stem = file_stem(model.name)
     c_sources = {
-        scalar: CSource(stem + suffix, texts[f"c/{stem}{suffix}.h"], texts[f"c/{stem}{suffix}.c"])
+        scalar: CSource(
+            stem + suffix,
+            texts[f"c/{stem}{suffix}.h"],
+            texts[f"c/{stem}{suffix}.c"],
+            tuple((p.removeprefix("c/"), t) for p, t in texts.items() if p.startswith(f"c/{stem}_batch{suffix}.")),
+        )
         for scalar, suffix in SUFFIXES.items()
         if f"c/{stem}{suffix}.c" in texts
     }
@@ -193,6 +206,7 @@ def _expected(
 def _run_c(
     model: Model,
     kernels: Sequence[Kernel],
+    sources: Mapping[Scalar, CSource],
     compilations: Mapping[Scalar, Compilation],
     samples: Mapping[Scalar, Sequence[Sample]],
 ) -> tuple[dict[str, tuple[Scalar, Results]], list[str]]:
@@ -215,6 +229,11 @@ def _run_c(
             for kernel, function in zip(kernels, functions, strict=True):
                 outcomes[kernel.name].append(function(arrays, parameters))
         results[target] = (scalar, outcomes)
+        if sources[scalar].companions:
+            many, differing = run_batch(library, model.name, kernels, scalar, samples[scalar], outcomes)
+            failures += differing
+            if many:
+                results[f"{target} batch"] = (scalar, many)
     return results, failures
 
 
@@ -253,6 +272,8 @@ def _hashes(model: Model, c_sources: Mapping[Scalar, CSource], python_source: st
     for source in c_sources.values():
         yield f"c/{source.stem}.h", _hash(source.header)
         yield f"c/{source.stem}.c", _hash(source.source)
+        for name, text in source.companions:
+            yield f"c/{name}", _hash(text)
     if python_source is not None:
         yield f"python/{file_stem(model.name)}.py", _hash(python_source)
 

@@ -46,8 +46,10 @@ def good(tool: Callable[[str], str]) -> Certificate:
 def test_correct_files_pass_on_every_target(good: Certificate) -> None:
     assert good.failures == ()
     assert good.passed
-    assert good.targets == ("C float64", "C float32", "Python float64")
+    assert good.targets == ("C float64", "C float64 batch", "C float32", "C float32 batch", "Python float64")
     assert {record.quantity for record in good.errors} == set(QUANTITIES)
+    many = [record.quantity for record in good.errors if record.target == "C float64 batch"]
+    assert many == ["inverse_dynamics", "forward_dynamics"]
     assert all(record.states == STATES and 0 <= record.median <= record.largest <= 16 for record in good.errors)
     assert 0 < good.worst("C float32").largest_relative < 1e-5
 

@@ -1,0 +1,85 @@
+"""The batch kernels of generated C: the bits and statuses of the kernels for one state, at every state."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from symgen.emit.c_batch import BATCHED
+from symgen.ir.kernel import Kernel, Scalar
+from symgen.verify.compile import C_TYPES, SUFFIXES, CFunction, Outcome, c_array, signature
+from symgen.verify.reference import State
+from symgen.verify.states import Sample
+
+# Every component set to one of these: a symmetric pose, an angle beyond any range, not a number.
+HARD = (0.0, 1e30, math.nan)
+# The last block is not full, and rows are longer than the number of states.
+SPARE = 3
+
+
+class BatchFunction:
+    """One batch kernel of a library over fixed states, the hard ones last."""
+
+    def __init__(
+        self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar, states: Sequence[State]
+    ) -> None:
+        self._function = library[f"{model}_{kernel.name}_batch{SUFFIXES[scalar]}"]
+        self._function.restype = ctypes.c_size_t
+        self._count = len(states) + len(HARD)
+        self._stride = self._count + SPARE
+        self._size = math.prod(kernel.shape)
+        self._result = C_TYPES[scalar] * (self._size * self._stride)
+        self._rows = []
+        for argument in signature(kernel):
+            columns = [[float(v) for v in getattr(s, argument.name)] for s in states]
+            columns += [[value] * argument.length for value in HARD]
+            spare = [0.0] * SPARE
+            self._rows.append(c_array(scalar, [x for row in zip(*columns, strict=True) for x in (*row, *spare)]))
+
+    def __call__(self, parameters: Any) -> list[Outcome]:
+        """Outcomes of all states for one set of parameters."""
+        result = self._result(*([7.0] * len(self._result())))
+        statuses = (ctypes.c_ubyte * self._stride)()
+        sizes = ctypes.c_size_t(self._count), ctypes.c_size_t(self._stride)
+        refused = self._function(*sizes, *self._rows, parameters, result, statuses)
+        if refused != sum(map(bool, statuses[: self._count])):
+            return [Outcome(-1, ())] * self._count
+        columns = [tuple(result[k :: self._stride]) for k in range(self._count)]
+        return [Outcome(statuses[k], entries) for k, entries in enumerate(columns)]
+
+
+def run_batch(
+    library: ctypes.CDLL,
+    model: str,
+    kernels: Sequence[Kernel],
+    scalar: Scalar,
+    samples: Sequence[Sample],
+    alone: Mapping[str, Sequence[Outcome]],
+) -> tuple[dict[str, list[Outcome]], list[str]]:
+    """Outcomes of every batch kernel at every state, and sentences where they are not those of one state `alone`.
+
+    A batch has one set of parameters, so it is run for the parameters of each state.
+    """
+    states = [sample.state for sample in samples]
+    outcomes: dict[str, list[Outcome]] = {}
+    failures = []
+    for kernel in kernels:
+        if kernel.name not in BATCHED:
+            continue
+        batch = BatchFunction(library, model, kernel, scalar, states)
+        single = CFunction(library, model, kernel, scalar)
+        rows = [batch(c_array(scalar, state.parameters)) for state in states]
+        outcomes[kernel.name] = [row[k] for k, row in enumerate(rows)]
+        where = f"C {scalar} batch, {kernel.name}"
+        for k, (one, many) in enumerate(zip(alone[kernel.name], outcomes[kernel.name], strict=True)):
+            if one.valid and one != many:
+                failures.append(f"{where}: state {k} alone and in a batch differ")
+                break
+        parameters = c_array(scalar, states[0].parameters)
+        for value, many in zip(HARD, rows[0][len(states) :], strict=True):
+            arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in signature(kernel)}
+            if single(arrays, parameters).status != many.status:
+                failures.append(f"{where}: other status than alone where every input is {value}")
+    return outcomes, failures

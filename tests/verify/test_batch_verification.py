@@ -1,0 +1,79 @@
+"""Batch kernels that differ from those of one state are found, in results, statuses and counts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import shipped
+
+from symgen.emit.c import emit_c
+from symgen.emit.c_batch import BATCHED, emit_c_batch
+from symgen.emit.defaults import default_values
+from symgen.ir.kernel import Program
+from symgen.verify.batch import run_batch
+from symgen.verify.compile import CFunction, Compilation, c_array, find_compiler
+from symgen.verify.reference import State
+from symgen.verify.run import generated_sources
+from symgen.verify.states import Sample
+
+pytestmark = pytest.mark.toolchain
+NAME = "skate"
+
+
+def program() -> Program:
+    whole = shipped.programs(NAME)["float64"]
+    return replace(whole, kernels=tuple(kernel for kernel in whole.kernels if kernel.name in BATCHED))
+
+
+def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
+    """What a comparison at three states says after an edit of the batch's files."""
+    model, compiler = shipped.model(NAME), find_compiler()
+    assert compiler is not None
+    files = emit_c(model, program()) | emit_c_batch(model, program())
+    source = generated_sources(model, files)[0]["float64"]
+    assert [name for name, _ in source.companions] == [f"{NAME}_batch.h", f"{NAME}_batch.c"]
+    edited = replace(source, companions=tuple((name, edit(text)) for name, text in source.companions))
+    library = Compilation(compiler, edited, folder).library()
+    parameters = tuple(float(value) for value in default_values(model).values())
+    n, m = len(model.coordinates), len(model.inputs)
+    states = [State((a,) * n, (a / 2,) * n, (0.3,) * n, (a - 1,) * m, parameters) for a in (0.2, 0.7, 1.1)]
+    alone = {}
+    for kernel in program().kernels:
+        single = CFunction(library, model.name, kernel, "float64")
+        alone[kernel.name] = [
+            single(
+                {a.name: c_array("float64", getattr(s, a.name)) for a in kernel.arguments},
+                c_array("float64", parameters),
+            )
+            for s in states
+        ]
+    samples = [Sample(state, True, (1.0, 1.0)) for state in states]
+    outcomes, failures = run_batch(library, model.name, program().kernels, "float64", samples, alone)
+    assert set(outcomes) == set(alone)
+    return failures
+
+
+def test_what_is_generated_passes(tool: Callable[[str], str], tmp_path: Path) -> None:
+    tool("cc")
+    assert complaints(tmp_path, str) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ("result[0][k] = ", "result[0][k] = 0.5 * ", "state 0 alone and in a batch differ"),
+        ("* stride + start;", "* stride + start + 1;", "state 0 alone and in a batch differ"),
+        ("(unsigned char)code", "0", "other status than alone where every input is"),
+        ("refused += code != 0;", "", "other status than alone where every input is"),
+        ("flags |= bits[k];", "", "other status than alone where every input is"),
+    ],
+)
+def test_wrong_batch_kernels_are_found(
+    tool: Callable[[str], str], tmp_path: Path, old: str, new: str, complaint: str
+) -> None:
+    tool("cc")
+    found = complaints(tmp_path, lambda text: text.replace(old, new))
+    assert any(complaint in text for text in found), found
