@@ -33,6 +33,7 @@ _EPILOG = """commands:
   symgen verify MODEL.yaml          verify again, write the certificate only
   symgen bench MODEL.yaml...        run time against error, beside other tools
   symgen stress MODEL.yaml...       errors near singularities, extreme values, a long run
+  symgen target MODEL.yaml --cpu C  instructions, bytes and bits on emulated microcontrollers
   symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
   symgen schema                     JSON Schema of model files, for editors
 
@@ -180,19 +181,12 @@ def _bench(arguments: list[str]) -> int:
     parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
     given = parser.parse_args(arguments)
 
-    def one(path: Path) -> int:
+    def one(path: Path, progress: Progress) -> int:
         from symgen.bench.command import run_bench
 
-        progress = Progress(path.stem, given.quiet)
-        try:
-            return run_bench(path, given.out, given.states, given.quiet, progress)
-        finally:
-            progress.done()
+        return run_bench(path, given.out, given.states, given.quiet, progress)
 
-    for path in given.models:
-        if not path.is_file():
-            raise WrongUseError(f"no such file: {path}")
-    return max([_guarded(partial(one, path)) for path in given.models])
+    return _each_file(given.models, given.quiet, one)
 
 
 def _stress(arguments: list[str]) -> int:
@@ -210,28 +204,65 @@ def _stress(arguments: list[str]) -> int:
     parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
     given = parser.parse_args(arguments)
 
-    def one(path: Path) -> int:
+    def one(path: Path, progress: Progress) -> int:
         from symgen.stress.command import run_stress
 
-        progress = Progress(path.stem, given.quiet)
-        try:
-            return run_stress(path, given.out, max(0, given.steps), given.quiet, progress)
-        finally:
-            progress.done()
+        return run_stress(path, given.out, max(0, given.steps), given.quiet, progress)
 
-    for path in given.models:
-        if not path.is_file():
-            raise WrongUseError(f"no such file: {path}")
-    return max([_guarded(partial(one, path)) for path in given.models])
+    return _each_file(given.models, given.quiet, one)
+
+
+def _target(arguments: list[str]) -> int:
+    from symgen.target.cores import BY_NAME, CORES
+
+    parser = _parser(
+        "symgen target",
+        "Runs the generated C on emulated microcontrollers: the same bits as here, instructions per call, footprint.",
+    )
+    parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
+    cpus = (*BY_NAME, "all")
+    parser.add_argument(
+        "--cpu", metavar="CPU", choices=cpus, action="append", required=True, help=f"{', '.join(cpus)}; repeatable"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, default=Path("generated"), help="writes DIR/<model>/ (default: generated)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
+    given = parser.parse_args(arguments)
+    cores = [core for core in CORES if core.name in given.cpu or "all" in given.cpu]
+
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.target.command import run_target
+
+        return run_target(path, given.out, cores, given.quiet, progress)
+
+    return _each_file(given.models, given.quiet, one)
 
 
 _COMMANDS: dict[str, Callable[[list[str]], int]] = {
     "verify": _verify,
     "bench": _bench,
     "stress": _stress,
+    "target": _target,
     "explain": _explain,
     "schema": _schema,
 }
+
+
+def _each_file(models: Sequence[Path], quiet: bool, work: Callable[[Path, Progress], int]) -> int:
+    """Measures every model, also after one that failed; the highest exit code wins."""
+
+    def one(path: Path) -> int:
+        progress = Progress(path.stem, quiet)
+        try:
+            return work(path, progress)
+        finally:
+            progress.done()
+
+    for path in models:
+        if not path.is_file():
+            raise WrongUseError(f"no such file: {path}")
+    return max([_guarded(partial(one, path)) for path in models])
 
 
 def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: Callable[[Result], int]) -> int:

@@ -1,0 +1,284 @@
+"""One model on its targets: vectors, host, every core, compiler and level; the result is plain data."""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from symgen.dynamics.select import derive_quantities
+from symgen.emit.c import emit_c
+from symgen.ir.kernel import Program, Scalar
+from symgen.ir.schedule import schedule
+from symgen.model.model import Model
+from symgen.naming import file_stem
+from symgen.target.build import STACK_WATCHED, Workshop
+from symgen.target.compare import Units, compare, units_of, uses_library
+from symgen.target.cores import LEVELS, Compiler, Core
+from symgen.target.driver import (
+    Results,
+    driver_source,
+    function_name,
+    pack_states,
+    results_file,
+    states_file,
+    unpack_results,
+)
+from symgen.target.emulator import addresses, build_counter, count_calls, run_image, stage
+from symgen.target.footprint import footprints
+from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
+from symgen.target.tools import EMULATOR, PREFIX, ToolError, compilers, version
+from symgen.target.vectors import FEWEST, Vectors, perturbed, vectors_of
+from symgen.verify.compile import SUFFIXES
+from symgen.verify.reference import Reference, State
+
+Progress = Callable[[str], None]
+SCALARS: tuple[Scalar, ...] = ("float64", "float32")
+COSTED = ("-O2", "-Os")  # the levels at which instructions, footprint and stack are measured
+BASE: tuple[Compiler, str] = ("gcc", "-O2")
+PROCESSES = 2
+PORTABLE, LIBM = "portable", "libm"
+
+
+@dataclass(frozen=True, slots=True)
+class _Build:
+    """One image: where, with what, and which sines and cosines."""
+
+    core: Core | None
+    compiler: Compiler
+    level: str
+    trig: str
+
+    @property
+    def where(self) -> str:
+        return "host" if self.core is None else self.core.name
+
+    @property
+    def label(self) -> str:
+        return f"{self.where}, {self.compiler} {self.level}, {self.trig}"
+
+
+class _Bench:
+    """Sources, states and the host's results of one model in a folder."""
+
+    def __init__(self, model: Model, folder: Path, vectors: Vectors, progress: Progress) -> None:
+        derivations = derive_quantities(model, model.outputs)
+        programs = dict(schedule(derivations.mechanics, derivations.quantities, SCALARS).items())
+        self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
+        self.programs: dict[str, dict[Scalar, Program]] = {
+            PORTABLE: programs,
+            LIBM: {scalar: replace(program, sincos=None) for scalar, program in programs.items()},
+        }
+        self.sources = {trig: self._sources(trig) for trig in self.programs}
+        self.states = {scalar: vectors.rounded(scalar) for scalar in SCALARS}
+        self.inputs = self._written("states", self.states)
+        self.counter = build_counter(folder)
+        base = {trig: self.image(_Build(None, *BASE, trig), 0)[1] for trig in self.programs}
+        self.expected = {trig: self._run(None, image, trig) for trig, image in base.items()}
+        self.units = {scalar: self._units(scalar, base[PORTABLE]) for scalar in SCALARS}
+
+    def results(self, build: _Build) -> dict[Scalar, Results]:
+        """Builds an image, runs it, and reads what it wrote."""
+        return self._run(build.core, self.image(build, 0)[1], build.trig)
+
+    def image(self, build: _Build, watched: int) -> tuple[Workshop, Path]:
+        """An image with its input files beside it."""
+        shop = self.workshop(build)
+        harness = shop.harness("driver.c", watched)
+        stem = file_stem(self.model.name)
+        objects = [shop.compile(f"{stem}{SUFFIXES[scalar]}.c", build.level, build.compiler) for scalar in SCALARS]
+        image = shop.link(f"{build.compiler}{build.level}-{watched}", [*harness, *objects])
+        stage(image, self.inputs)
+        return shop, image
+
+    def workshop(self, build: _Build) -> Workshop:
+        """A folder for one compiler and level: builds run side by side."""
+        name = f"{build.where}-{build.trig}-{build.compiler}{build.level}"
+        shop = Workshop(self.folder / name, build.core)
+        shop.write(self.sources[build.trig])
+        return shop
+
+    def read(
+        self, image: Path, programs: Mapping[Scalar, Program], states: Mapping[Scalar, int]
+    ) -> dict[Scalar, Results]:
+        """What an image wrote; raises ToolError when it is incomplete."""
+        found = {}
+        for scalar, program in programs.items():
+            try:
+                data = (image.parent / results_file(scalar)).read_bytes()
+                found[scalar] = unpack_results(data, program, states[scalar])
+            except (OSError, ValueError) as error:
+                raise ToolError(f"{image.parent.name}: {error}") from error
+        return found
+
+    def _run(self, core: Core | None, image: Path, trig: str) -> dict[Scalar, Results]:
+        run_image(core, image)
+        return self.read(image, self.programs[trig], {s: len(states) for s, states in self.states.items()})
+
+    def _sources(self, trig: str) -> dict[str, str]:
+        files = {"driver.c": driver_source(self.model, self.programs[trig])}
+        for program in self.programs[trig].values():
+            files |= {path.rpartition("/")[2]: text for path, text in emit_c(self.model, program).items()}
+        return files
+
+    def _written(self, folder: str, states: Mapping[Scalar, Sequence[State]]) -> list[Path]:
+        (self.folder / folder).mkdir(exist_ok=True)
+        paths = []
+        for scalar, rows in states.items():
+            paths.append(self.folder / folder / states_file(scalar))
+            paths[-1].write_bytes(pack_states(rows, scalar))
+        return paths
+
+    def _units(self, scalar: Scalar, image: Path) -> Units:
+        """d + eps |y| of the regular states, by the float64 kernels of an image of the host."""
+        regular = self.states[scalar][: len(self.vectors.regular)]
+        program = self.programs[PORTABLE]["float64"]
+        made = []
+        for kind, states in (("exact", regular), ("moved", perturbed(regular, scalar))):
+            # both scalar types run; what float32 makes of these states is of no interest
+            stage(image, self._written(f"{kind}-{scalar}", {"float64": states, "float32": states[:1]}))
+            run_image(None, image)
+            made.append(self.read(image, {"float64": program}, {"float64": len(states)})["float64"])
+        return units_of(program.kernels, scalar, *made)
+
+
+def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: None) -> TargetReport:
+    """Conformance of every build, and cost and footprint at -O2 and -Os.
+
+    Raises ToolError when a compiler or an emulator fails, and VerificationError or ReferenceValueError where no
+    states are found.
+    """
+    with tempfile.TemporaryDirectory(prefix="symgen-target-") as name:
+        progress("looking for states and singularities")
+        vectors = vectors_of(Reference(model))
+        progress("the host")
+        bench = _Bench(model, Path(name), vectors, progress)
+        builds = _builds(cores)
+        progress("compiling and running")
+        done = 0
+
+        def one(build: _Build) -> tuple[list[Cell], list[KernelCost], list[str]]:
+            nonlocal done
+            found = _measured(bench, build)
+            done += 1
+            progress(f"compiling and running, {done} of {len(builds)} builds")
+            return found
+
+        with ThreadPoolExecutor(PROCESSES) as pool:
+            made = list(pool.map(one, builds))
+    failures = [failure for _, _, wrong in made for failure in wrong]
+    if len(vectors.regular) < FEWEST:
+        failures.append(f"only {len(vectors.regular)} of {FEWEST} regular states were found")
+    costs = {build: cost for build, (_, cost, _) in zip(builds, made, strict=True) if cost}
+    reports = tuple(
+        CoreReport(core.name, core.note, tuple(c for build, cost in costs.items() if build.core is core for c in cost))
+        for core in cores
+    )
+    return TargetReport(
+        model=model.name,
+        vectors={"regular": len(vectors.regular), "singular": len(vectors.singular), "odd": len(vectors.odd)},
+        statuses=_statuses(bench),
+        versions=_versions(cores),
+        sources={path: hashlib.sha256(text.encode()).hexdigest() for path, text in bench.sources[PORTABLE].items()
+                 if path != "driver.c"},
+        cells=tuple(cell for cells, _, _ in made for cell in cells),
+        cores=reports,
+        failures=tuple(failures),
+        notes=() if "clang" in compilers() else ("clang is not installed: builds with clang are left out",),
+    )
+
+
+def _builds(cores: Sequence[Core]) -> list[_Build]:
+    """Portable sine and cosine everywhere at every level; the C library's at -O2."""
+    return [
+        *(_Build(core, compiler, level, PORTABLE)
+          for core in (None, *cores) for compiler in compilers() for level in LEVELS
+          if core is not None or (compiler, level) != BASE),
+        *(_Build(core, *BASE, LIBM) for core in cores),
+    ]
+
+
+def _measured(bench: _Bench, build: _Build) -> tuple[list[Cell], list[KernelCost], list[str]]:
+    """One build beside the host's, and its cost where that is asked for."""
+    if build.core is not None and build.compiler == "gcc" and build.level in COSTED and build.trig == PORTABLE:
+        results, costs = _costed(bench, build, build.core)
+    else:
+        results, costs = bench.results(build), []
+    cells, failures = [], []
+    for scalar, program in bench.programs[build.trig].items():
+        portable = build.trig == PORTABLE
+        found = compare(
+            program.kernels, scalar, portable, bench.expected[build.trig][scalar], results[scalar],
+            bench.units[scalar], len(bench.vectors.regular),
+        )
+        records = len(program.kernels) * len(bench.states[scalar])
+        cells.append(Cell(build.where, build.compiler, build.level, scalar, build.trig, records, found.different,
+                          found.distance))
+        failures += [f"{build.label}, {scalar}: {wrong}" for wrong in found.wrong]
+    return cells, costs, [*failures, *(wrong for cost in costs for wrong in _wrong(bench, build, cost))]
+
+
+def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Results], list[KernelCost]]:
+    shop, image = bench.image(build, STACK_WATCHED)
+    programs = bench.programs[build.trig]
+    names = {(s, k.name): function_name(bench.model, k, s) for s, p in programs.items() for k in p.kernels}
+    counts = count_calls(core, image, bench.counter, addresses(shop, image, list(names.values())))
+    results = bench.read(image, programs, {scalar: len(states) for scalar, states in bench.states.items()})
+    costs = []
+    for scalar in programs:
+        functions = {kernel: name for (s, kernel), name in names.items() if s == scalar}
+        target = shop.folder / f"{file_stem(bench.model.name)}{SUFFIXES[scalar]}_{build.compiler}{build.level}.o"
+        sizes = footprints(shop, target, list(functions.values()))
+        for kernel, name in functions.items():
+            records = results[scalar].records[kernel]
+            counted = [c for c, record in zip(counts[name], records, strict=True) if record.status == 0]
+            size = sizes[name]
+            costs.append(KernelCost(
+                kernel, scalar, build.level, len(counted), min(counted, default=0), max(counted, default=0),
+                size.code, size.linked, size.ram, size.frame, results[scalar].stack[kernel], size.undefined,
+            ))
+    return results, costs
+
+
+def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
+    """What must hold where the FPU computes in the type: constant counts, no library; no RAM and a known stack always.
+
+    Counts may vary where a quotient is defined to be 0 for a divisor of 0: compilers make a jump of that choice.
+    """
+    assert build.core is not None
+    kernel = next(k for k in bench.programs[PORTABLE][cost.scalar].kernels if k.name == cost.kernel)
+    where = f"{build.label}, {cost.scalar}: {cost.kernel}"
+    wrong = []
+    if cost.ram:
+        wrong.append(f"{where} has {cost.ram} bytes of static data")
+    if cost.stack >= STACK_WATCHED:
+        wrong.append(f"{where} takes more than {STACK_WATCHED} bytes of stack")
+    if cost.scalar in build.core.native and not uses_library(kernel, portable=True):
+        chooses = any(statement.operation == "ratio_or_zero" for statement in kernel.statements)
+        if cost.fewest != cost.most and not chooses:
+            wrong.append(f"{where} takes {cost.fewest} to {cost.most} instructions")
+        if cost.undefined:
+            wrong.append(f"{where} needs {', '.join(cost.undefined)}")
+    return wrong
+
+
+def _statuses(bench: _Bench) -> dict[str, dict[str, int]]:
+    """How often each status was told on the singular and odd vectors, by scalar type."""
+    first = len(bench.vectors.regular)
+    found: dict[str, dict[str, int]] = {}
+    for scalar, results in bench.expected[PORTABLE].items():
+        told = Counter(record.status for records in results.records.values() for record in records[first:])
+        found[scalar] = {str(status): told[status] for status in sorted(told)}
+    return found
+
+
+def _versions(cores: Sequence[Core]) -> dict[str, str]:
+    tools = [*compilers()]
+    named: list[str] = list(tools)
+    for core in cores:
+        named += [PREFIX[core.family] + "gcc", EMULATOR[core.family]]
+    return {tool: version(tool) for tool in dict.fromkeys(named)}

@@ -1,0 +1,71 @@
+"""The test vectors of a model: regular states, states at and near singularities, numbers no state should hold."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import inf, nan
+from typing import Literal, TypeAlias
+
+from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
+from symgen.stress.families import search
+from symgen.stress.kernels import rounded_state
+from symgen.verify.reference import Reference, State
+from symgen.verify.states import sample_states
+
+FEWEST = 256
+SINGULAR_KINDS = ("constraint", "input", "parameter")
+NEAR = (0.0, 1e-12, 1e-8, 1e-4)  # distances from a singular configuration
+FAR = (1e-3, 1e-6)  # angles of a thousand and a million
+PERTURBATIONS = 6
+
+Part: TypeAlias = Literal["q", "qd", "qdd", "u", "parameters"]
+PARTS: tuple[Part, ...] = ("q", "qd", "qdd", "u", "parameters")
+
+
+@dataclass(frozen=True, slots=True)
+class Vectors:
+    """States in float64 numbers: regular ones first, then singular ones and those with large angles, then odd ones."""
+
+    regular: tuple[State, ...]
+    singular: tuple[State, ...]
+    odd: tuple[State, ...]
+
+    def rounded(self, scalar: Scalar) -> tuple[State, ...]:
+        """All of them in numbers of a scalar type."""
+        return tuple(rounded_state(state, scalar) for state in (*self.regular, *self.singular, *self.odd))
+
+
+def vectors_of(reference: Reference) -> Vectors:
+    """Seeded and deterministic; raises VerificationError where hardly any state is found."""
+    regular = tuple(sample.state for sample in sample_states(reference, (), FEWEST, seed=2))
+    return Vectors(regular, tuple(_singular(reference)), tuple(_odd(regular[0])))
+
+
+def perturbed(states: tuple[State, ...], scalar: Scalar) -> tuple[State, ...]:
+    """Each state `PERTURBATIONS` times, every number moved by one unit roundoff of the scalar type up or down."""
+    generator = random.Random("perturbed")
+    eps = float(UNIT_ROUNDOFF[scalar])
+    return tuple(
+        replace(state, **{part: tuple(x * (1 + eps * generator.choice((-1, 1))) for x in getattr(state, part))
+                          for part in PARTS})
+        for state in states
+        for _ in range(PERTURBATIONS)
+    )
+
+
+def _singular(reference: Reference) -> Iterator[State]:
+    for family in search(reference).families:
+        distances = NEAR if family.kind in SINGULAR_KINDS else FAR if family.kind == "large angles" else ()
+        for curve in family.curves:
+            yield from (state for d in distances if (state := curve(d)) is not None)
+
+
+def _odd(state: State) -> Iterator[State]:
+    """Every number in turn replaced by one that is none, infinite or far too large."""
+    for part in PARTS:
+        values = getattr(state, part)
+        for place in range(len(values)):
+            for odd in (nan, inf, -3e38):
+                yield replace(state, **{part: (*values[:place], odd, *values[place + 1 :])})
