@@ -11,6 +11,7 @@ from symgen.dynamics.catalogue import BY_NAME, derive
 from symgen.dynamics.select import derive_quantities, ways
 from symgen.emit.c import emit_c
 from symgen.emit.operations import count_operations
+from symgen.emit.pairs import pair_names
 from symgen.emit.python import emit_python
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.schedule import schedule
@@ -77,7 +78,7 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
     files = emit_c(model, program)
     suffix = SUFFIXES[program.scalar]
     stem = file_stem(model.name) + suffix
-    function, sincos = f"{model.name}_{kernel.name}{suffix}", f"{model.name}_sincos{suffix}"
+    function = f"{model.name}_{kernel.name}{suffix}"
     entry = f"symgen_{way}_{trig}_{program.scalar}".replace("-", "_").replace(" ", "_")
     defaults = f"{model.name}_default_params{suffix}"  # every variant brings its own
     headers = {f"{stem}.h": str(files[f"c/{stem}.h"])}
@@ -93,5 +94,6 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
         )
         kept = CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"})
         units = (kept, CUnit(adaptor, is_adaptor=True))
+    functions = (function, *sorted(pair_names(model.name, suffix)))
     operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}
-    return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, (function, sincos), operations)
+    return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, functions, operations)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -11,12 +11,13 @@ from symgen.emit.comments import c_comment, c_comment_lines, indent_of
 from symgen.emit.defaults import default_values
 from symgen.emit.literals import c_literal
 from symgen.emit.locals import Names, all_statements, array_arguments, check_operands, names_of, used_locals
+from symgen.emit.pairs import GROUP_NAMES, PairsView, group_lines, leading_group, pair_names, pairs_view
 from symgen.emit.quantities import meaning
 from symgen.emit.render import render
 from symgen.emit.statements import CStatements, c_type
-from symgen.ir.kernel import Function, Kernel, Local, Operand, Program, Status
+from symgen.ir.kernel import Kernel, Local, Operand, Program, Statement, Status
 from symgen.model.model import Model
-from symgen.naming import c_identifiers, file_stem
+from symgen.naming import file_stem
 
 _WITHOUT_LIBRARY = frozenset({"add", "sub", "mul", "div", "neg", "ratio_or_zero", "min", "max"})
 
@@ -54,7 +55,7 @@ class CView:
     statuses: tuple[tuple[str, int, str], ...]
     members: tuple[MemberView, ...]
     functions: tuple[FunctionView, ...]
-    private: tuple[FunctionView, ...]
+    pairs: PairsView | None
     includes_math: bool
 
 
@@ -76,7 +77,7 @@ def c_names(model: Model, program: Program) -> Names:
     """Names of the program's C: other files that use its header and parameter struct take their members from here."""
     prefix, suffix = model.name, _suffix(program)
     stem = file_stem(model.name) + suffix
-    own = {f"{prefix}_{name}{suffix}" for name in ("params", "default_params", "sincos")}
+    own = {f"{prefix}_{name}{suffix}" for name in ("params", "default_params")} | pair_names(prefix, suffix)
     own |= {f"{prefix}_status", f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"}
     own |= {status_name(model, status) for status in Status}
     own |= {f"{prefix}_{kernel.name}{suffix}" for kernel in program.kernels}
@@ -91,13 +92,10 @@ def _view(model: Model, program: Program) -> CView:
     prefix, suffix = model.name, _suffix(program)
     stem = file_stem(model.name) + suffix
     status_type, parameters_type = f"{prefix}_status", f"{prefix}_params{suffix}"
-    default_function, sincos = f"{prefix}_default_params{suffix}", f"{prefix}_sincos{suffix}"
+    default_function = f"{prefix}_default_params{suffix}"
     guard, status_guard = f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"
     names = c_names(model, program)
-    called = program.sincos is not None and any(
-        statement.operation == "sincos" for kernel in program.kernels for statement in all_statements(kernel)
-    )
-    functions = tuple(_kernel(model, program, kernel, names, sincos, parameters_type) for kernel in program.kernels)
+    functions = tuple(_kernel(model, program, kernel, names, parameters_type) for kernel in program.kernels)
     return CView(
         stem=stem,
         guard=guard,
@@ -110,7 +108,7 @@ def _view(model: Model, program: Program) -> CView:
         statuses=tuple((status_name(model, status), int(status), STATUS_MEANING[status]) for status in Status),
         members=_members(model, program, names),
         functions=functions,
-        private=(_sincos(program, program.sincos, sincos),) if program.sincos is not None and called else (),
+        pairs=pairs_view(prefix, suffix, program),
         includes_math=_uses_library(program),
     )
 
@@ -146,22 +144,21 @@ def _members(model: Model, program: Program, names: Names) -> tuple[MemberView, 
     return tuple(members) or (MemberView("unused", "this model has no parameters", zero),)
 
 
-def _kernel(
-    model: Model, program: Program, kernel: Kernel, names: Names, sincos: str, parameters_type: str
-) -> FunctionView:
+def _kernel(model: Model, program: Program, kernel: Kernel, names: Names, parameters_type: str) -> FunctionView:
     scalar, output = c_type(program.scalar), names.outputs[kernel.name]
     size = len(kernel.outputs)
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
     prototype = f"{model.name}_status {model.name}_{kernel.name}{_suffix(program)}({', '.join(arguments)})"
     comment = c_comment_lines(f"{meaning(kernel.name)}; {shape_text(kernel)}")
-    return FunctionView(comment, prototype, _body(model, program, kernel, names, sincos))
+    return FunctionView(comment, prototype, _body(model, program, kernel, names))
 
 
-def _body(model: Model, program: Program, kernel: Kernel, names: Names, sincos: str) -> tuple[str, ...]:
+def _body(model: Model, program: Program, kernel: Kernel, names: Names) -> tuple[str, ...]:
     used = used_locals(kernel)
-    own_sincos = None if program.sincos is None else sincos
-    printer = CStatements(program.scalar, names.locals, used, own_sincos, lambda status: status_name(model, status))
+    sincos = None if program.sincos is None else f"{model.name}_sincos{_suffix(program)}"
+    group = () if sincos is None else leading_group(kernel)
+    printer = CStatements(program.scalar, names.locals, used, sincos, lambda status: status_name(model, status))
     loads = [load for load in kernel.loads if load.local in used]
     loaded = {load.argument for load in loads}
     scalar, output = c_type(program.scalar), names.outputs[kernel.name]
@@ -177,6 +174,13 @@ def _body(model: Model, program: Program, kernel: Kernel, names: Names, sincos: 
 
     for block in kernel.blocks:
         for statement in block.statements:
+            if statement in group:
+                if statement is group[0]:
+                    lines += due(operand for pair in group for operand in pair.operands)
+                    angles = [printer.operand(pair.operands[0]) for pair in group]
+                    lines += group_lines(program.scalar, f"{model.name}_sincos_group{_suffix(program)}", angles)
+                    waiting |= _read_back(group, scalar, names)
+                continue
             lines += [*due(statement.operands), *printer.statement(statement)]
         for check in block.checks:
             lines += [*due(check_operands(check)), *printer.check(check)]
@@ -204,16 +208,14 @@ def _finite_test(model: Model, program: Program, kernel: Kernel, names: Names) -
     ]
 
 
-def _sincos(program: Program, function: Function, name: str) -> FunctionView:
-    scalar = c_type(program.scalar)
-    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
-    names = c_identifiers(own, {"sine", "cosine", name})
-    printer = CStatements(program.scalar, names, frozenset(own))
-    sine, cosine = function.results
-    body = [line for statement in function.statements for line in printer.statement(statement)]
-    body += [f"*sine = {names[sine]};", f"*cosine = {names[cosine]};"]
-    prototype = f"static void {name}(const {scalar} {names[function.parameters[0]]}, {scalar} *sine, {scalar} *cosine)"
-    return FunctionView(("Sine and cosine, the same bits on every IEEE platform.",), prototype, tuple(body))
+def _read_back(group: Sequence[Statement], scalar: str, names: Names) -> dict[str, str]:
+    """The declarations of the sines and cosines of a group, by local."""
+    _, *halves = GROUP_NAMES
+    return {
+        target: f"const {scalar} {names.locals[target]} = {half}[{place}];"
+        for place, statement in enumerate(group)
+        for target, half in zip(statement.targets, halves, strict=True)
+    }
 
 
 def _uses_library(program: Program) -> bool:

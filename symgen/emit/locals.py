@@ -12,7 +12,7 @@ from symgen.naming import c_identifiers
 
 ARGUMENT_NAMES = ("q", "qd", "qdd", "u", "p")
 # Names that the templates and statement printers use inside a kernel.
-KERNEL_NAMES = frozenset({*ARGUMENT_NAMES, "rest", "np", "status", "batch", "entries", "sine", "cosine"})
+KERNEL_NAMES = frozenset({*ARGUMENT_NAMES, "rest", "np", "status", "batch", "entries", "angle", "sine", "cosine"})
 
 
 @dataclass(frozen=True, slots=True)

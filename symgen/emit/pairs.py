@@ -1,0 +1,116 @@
+"""The portable sine and cosine in C: one angle at a time, or all angles of a kernel in the lanes of a vector.
+
+A loop of constant count over local arrays is what gcc -O2 and clang turn into vector code; every lane performs the same
+operations as the function of one angle, so the bits are the same on processors with and without vectors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from symgen.emit.statements import CStatements, c_type
+from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
+from symgen.naming import c_identifiers
+
+# Values in a vector of 16 bytes, which every 64-bit processor has.
+LANES: dict[Scalar, int] = {"float64": 2, "float32": 4}
+# From so many angles on, vectors take fewer instructions than one angle after the other.
+SMALLEST_GROUP = 2
+GROUP_NAMES = ("angle", "sine", "cosine")
+
+
+@dataclass(frozen=True, slots=True)
+class PairsView:
+    """What the template of the source file prints: the body of the pair, and which functions call it.
+
+    `single` and `group` name the functions of one and of several angles, empty where no kernel calls them; `pair` is
+    the inlined body with parameter `angle`.
+    """
+
+    pair: str
+    angle: str
+    body: tuple[str, ...]
+    single: str
+    group: str
+    inline: str
+    lanes: str
+    count: int
+
+
+def pairs_view(name: str, suffix: str, program: Program) -> PairsView | None:
+    """The functions of a file whose names begin with `name`; None where no kernel has a portable pair."""
+    if program.sincos is None:
+        return None
+    blocks = [block for kernel in program.kernels for block in kernel.blocks]
+    groups = [group for kernel in program.kernels if (group := leading_group(kernel))]
+    grouped = {id(statement) for group in groups for statement in group}
+    single = any(_has_single(block, grouped) for block in blocks)
+    if not single and not groups:
+        return None
+    pair = f"{name}_pair{suffix}"
+    angle, body = pair_body(program.scalar, program.sincos, pair)
+    return PairsView(
+        pair=pair,
+        angle=angle,
+        body=body,
+        single=f"{name}_sincos{suffix}" if single else "",
+        group=f"{name}_sincos_group{suffix}" if groups else "",
+        inline=f"{name}_inline{suffix}".upper(),
+        lanes=f"{name}_lanes{suffix}".upper(),
+        count=LANES[program.scalar],
+    )
+
+
+def pair_names(name: str, suffix: str) -> set[str]:
+    """Every name that `pairs_view` may give to a file."""
+    functions = {f"{name}_{tail}{suffix}" for tail in ("pair", "sincos", "sincos_group")}
+    return functions | {f"{name}_{tail}{suffix}".upper() for tail in ("inline", "lanes")}
+
+
+def pair_body(scalar: Scalar, function: Function, name: str) -> tuple[str, tuple[str, ...]]:
+    """Parameter and lines of the function `name` that sets `*sine` and `*cosine`."""
+    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
+    names = c_identifiers(own, {"sine", "cosine", name})
+    printer = CStatements(scalar, names, frozenset(own))
+    body = [line for statement in function.statements for line in printer.statement(statement)]
+    sine, cosine = (names[result] for result in function.results)
+    return names[function.parameters[0]], (*body, f"*sine = {sine};", f"*cosine = {cosine};")
+
+
+def leading_group(kernel: Kernel) -> tuple[Statement, ...]:
+    """The pairs that stand side by side before anything needs one of them; empty if they are too few for a group."""
+    for block in kernel.blocks:
+        for place, statement in enumerate(block.statements):
+            if statement.operation == "sincos":
+                group = _run(block.statements[place:])
+                return group if len(group) >= SMALLEST_GROUP else ()
+    return ()
+
+
+def group_lines(scalar: Scalar, function: str, angles: Sequence[str]) -> tuple[str, ...]:
+    """The call for several angles; the last angle fills the last vector, so that no new value enters."""
+    kind, lanes = c_type(scalar), LANES[scalar]
+    filled = [*angles, *[angles[-1]] * (-len(angles) % lanes)]
+    values, sines, cosines = GROUP_NAMES
+    return (
+        f"const {kind} {values}[{len(filled)}] = {{{', '.join(filled)}}};",
+        f"{kind} {sines}[{len(filled)}];",
+        f"{kind} {cosines}[{len(filled)}];",
+        f"{function}({len(angles)}, {values}, {sines}, {cosines});",
+    )
+
+
+def _run(statements: Sequence[Statement]) -> tuple[Statement, ...]:
+    run: list[Statement] = []
+    for statement in statements:
+        if statement.operation != "sincos":
+            break
+        run.append(statement)
+    return tuple(run)
+
+
+def _has_single(block: Block, grouped: set[int]) -> bool:
+    inner = [check.first for check in block.checks if check.first is not None]
+    own = any(s.operation == "sincos" and id(s) not in grouped for s in block.statements)
+    return own or any(_has_single(first, grouped) for first in inner)
