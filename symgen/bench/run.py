@@ -14,8 +14,7 @@ from symgen.bench.build import Built, Footprint, build, find_gcc, nanoseconds, r
 from symgen.bench.callgrind import count_instructions, find_valgrind
 from symgen.bench.candidate import CCandidate, PythonCandidate, Task
 from symgen.bench.pareto import pareto_front
-from symgen.bench.peers.numpy_pinv import numpy_pinv
-from symgen.bench.peers.roster import in_single, peers
+from symgen.bench.peers.roster import in_single, peers, python_peers
 from symgen.bench.python_timing import run_python
 from symgen.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
 from symgen.bench.workload import Errors, Workload, admissible_samples, errors_of, workload
@@ -197,10 +196,7 @@ def _measure(
 def _python(
     model: Model, task: Task, programs: dict[str, dict[Scalar, Program]], full_rank: bool
 ) -> list[PythonCandidate]:
-    found = [symgen_python(model, programs, task)]
-    if task.quantity == "inverse_dynamics" and full_rank:
-        found.append(numpy_pinv(model))
-    return found
+    return [symgen_python(model, programs, task), *(python_peers(model, task) if full_rank else [])]
 
 
 def _with_front(measured: Sequence[Measured]) -> tuple[Measured, ...]:

@@ -7,13 +7,15 @@ from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any, TypeAlias
 
-from symgen.bench.candidate import CCandidate, CUnit, Task
+from symgen.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
 from symgen.bench.peers.engine import Engine, Symbol
 from symgen.bench.peers.mechanics import Mechanics
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange, differentiate
 
 Build: TypeAlias = Callable[[Engine, Mechanics], list[Symbol]]
+# Tools that the extra `bench` installs, by module.
+OPTIONAL = {"wrenfold": "wrenfold", "SymForce": "symforce", "JAX": "jax"}
 # Cheaper than the study's Cholesky factors, by about the same for every tool; the one that is cheapest takes them.
 SYMPY_ONLY = ("lean LDLᵀ", "part LDLᵀ")
 
@@ -40,8 +42,22 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
             if form not in SYMPY_ONLY or engine_type.tool == "SymPy":
                 found.append(_candidate(engine_type(), model, form, build))
     found.append(_householder(model, s))
-    absent = [] if find_spec("wrenfold") else [("wrenfold", "not installed")]
+    absent = [(tool, "not installed") for tool, module in OPTIONAL.items() if find_spec(module) is None]
     return Peers(tuple(found), (*left_out, *absent))
+
+
+def python_peers(model: Model, task: Task) -> list[PythonCandidate]:
+    """Peers that are functions of arrays, for u and full-rank B."""
+    if task.quantity != "inverse_dynamics":
+        return []
+    from symgen.bench.peers.numpy_pinv import numpy_pinv
+
+    found = [numpy_pinv(model)]
+    if find_spec("jax") is not None:
+        from symgen.bench.peers.jax_batch import jax_batch
+
+        found.append(jax_batch(model))
+    return found
 
 
 def in_single(candidate: CCandidate) -> CCandidate:
@@ -88,6 +104,10 @@ def _engines() -> list[type[Engine]]:
         from symgen.bench.peers.wrenfold_engine import WrenfoldEngine
 
         found.append(WrenfoldEngine)
+    if find_spec("symforce") is not None:
+        from symgen.bench.peers.symforce_engine import SymforceEngine
+
+        found.append(SymforceEngine)
     return found
 
 
