@@ -154,23 +154,22 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     # what only a failure looks at must not decide which angles a regular state evaluates
     causes = list(_causes(tests))
     image |= zip(causes, share_angles(mechanics.graph, causes, arguments), strict=True)
-    computed = {argument for argument in arguments if _angles([argument])}
+    computed = [argument for argument in arguments if _angles([argument])]
     plain = [argument for argument in arguments if argument not in computed]
-    angles = writer.angle_block(plain)
-    # outputs come last so that a denominator's statements stand before its test
-    statements = writer.pairs(plain, regular) + writer.write(regular[len(outputs) :]) + writer.write(outputs)
-    late, late_checks = writer.range_checks([argument for argument in arguments if argument in computed])
-    rank_checks = tuple(writer.check(test, image) for test in tests)
-    if rank_checks:
-        # an angle that comes out of a singular step is no angle: the drop of rank is the cause
-        late_checks = tuple(replace(check, first=Block((), rank_checks)) for check in late_checks)
-    checks = (*late_checks, *rank_checks)
+    blocks = [writer.angle_block(plain), Block(tuple(writer.pairs(plain, regular)), ())]
+    for test in tests:
+        # a test stands before what needs it to pass: nothing is divided by a denominator that may be 0
+        blocks += writer.late_angles([image[test.size], image[test.limit]], computed)
+        statements = writer.write([image[test.size], image[test.limit]])
+        blocks.append(Block(tuple(statements), (writer.check(test, image),)))
+    blocks += writer.late_angles(outputs, computed)
+    blocks.append(Block(tuple(writer.write(outputs)), ()))
     sizes = {"q": mechanics.n, "qd": mechanics.n, "qdd": mechanics.n, "u": mechanics.m}
     return Kernel(
         name=derived.name,
         arguments=tuple(Argument(name, sizes[name]) for name in ARGUMENTS[derived.name] if sizes[name]),
         loads=writer.loads(),
-        blocks=(angles, Block((*statements, *late), checks)),
+        blocks=tuple(blocks),
         outputs=tuple(writer.operand(node) for node in outputs),
         shape=derived.shape,
     )
@@ -194,6 +193,7 @@ class _Writer:
         self._pairs: dict[Node, tuple[str, str]] = {}
         self._done: dict[tuple[str, tuple[Operand, ...]], Local] = {}
         self._loads: dict[str, Load] = {}
+        self._tested: set[Node] = set()
         self._symbols = _symbol_loads(mechanics)
         self._labels = {node: name for name, node in mechanics.definitions.items()}
         taken = set(self._symbols) | set(mechanics.definitions)
@@ -237,6 +237,17 @@ class _Writer:
         statements = self.write(sizes)
         checks = tuple(Check(Status.ANGLE_RANGE, Local(ANGLE), self.operand(size), inclusive=True) for size in sizes)
         return tuple(statements), checks
+
+    def late_angles(self, outputs: Sequence[Node], computed: Sequence[Node]) -> list[Block]:
+        """The blocks of those `computed` arguments that the outputs need and that no earlier block has tested."""
+        needed = set(_angles(outputs))
+        blocks = []
+        for argument in computed:
+            if argument in needed and argument not in self._tested:
+                self._tested.add(argument)
+                tests, checks = self.range_checks([argument])
+                blocks.append(Block(tests, checks))
+        return blocks
 
     def check(self, test: _Test, image: Mapping[Node, Node]) -> Check:
         """The check of a test; what only a failure needs is written into its own block."""

@@ -77,10 +77,32 @@ def test_no_operation_is_done_twice() -> None:
 def test_checks_stand_in_the_order_in_which_statuses_are_reported() -> None:
     seen = set()
     for kernel in kernels():
-        places = [ORDER.index(check.status) for block in kernel.blocks for check in block.checks]
+        first, *later = kernel.blocks
+        assert {check.status for check in first.checks} <= {Status.ANGLE_RANGE}
+        # an angle that comes out of a division is tested after its denominator
+        checks = [check for block in later for check in block.checks if check.status is not Status.ANGLE_RANGE]
+        places = [ORDER.index(check.status) for check in checks]
         assert places == sorted(places), kernel.name
-        seen |= {ORDER[place] for place in places}
+        seen |= {check.status for check in (*first.checks, *checks)}
     assert seen == set(ORDER)
+
+
+def test_a_denominator_is_tested_before_it_divides() -> None:
+    """Otherwise a singular state divides by zero on its way to the status."""
+    seen = 0
+    for kernel in kernels():
+        tested = {name for block in kernel.blocks for check in block.checks for name in names(check.value)}
+        sizes = {s.targets[0]: s.operands[0] for s in kernel.statements if s.operation == "abs"}
+        waiting = tested | {o.name for name in tested if isinstance(o := sizes.get(name), Local)}
+        for block in kernel.blocks:
+            divisors = {s.operands[1] for s in block.statements if s.operation == "div"}
+            assert not names(*divisors) & waiting, kernel.name
+            for check in block.checks:
+                passed = names(check.value)
+                passed |= {o.name for name in passed if isinstance(o := sizes.get(name), Local)}
+                seen += len(passed & waiting)
+                waiting -= passed
+    assert seen > 0
 
 
 def test_every_reduced_angle_is_tested() -> None:
