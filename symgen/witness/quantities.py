@@ -5,6 +5,7 @@ from __future__ import annotations
 import casadi
 
 from symgen.model.model import Model
+from symgen.witness.allocation import allocated
 from symgen.witness.lagrange import Lagrange, along
 from symgen.witness.linear import compound, pseudoinverse, solve
 from symgen.witness.ranks import Ranks
@@ -20,7 +21,8 @@ def derive(model: Model, s: Lagrange, ranks: Ranks) -> dict[str, casadi.SX]:
     N = identity - B_plus @ B
     N_dot = _projector_rate(s, N, B_plus, ranks)
     M_plus = pseudoinverse(N @ M, ranks.actuation)
-    u = M_plus @ s.balance
+    least = M_plus @ s.balance
+    u = least if model.allocation is None else allocated(model, model.allocation, s, N, ranks.actuation)
     v = N @ s.qd
     N_dot_v = _at_rate(s, N_dot, v)
     C_v = _at_rate(s, s.coriolis, v)
@@ -52,7 +54,7 @@ def derive(model: Model, s: Lagrange, ranks: Ranks) -> dict[str, casadi.SX]:
         "admissible_acceleration": N @ s.qdd + N_dot_v @ v,
         "projected_configuration": _configuration(s, ranks),
         "inverse_dynamics": u,
-        "inverse_dynamics_residual": N @ (s.balance - M @ u),
+        "inverse_dynamics_residual": N @ (s.balance - M @ least),
         "forward_dynamics": acceleration,
         "multipliers": multipliers,
         "energy": casadi.vertcat(s.kinetic, s.potential),
