@@ -64,7 +64,7 @@ RESERVED = C_KEYWORDS | CPP_KEYWORDS | PYTHON_KEYWORDS | LIBRARY_NAMES | PLATFOR
 _HIDING_STEMS = _words(
     """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdarg stdbool stddef
     stdint stdio stdlib string tgmath time wchar wctype numpy enum dataclasses ctypes functools hashlib inspect os
-    pathlib platform shutil subprocess tempfile typing types sys re io abc site"""
+    pathlib platform shutil subprocess tempfile typing types sys re io abc site warnings"""
 )
 
 

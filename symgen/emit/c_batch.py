@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from symgen.emit.c import c_names, status_name
 from symgen.emit.comments import c_comment_lines
 from symgen.emit.locals import Names, all_statements, array_arguments, names_of
-from symgen.emit.quantities import meaning
+from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
 from symgen.emit.statements import CStatements, c_type
 from symgen.ir.kernel import Check, Function, Kernel, Local, Operand, Program, Statement, Status
@@ -19,8 +19,6 @@ from symgen.ir.split import names_in, names_of_blocks, split, without_first
 from symgen.model.model import Model
 from symgen.naming import c_identifiers, file_stem
 
-# What is evaluated for many states: sweeps of trajectories, parameter studies, sampling.
-BATCHED = ("inverse_dynamics", "forward_dynamics", "multipliers")
 # States a block: local arrays of rows of this length; a multiple of every vector length in use.
 BLOCK = 64
 _OWN_NAMES = frozenset({"count", "stride", "status", "start", "length", "k", "i", "from", "copy", "result", "LANES"})

@@ -9,7 +9,7 @@ from symgen.emit.comments import docstring_lines, indent_of, one_line
 from symgen.emit.defaults import default_values
 from symgen.emit.literals import decimal_text
 from symgen.emit.locals import Names, all_statements, array_arguments, names_of, used_locals
-from symgen.emit.quantities import meaning
+from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
 from symgen.emit.statements import NumpyStatements
 from symgen.ir.kernel import Function, Kernel, Program, Status
@@ -42,6 +42,7 @@ class FunctionView:
     body: tuple[str, ...]
     entries: tuple[str, ...]
     shape: tuple[int, ...]
+    batched: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +58,7 @@ class PythonView:
     sincos_parameter: str
     sincos_body: tuple[str, ...]
     needs_ratio: bool
+    c_files: tuple[str, ...]
 
 
 def emit_python(model: Model, program: Program) -> dict[str, str]:
@@ -75,6 +77,7 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
         sincos_parameter=parameter,
         sincos_body=body,
         needs_ratio="ratio_or_zero" in operations or (own is not None and _has_ratio(own)),
+        c_files=_c_files(model, program),
     )
     return {f"python/{view.stem}.py": render("python/module.py.jinja", view)}
 
@@ -127,7 +130,15 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> FunctionView:
         body=tuple(body),
         entries=tuple(printer.operand(operand).strip("()") for operand in kernel.outputs),
         shape=kernel.shape,
+        batched=kernel.name in BATCHED,
     )
+
+
+def _c_files(model: Model, program: Program) -> tuple[str, ...]:
+    """What `compile()` builds: the float64 kernels for one state and for many."""
+    stem = file_stem(model.name)
+    stems = (stem, f"{stem}_batch") if any(kernel.name in BATCHED for kernel in program.kernels) else (stem,)
+    return tuple(name + ending for name in stems for ending in (".h", ".c"))
 
 
 def _sincos(function: Function) -> tuple[str, tuple[str, ...]]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from symgen.model.quantities import QUANTITIES
 
+# Those with a kernel for many states: what trajectories, sampling and simulations evaluate by the million.
+BATCHED = ("inverse_dynamics", "forward_dynamics", "multipliers")
 _OUTPUT_ARGUMENTS: dict[str, str] = {
     "mass_matrix": "G",
     "coriolis_matrix": "C",

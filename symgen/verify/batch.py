@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from symgen.emit.c_batch import BATCHED
+from symgen.emit.quantities import BATCHED
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.compile import C_TYPES, SUFFIXES, CFunction, Outcome, c_array, signature
 from symgen.verify.reference import State

@@ -15,9 +15,10 @@ import pytest
 import shipped
 
 from symgen.emit.c import emit_c
-from symgen.emit.c_batch import BATCHED, BLOCK, emit_c_batch
+from symgen.emit.c_batch import BLOCK, emit_c_batch
 from symgen.emit.defaults import default_values
 from symgen.emit.locals import array_arguments
+from symgen.emit.quantities import BATCHED
 from symgen.ir.kernel import Kernel, Program, Scalar, Status
 
 pytestmark = pytest.mark.toolchain

@@ -13,7 +13,10 @@ import numpy as np
 import pytest
 
 from symgen.emit.c import emit_c
+from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.python import emit_python
+from symgen.ir.kernel import Program
+from symgen.model.model import Model
 
 
 @pytest.fixture(scope="module")
@@ -21,8 +24,9 @@ def toy(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     return load(tmp_path_factory.mktemp("toy"), handmade.model(), handmade.program())
 
 
-def load(folder: Path, model: object, program: object) -> ModuleType:
-    for path, text in (emit_c(model, program) | emit_python(model, program)).items():  # type: ignore[arg-type]
+def load(folder: Path, model: Model, program: Program) -> ModuleType:
+    files = emit_c(model, program) | emit_c_batch(model, program) | emit_python(model, program)
+    for path, text in files.items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(text)
     file = next((folder / "python").glob("*.py"))
@@ -112,9 +116,48 @@ def test_compile_uses_the_cache_and_tells_failures(
     monkeypatch.setenv("CC", "cc --no-such-option")
     with pytest.raises(RuntimeError, match="no-such-option"):
         toy.compile()
+
+
+def test_without_a_compiler_numpy_does_the_work(
+    toy: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("CC", "no-such-compiler")
-    with pytest.raises(FileNotFoundError, match="no-such-compiler"):
+    with pytest.warns(RuntimeWarning, match="no-such-compiler.*NumPy"):
+        compiled = toy.compile()
+    assert compiled.inverse_dynamics is toy.inverse_dynamics
+    assert not [*tmp_path.iterdir()]
+
+
+def test_without_the_c_compile_names_the_missing_file(
+    toy: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(toy, "__file__", str(tmp_path / "python" / "toy.py"))
+    with pytest.raises(FileNotFoundError, match=r"c/toy\.h"):
         toy.compile()
+
+
+def test_compiled_functions_are_those_of_the_module(toy: ModuleType, tool: Callable[[str], str]) -> None:
+    """Shapes, broadcasting, chunks, parameters that are arrays, quantities without a batch kernel, mistakes."""
+    tool("cc")
+    compiled = toy.compile()
+    many = states(2, toy._CHUNK // 2 + 3)
+    cases = [(many, many[0], many[0, 0]), (many.T.copy().T, many, many), (many[:0], many[:0], many[:0])]
+    for q, qd, qdd in cases:
+        ours, theirs = (functions.inverse_dynamics(q, qd, qdd) for functions in (toy, compiled))
+        assert theirs.shape == ours.shape
+        assert theirs.tobytes() == ours.tobytes()
+    swept = toy.Parameters(L=np.linspace(1.0, 2.0, len(many[0])))
+    wanted = toy.inverse_dynamics(many, many, many, swept)
+    assert compiled.inverse_dynamics(many, many, many, p=swept).tobytes() == wanted.tobytes()
+    assert compiled.mass_matrix(many).tobytes() == toy.mass_matrix(many).tobytes()
+    assert compiled.mass_matrix([0.1, 0.2]).tobytes() == toy.mass_matrix([0.1, 0.2]).tobytes()
+    assert compiled.mass_matrix.__doc__ == toy.mass_matrix.__doc__
+    for functions in (toy, compiled):
+        with pytest.raises(ValueError, match=r"q has shape \(3,\), expected \(..., 2\)"):
+            functions.inverse_dynamics([1.0, 2.0, 3.0], [0, 0], [0, 0])
+        with pytest.raises(TypeError, match=r"missing a required argument|required positional argument"):
+            functions.inverse_dynamics([1.0, 2.0])
 
 
 def test_library_sine_and_cosine(tmp_path: Path) -> None:

@@ -10,8 +10,9 @@ import pytest
 import shipped
 
 from symgen.emit.c import emit_c
-from symgen.emit.c_batch import BATCHED, emit_c_batch
+from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.defaults import default_values
+from symgen.emit.quantities import BATCHED
 from symgen.ir.kernel import Program
 from symgen.verify.batch import run_batch
 from symgen.verify.compile import CFunction, Compilation, c_array, find_compiler
