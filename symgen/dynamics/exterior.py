@@ -57,6 +57,13 @@ def square(graph: Graph, a: Multivector) -> Scalar:
     return graph.sum(value * value for value in a.values())
 
 
+def cross_product(graph: Graph, rows: Matrix, n: int) -> Vector:
+    """The generalized cross product of n - 1 vectors of R^n: orthogonal to all, |w|^2 the sum of squared minors."""
+    minors = wedge_all(unit(graph), rows)
+    full = (1 << n) - 1
+    return tuple((-1) ** (n - 1 - i) * minors.get(full & ~(1 << i), graph.zero) for i in range(n))
+
+
 def basis_wedges(graph: Graph, a: Multivector, n: int) -> list[Multivector]:
     """a ^ e_i for every axis i."""
     axes = [tuple(graph.one if i == j else graph.zero for j in range(n)) for i in range(n)]

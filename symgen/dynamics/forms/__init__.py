@@ -1,1 +1,1 @@
-"""Forms: the ways in which one quantity can be computed, each with everything it divides by."""
+"""Forms: the ways in which u can be computed, each with everything it divides by."""

@@ -21,7 +21,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
+from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, unit, wedge_all
 from symgen.dynamics.forms.form import Form, form
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
@@ -111,7 +111,7 @@ class _Elimination:
             guards.append(Guard(Status.ACTUATION_RANK, forms.denominator(), degree, cause, scale))
         u = self._drive_forces(particular, homogeneous=False)
         if internal:
-            null = dict(zip(names, _cross_product(graph, core, len(names)), strict=True))
+            null = dict(zip(names, cross_product(graph, core, len(names)), strict=True))
             z = self._without_content(self._drive_forces(null, homogeneous=True))
             length = graph.sum(x * x for x in z)
             share = dot(graph, z, u) / length
@@ -323,12 +323,3 @@ class _Elimination:
         denominator, scale = substitute(self._graph, [guard.denominator, guard.scale], back)
         first = tuple(self._moved(cause, back) for cause in guard.first)
         return Guard(guard.status, denominator, guard.degree, first, scale)
-
-
-def _cross_product(graph: Graph, rows: tuple[Vector, ...], n: int) -> Vector:
-    """The generalized cross product of n - 1 vectors of R^n: orthogonal to all, |w|^2 the sum of squared minors."""
-    minors = wedge_all(unit(graph), rows)
-    full = (1 << n) - 1
-    return tuple(
-        (-1) ** (n - 1 - i) * minors.get(full & ~(1 << i), graph.zero) for i in range(n)
-    )

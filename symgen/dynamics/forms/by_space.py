@@ -1,0 +1,48 @@
+"""The minor form (Cauchy-Binet over the inputs, theory section 3.1) and the Householder form of u."""
+
+from __future__ import annotations
+
+from math import comb
+
+from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.forms.form import Form, form
+from symgen.dynamics.forms.system import System
+from symgen.dynamics.spaces import HouseholderSpace, MinorSpace
+
+# Minors are built only while their number stays small; beyond, reflections are cheaper anyway.
+MINOR_LIMIT = 300
+
+
+def minor_derivation(system: System) -> Derivation | str:
+    """The derivation along the minors of B, or why there is none: rows that depend on each other have no other."""
+    mechanics, generic = system.mechanics, system.generic
+    number = comb(generic.n, generic.rank) * comb(generic.r, generic.rank)
+    if number > MINOR_LIMIT and generic.rank == generic.r:
+        return f"B has {number} minors"
+    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
+    return Derivation(mechanics, generic, space)
+
+
+def householder_derivation(system: System) -> Derivation | str:
+    """The derivation along reflections of B^T, or why there is none."""
+    mechanics, generic = system.mechanics, system.generic
+    if not mechanics.r or system.regular is not None:
+        return system.regular or "there are no constraints"
+    space = HouseholderSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n)
+    return Derivation(mechanics, generic, space)
+
+
+def minor_form(system: System) -> Form | str:
+    """u = sum_J Delta_J^2 u_J / sum_J Delta_J^2 over the input subsets, from the minors of B."""
+    return _form(system, "minor", minor_derivation(system))
+
+
+def householder_form(system: System) -> Form | str:
+    """B^T = Q R by reflections, applied to M and tau, then determinants of the last rows of Q^T M."""
+    return _form(system, "householder", householder_derivation(system))
+
+
+def _form(system: System, name: str, derivation: Derivation | str) -> Form | str:
+    if isinstance(derivation, str):
+        return derivation
+    return form(name, "inverse_dynamics", derivation.inverse_dynamics, derivation.actuation_guards, system.given)

@@ -1,0 +1,52 @@
+"""What the builders of forms start from: a system on a graph of its own.
+
+Every form is built on a fresh graph: two forms of u are the same function, and a graph holds one node for equal
+functions, so on one graph the second form would turn into the first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from symgen.dynamics.forms.definite import Definite
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.matrix import Vector, flatten
+from symgen.model.model import Model
+
+
+@dataclass(frozen=True)
+class System:
+    """A system about to be solved for u."""
+
+    mechanics: Mechanics
+    generic: Genericity
+
+    @classmethod
+    def fresh(cls, model: Model, generic: Genericity) -> System:
+        """The system on a new graph."""
+        return cls(Mechanics(model), generic)
+
+    @cached_property
+    def definite(self) -> Definite:
+        """What cannot vanish within the parameters' ranges."""
+        return Definite(self.mechanics)
+
+    @cached_property
+    def given(self) -> Vector:
+        """The model's own expressions, whose denominators no form is to blame for."""
+        mechanics = self.mechanics
+        return (*mechanics.balance, *flatten(mechanics.constraint_jacobian), *flatten(mechanics.control_matrix))
+
+    @property
+    def driven(self) -> str | None:
+        """Why forms that solve the balance exactly do not apply, or None: they need full actuation."""
+        if self.generic.full_actuation:
+            return None
+        return "it needs inputs that span every admissible direction"
+
+    @property
+    def regular(self) -> str | None:
+        """Why forms that need independent constraints do not apply, or None."""
+        return None if self.generic.rank == self.generic.r else "the constraint rows depend on each other"
