@@ -68,9 +68,9 @@ class CStatements:
             return f"-{operands[0]}"
         if operation == "ratio_or_zero":
             zero = "0.0f" if self.scalar == "float32" else "0.0"
-            return f"{operands[1]} != {zero} ? {operands[0]} / {operands[1]} : {zero}"
+            return f"({operands[1]} != {zero}) ? ({operands[0]} / {operands[1]}) : {zero}"
         if operation in _CHOICES:
-            return f"{operands[0]} {_CHOICES[operation]} {operands[1]} ? {operands[0]} : {operands[1]}"
+            return f"({operands[0]} {_CHOICES[operation]} {operands[1]}) ? {operands[0]} : {operands[1]}"
         return f"{self.function(operation)}({', '.join(operands)})"
 
     def _sincos(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
@@ -79,7 +79,8 @@ class CStatements:
             return tuple(self._declare(t, f"{self.function(name)}({angle})") for t, name in pairs if t in self.used)
         sine, cosine = (self.names[target] for target in targets)
         # Taking the address is a use, so a half that nothing reads gives no warning.
-        return (f"{c_type(self.scalar)} {sine}, {cosine};", f"{self.sincos}({angle}, &{sine}, &{cosine});")
+        kind = c_type(self.scalar)
+        return (f"{kind} {sine};", f"{kind} {cosine};", f"{self.sincos}({angle}, &{sine}, &{cosine});")
 
     def check(self, check: Check) -> tuple[str, ...]:
         """The early return of a failed check as lines."""
