@@ -22,23 +22,21 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class ErrorRow:
-    """Errors of one kernel on one target, in units of d + eps |y*|; `relative` is the largest over |y*|."""
+    """Errors of one kernel on one target, in units of d + eps |y*|."""
 
     quantity: str
     target: str
     median: float
-    percentile_99: float
     largest: float
-    relative: float
 
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """What a run measured; shown in the PDF only.  `invariants` and `facts` are (name, value) as text."""
+    """What a run measured; shown in the PDF only: (target, law, violation) and (name, value) as text."""
 
     states: int
     errors: tuple[ErrorRow, ...]
-    invariants: tuple[tuple[str, str], ...] = ()
+    invariants: tuple[tuple[str, str, str], ...] = ()
     facts: tuple[tuple[str, str], ...] = ()
 
 

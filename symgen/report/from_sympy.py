@@ -70,6 +70,9 @@ class SympyLayout:
             return self._sum(node)
         if node.is_Mul or node.is_Pow:
             return self._product(node)
+        if isinstance(node, (sympy.Max, sympy.Min)):
+            arguments = sorted(node.args, key=self._term_key)
+            return call(type(node).__name__.lower(), tuple(self.expression(argument) for argument in arguments))
         if isinstance(node, sympy.Function) and not isinstance(node, AppliedUndef):
             return call(type(node).__name__, tuple(self.expression(argument) for argument in node.args))
         raise SymgenBug(f"report: no way to set the SymPy node {type(node).__name__}: {node}")

@@ -39,13 +39,11 @@ def with_measurements(report: ReportInput, certificate: Certificate, charts: Seq
             quantity=record.quantity,
             target=record.target,
             median=record.median,
-            percentile_99=record.percentile_99,
             largest=record.largest,
-            relative=record.largest_relative,
         )
         for record in certificate.errors
     )
-    invariants = tuple((f"{law.target}: {law.name}", f"{law.largest:.2g}") for law in certificate.invariants)
+    invariants = tuple((law.target, law.name, f"{law.largest:.2g}") for law in certificate.invariants)
     verification = Verification(certificate.states, errors, invariants, (*certificate.versions, *_notes(certificate)))
     return replace(report, verification=verification, charts=tuple(charts))
 

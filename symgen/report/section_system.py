@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
+from symgen.model.coordinates import ANGLE_RANGE
 from symgen.model.expression import Expression, Number
 from symgen.model.model import Input, Range
 from symgen.report.context import Context, text_of
@@ -105,8 +108,15 @@ def _coordinates(context: Context) -> Table:
 
 
 def _range_text(bounds: Range) -> str:
-    low, high = (f"{float(bound):.4g}".replace("-", "−") for bound in bounds)
+    low, high = map(_bound_text, bounds)
     return f"{low} … {high}"
+
+
+def _bound_text(bound: Fraction) -> str:
+    """A bound in four digits, half turns by name."""
+    if abs(bound) == ANGLE_RANGE[1]:
+        return "π" if bound > 0 else "−π"
+    return f"{float(bound):.4g}".replace("-", "−")
 
 
 def _parameters(context: Context) -> Table:
