@@ -56,7 +56,7 @@ def _errors(measured: Verification) -> Table:
         for quantity in dict.fromkeys(row.quantity for row in measured.errors)
     )
     headings = ("Kernel", *targets)
-    return Table(tuple(say("{}", heading) for heading in headings), rows, (1, *(0 for _ in targets)))
+    return Table(tuple(say("{}", heading) for heading in headings), rows, (0, *(1 for _ in targets)))
 
 
 def _laws(measured: Verification) -> Table:
@@ -66,7 +66,7 @@ def _laws(measured: Verification) -> Table:
         (say("{}", law), *(say("{}", found.get((target, law), "")) for target in targets))
         for law in dict.fromkeys(law for _, law, _ in measured.invariants)
     )
-    return Table(tuple(say("{}", heading) for heading in ("Law", *targets)), rows, (1, *(0 for _ in targets)))
+    return Table(tuple(say("{}", heading) for heading in ("Law", *targets)), rows, (0, *(1 for _ in targets)))
 
 
 def _spread(row: ErrorRow) -> str:
