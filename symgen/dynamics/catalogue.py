@@ -180,8 +180,8 @@ CATALOGUE: tuple[Entry, ...] = (
         ACTUATORS,
     ),
     Entry("actuator_bias", lambda s: (s.m,), lambda d: d.actuator_bias(), _actuator, ACTUATORS),
-    Entry("forward_dynamics", _n, lambda d: d.forward_dynamics, _inertia),
-    Entry("multipliers", lambda s: (s.r,), lambda d: d.multipliers(), _inertia),
+    Entry("forward_dynamics", _n, lambda d: d.forward_dynamics, lambda d: d.acceleration.guards),
+    Entry("multipliers", lambda s: (s.r,), lambda d: d.multipliers(), lambda d: d.reaction.guards),
     Entry("energy", lambda _: (2,), lambda d: d.energy()),
     Entry("singularity", lambda _: (2,), lambda d: d.singularity()),
 )

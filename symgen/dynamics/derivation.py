@@ -13,6 +13,9 @@ from itertools import combinations
 from symgen.dynamics.allocation import InputAllocation
 from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
 from symgen.dynamics.exterior import square as multivector_square
+from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
+from symgen.dynamics.forms.motion import Motion, Problem
+from symgen.dynamics.forms.motions import candidates, motion
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia, ShiftedInertia
@@ -68,15 +71,34 @@ class Derivation:
     @cached_property
     def inertia(self) -> ConstrainedInertia:
         """K = W (W^T G W)^-1 W^T, by the form that is valid wherever G is positive definite on ker B."""
-        mass_matrix = self.mechanics.mass_matrix
+        mass_matrix, space = self.mechanics.mass_matrix, self.space
+        if self.generic.rank < self.r and self.generic.delta <= LARGEST_DELTA and isinstance(space, MinorSpace):
+            return MinorInertia(space, mass_matrix)
+        if isinstance(space, MinorSpace) and self.generic.delta <= LARGEST_DELTA:
+            return minor_motion(Problem(self.mechanics, space.guards))
         if self.r == 0:
             return FreeInertia(self.graph, mass_matrix)
-        if isinstance(self.space, HouseholderSpace):
-            return BasisInertia(self.space, mass_matrix)
-        assert isinstance(self.space, MinorSpace)
-        if self.generic.delta <= 2:
-            return MinorInertia(self.space, mass_matrix)
-        return ShiftedInertia(self.space, mass_matrix)
+        if isinstance(space, HouseholderSpace):
+            return BasisInertia(space, mass_matrix)
+        if self.generic.rank == self.r:
+            return BasisInertia(HouseholderSpace(self.graph, self.mechanics.constraint_jacobian, self.n), mass_matrix)
+        assert isinstance(space, MinorSpace)
+        return ShiftedInertia(space, mass_matrix)
+
+    @cached_property
+    def _motions(self) -> tuple[Motion, ...]:
+        names = candidates(self.mechanics, self.generic, self.space)
+        return tuple(motion(name, self.mechanics, self.space, self.inertia) for name in names)
+
+    @cached_property
+    def acceleration(self) -> Motion:
+        """The form of q_ddot that counts least."""
+        return min(self._motions, key=lambda m: cost((*m.accelerations, *(g.denominator for g in m.guards))).weight)
+
+    @cached_property
+    def reaction(self) -> Motion:
+        """The form of lambda that counts least."""
+        return min(self._motions, key=lambda m: cost((*m.multipliers, *(g.denominator for g in m.guards))).weight)
 
     @cached_property
     def _actuation(self) -> tuple[ActuationForms, Restriction]:
@@ -198,7 +220,9 @@ class Derivation:
 
     @cached_property
     def weighted_pseudoinverse(self) -> Matrix:
-        """B_G^+ = (I - N_{B,G}) B^+."""
+        """B_G^+, by the minors of B, or as (I - N_{B,G}) B^+."""
+        if isinstance(self.inertia, MinorMotion):
+            return self.inertia.pseudoinverse
         complement = subtract(identity(self.graph, self.n), self.weighted_projector)
         return matmul(self.graph, complement, self.space.pseudoinverse, self.r)
 
@@ -321,29 +345,12 @@ class Derivation:
 
     @cached_property
     def forward_dynamics(self) -> Vector:
-        """q_ddot = B^+ a + K (f - G B^+ a), a = -B_dot q_dot."""
-        mechanics, graph = self.mechanics, self.graph
-        force = mechanics.applied_balance
-        if self.r == 0:
-            return self.inertia.solve(force)
-        bias = mechanics.constraint_acceleration_bias(mechanics.qd)
-        lifted = tuple(-x for x in self.space.lift(bias))
-        rest = subtract_vectors(force, matvec(graph, mechanics.mass_matrix, lifted))
-        return tuple(a + b for a, b in zip(lifted, self.inertia.solve(rest), strict=True))
+        """q_ddot of G q_ddot + B^T lambda = f, B q_ddot = -B_dot q_dot."""
+        return self.acceleration.accelerations
 
     def multipliers(self) -> Vector:
-        """lambda = (B_G^+)^T (f - G B^+ a) (16): the one of least norm where rows depend on each other.
-
-        No acceleration along the constraints enters, so none has to cancel; (B_G^+)^T M is formed before it meets u,
-        because it vanishes for inputs that load no constraint.
-        """
-        mechanics, graph = self.mechanics, self.graph
-        weights = transpose(self.weighted_pseudoinverse, self.r)
-        lifted = self.space.lift(mechanics.constraint_acceleration_bias(mechanics.qd))
-        inertial = matvec(graph, mechanics.mass_matrix, lifted)
-        free = matvec(graph, weights, tuple(a - b for a, b in zip(inertial, mechanics.bias_force, strict=True)))
-        driven = matvec(graph, matmul(graph, weights, mechanics.control_matrix, self.m), mechanics.u)
-        return tuple(a + b for a, b in zip(free, driven, strict=True))
+        """lambda of the same system, the one of least norm where rows depend on each other."""
+        return self.reaction.multipliers
 
     # diagnostics -----------------------------------------------------------------------------------------------------
 

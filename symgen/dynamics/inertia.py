@@ -19,7 +19,9 @@ from symgen.ir.kernel import Status
 class ConstrainedInertia(Protocol):
     """Solves for accelerations along the constraints."""
 
-    guards: tuple[Guard, ...]
+    @property
+    def guards(self) -> tuple[Guard, ...]:
+        """The denominators of K."""
 
     def solve(self, force: Vector) -> Vector:
         """K f."""
@@ -57,10 +59,18 @@ class Cholesky:
 
     def solve(self, b: Sequence[Scalar]) -> Vector:
         """The solution of L D L^T x = b."""
+        return self.raised([value / pivot for value, pivot in zip(self.lowered(b), self.pivots, strict=True)])
+
+    def lowered(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L y = b."""
         y: list[Scalar] = []
         for i in range(self.size):
             y.append(b[i] - dot(self.graph, self.lower[i], y))
-        x = [value / pivot for value, pivot in zip(y, self.pivots, strict=True)]
+        return tuple(y)
+
+    def raised(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L^T x = b."""
+        x = list(b)
         for i in reversed(range(self.size)):
             for j in range(i + 1, self.size):
                 x[i] = x[i] - self.lower[j][i] * x[j]

@@ -19,6 +19,8 @@ from symgen.model.model import Model
 FACTORING_LIMIT = 450
 CANCELLATION_WORTH = Fraction(1, 4)
 MINOR_LIMIT = 300
+# Their forms have multiplied out what may cancel.
+MOTIONS = ("forward_dynamics", "multipliers")
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +88,8 @@ def derive_quantities(model: Model, outputs: Sequence[str]) -> Derivations:
             shorter = replace(chosen, outputs=mechanics.factoring.shorten(chosen.outputs, kept))
             costs["factored"] = cost(scalars(shorter)).weight
             # multiplied out, terms that vanish have cancelled exactly: worth a few operations more
-            if costs["factored"] <= costs[best] * (1 + CANCELLATION_WORTH):
+            worth = 0 if name in MOTIONS else CANCELLATION_WORTH
+            if costs["factored"] <= costs[best] * (1 + worth):
                 candidates["factored"], best = shorter, "factored"
         quantities.append(candidates[best])
         choices.append(Choice(name, best, tuple(costs.items())))

@@ -1,0 +1,64 @@
+"""The equations of motion as one linear system, and what a form of its solution consists of.
+
+G q_ddot + B^T lambda = f and B q_ddot = -a, with f = M u - C q_dot - Q + Q_a and a = B_dot q_dot (3), (1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from symgen.dynamics.guards import Guard
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.angles import share_angles
+from symgen.graph.matrix import Matrix, Vector
+from symgen.graph.polynomial import Multiplier, refactored
+from symgen.graph.scalar import Graph, Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """q_ddot (n) and lambda (r) with the denominators they depend on."""
+
+    accelerations: Vector
+    multipliers: Vector
+    guards: tuple[Guard, ...]
+
+
+class Problem:
+    """A system's equations of motion; `guards` tell where B loses rank."""
+
+    def __init__(self, mechanics: Mechanics, guards: tuple[Guard, ...]) -> None:
+        self.graph: Graph = mechanics.graph
+        self.guards = guards
+        self.n, self.r = mechanics.n, mechanics.r
+        self._mechanics = mechanics
+        self._multiplier = Multiplier(mechanics.graph, lambda _: False)
+
+    @property
+    def mass_matrix(self) -> Matrix:
+        """G (n x n)."""
+        return self._mechanics.mass_matrix
+
+    @property
+    def rows(self) -> Matrix:
+        """B (r x n)."""
+        return self._mechanics.constraint_jacobian
+
+    @cached_property
+    def force(self) -> Vector:
+        """f (n)."""
+        return self._mechanics.applied_balance
+
+    @cached_property
+    def bias(self) -> Vector:
+        """a (r)."""
+        return self._mechanics.constraint_acceleration_bias(self._mechanics.qd) if self.r else ()
+
+    def multiplied_out(self, values: list[Scalar]) -> list[Scalar]:
+        """The values with sums of parameters multiplied out too, where that is not too long.
+
+        Inertias that occur in several entries of G (an angle relative to a turning body) then cancel exactly.
+        """
+        fixed = self._mechanics.factoring.fixed
+        return refactored(self.graph, share_angles(self.graph, values), self._multiplier, fixed)

@@ -1,0 +1,54 @@
+"""The forms of q_ddot and lambda that a null space offers, and which of them may be chosen by counted cost.
+
+Valid wherever the system has a motion: `minor` (independent rows, delta of 1 or 2), `schur_qr` where G is positive
+definite everywhere, else `nullspace`.  `schur_ldl`, `shifted` and `kkt` are there to be compared with: the first two
+lose digits with the square of the condition number of B, the last is long.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias
+
+from symgen.dynamics.forms.definiteness import positive_definite
+from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
+from symgen.dynamics.forms.motion import Motion, Problem
+from symgen.dynamics.forms.projected_motion import kkt, nullspace, shifted
+from symgen.dynamics.forms.schur import schur_ldl, schur_qr
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.inertia import ConstrainedInertia
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.spaces import MinorSpace, NullSpace
+
+MotionName: TypeAlias = Literal["minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt"]
+MOTION_NAMES: tuple[MotionName, ...] = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt")
+
+
+def candidates(mechanics: Mechanics, generic: Genericity, space: NullSpace) -> tuple[MotionName, ...]:
+    """The forms among which counted cost may decide."""
+    found: list[MotionName] = []
+    if generic.r == 0:
+        return ("minor", "schur_qr") if generic.n <= LARGEST_DELTA else ("schur_qr",)
+    if generic.rank == generic.r:
+        if isinstance(space, MinorSpace) and 1 <= generic.delta <= LARGEST_DELTA:
+            found.append("minor")
+        if positive_definite(mechanics):
+            found.append("schur_qr")
+    return tuple(found) or ("nullspace",)
+
+
+def motion(name: MotionName, mechanics: Mechanics, space: NullSpace, inertia: ConstrainedInertia) -> Motion:
+    """One form along a null space; `nullspace` takes the constrained inverse of G that belongs to it."""
+    problem = Problem(mechanics, space.guards)
+    match name:
+        case "minor":
+            return inertia.motion if isinstance(inertia, MinorMotion) else minor_motion(problem).motion
+        case "schur_qr":
+            return schur_qr(problem)
+        case "schur_ldl":
+            return schur_ldl(problem)
+        case "nullspace":
+            return nullspace(problem, space, inertia)
+        case "shifted":
+            return shifted(problem, space)
+        case "kkt":
+            return kkt(problem)
