@@ -1,0 +1,44 @@
+/* Computed torque: the inverse dynamics at a desired acceleration that is corrected by position and rate errors. */
+#include <math.h>
+
+#include "control.h"
+#include "trajectory.h"
+
+#define STIFFNESS 3600.0f /* 1/s^2: errors die out like those of a critically damped oscillator with 60 rad/s */
+#define DAMPING 120.0f    /* 1/s */
+
+const char control_name[] = "computed torque";
+
+rapkm_2rrr_rr_status control_step(float t, const float measured[JOINTS], const float rates[JOINTS], float u[DRIVES]) {
+    const rapkm_2rrr_rr_params_f p = rapkm_2rrr_rr_default_params_f();
+    float q[JOINTS], qd[JOINTS], wanted[JOINTS], wanted_rate[JOINTS], qdd[JOINTS];
+    /* measured states satisfy the constraints only up to noise: bring them back (Remark 9) */
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_projected_configuration_f(measured, &p, q);
+    if (status != RAPKM_2RRR_RR_OK) {
+        return status;
+    }
+    status = rapkm_2rrr_rr_admissible_velocity_f(q, rates, &p, qd);
+    if (status != RAPKM_2RRR_RR_OK) {
+        return status;
+    }
+    trajectory(t, &p, wanted, wanted_rate, qdd);
+    for (int i = 0; i < JOINTS; i++) {
+        const float error = remainderf(wanted[i] - q[i], 6.28318531f);
+        qdd[i] += DAMPING * (wanted_rate[i] - qd[i]) + STIFFNESS * error;
+    }
+    status = rapkm_2rrr_rr_admissible_acceleration_f(q, qd, qdd, &p, qdd);
+    if (status != RAPKM_2RRR_RR_OK) {
+        return status;
+    }
+    status = rapkm_2rrr_rr_inverse_dynamics_f(q, qd, qdd, &p, u);
+    if (status == RAPKM_2RRR_RR_OK) {
+        control_limit(u);
+    }
+    return status;
+}
+
+bool control_check(const double q[JOINTS], const double qd[JOINTS]) {
+    (void)q;
+    (void)qd;
+    return true; /* nothing but the inverse dynamics is relied on */
+}

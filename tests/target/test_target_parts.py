@@ -1,0 +1,108 @@
+"""The pieces of `symgen target`: the files of the driver, comparison, and the command without tools."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from shipped import model, programs
+
+from symgen.cli import main
+from symgen.ir.kernel import Program
+from symgen.target.compare import BOUND, compare
+from symgen.target.driver import Record, Results, driver_source, pack_states, unpack_results
+from symgen.target.vectors import perturbed, vectors_of
+from symgen.verify.reference import Reference, State
+
+
+def _program() -> Program:
+    program = programs("front_car")["float32"]
+    return replace(program, kernels=tuple(k for k in program.kernels if k.name in ("inverse_dynamics", "energy")))
+
+
+def _results(u: float, states: int = 2, status: int = 0) -> Results:
+    record = Record(status, struct.pack("<2f", u, 1.0))
+    return Results(dict.fromkeys(("inverse_dynamics", "energy"), (record,) * states), {})
+
+
+def test_missing_tools_are_named_with_their_packages(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "cart.yaml"
+    path.write_text("model: cart\ncoordinates: {x: {unit: m}}\nkinetic_energy: x_dot**2\n")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["target", str(path), "--cpu", "cortex-m4f", "--cpu", "rv32imac", "--out", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    packages = ("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm", "gcc-riscv64-unknown-elf",
+                "picolibc-riscv64-unknown-elf", "qemu-system-misc")
+    assert all(package in told for package in packages)
+    assert "apt-get install" in told
+    assert not (tmp_path / "cart").exists()
+
+
+def test_unknown_cores_are_refused_with_the_known_ones(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["target", "models/skate.yaml", "--cpu", "z80"])
+    assert "cortex-m4f" in capsys.readouterr().err
+
+
+def test_states_are_packed_row_by_row() -> None:
+    state = State((1.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
+    data = pack_states([state, state], "float32")
+    assert struct.unpack("<I16f", data) == (2, *[float(x) for x in range(1, 9)] * 2)
+
+
+def test_results_are_read_back_and_short_files_refused() -> None:
+    program = _program()
+    rows = [struct.pack("<I2f", 0, *values) for values in ((1.0, 2.0), (3.0, 4.0))] * 2
+    data = b"".join(rows) + struct.pack("<2I", 24, 32)
+    found = unpack_results(data, program, 2)
+    names = [kernel.name for kernel in program.kernels]
+    assert [found.records[name][1].outputs for name in names] == [rows[0][4:], rows[1][4:]]
+    assert [found.stack[name] for name in names] == [24, 32]
+    with pytest.raises(ValueError, match="instead of"):
+        unpack_results(data[:-1], program, 2)
+
+
+def test_one_bit_or_one_status_is_a_difference() -> None:
+    program = _program()
+    units = {kernel.name: (1e-7, 1e-7) for kernel in program.kernels}
+    same = compare(program.kernels, "float32", True, _results(1.0), _results(1.0), units, 2)
+    assert same.different == 0
+    assert not same.wrong
+    next_float = struct.unpack("<f", struct.pack("<I", 0x3F800001))[0]
+    for other in (_results(next_float), _results(1.0, status=1)):
+        found = compare(program.kernels, "float32", True, _results(1.0), other, units, 2)
+        assert found.different == 4
+        assert len(found.wrong) == 2
+
+
+def test_a_library_may_differ_within_the_bound_at_regular_states() -> None:
+    program = _program()
+    units = {kernel.name: (1e-7, 1e-7) for kernel in program.kernels}
+    near, far = _results(1.0 + 0.5 * BOUND * 1e-7), _results(1.0 + 2 * BOUND * 1e-7)
+    close = compare(program.kernels, "float32", False, _results(1.0), near, units, 2)
+    assert close.different == 4
+    assert not close.wrong
+    assert 0 < close.distance <= BOUND
+    assert compare(program.kernels, "float32", False, _results(1.0), far, units, 2).wrong
+    assert not compare(program.kernels, "float32", False, _results(1.0), far, units, 0).wrong
+    assert compare(program.kernels, "float32", False, _results(1.0), _results(1.0, status=4), units, 2).wrong
+
+
+def test_vectors_are_many_seeded_and_hold_singular_ones() -> None:
+    first, second = (vectors_of(Reference(model("skate"))) for _ in range(2))
+    assert len(first.regular) == 256
+    assert first.singular
+    assert first.odd
+    assert first.regular == second.regular
+    assert len(perturbed(first.regular[:2], "float32")) == 12
+
+
+def test_the_driver_calls_every_kernel_of_both_types() -> None:
+    text = driver_source(model("front_car"), programs("front_car"))
+    for kernel in programs("front_car")["float32"].kernels:
+        assert f"front_car_{kernel.name}(" in text
+        assert f"front_car_{kernel.name}_f(" in text
