@@ -12,7 +12,9 @@ from symgen import __version__
 from symgen.dynamics.select import Derivations
 from symgen.dynamics.structure import Structure
 from symgen.emit.operations import count_operations
-from symgen.ir.kernel import Program
+from symgen.emit.quantities import BATCHED
+from symgen.ir.kernel import Kernel, Program
+from symgen.ir.prepare import prepare
 from symgen.model.model import Model
 
 
@@ -22,22 +24,17 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
     ways = {choice.quantity: choice for choice in derivations.choices}
     kernels: dict[str, Any] = {}
     for kernel in program.kernels:
-        counts = count_operations(kernel.statements)
         choice = ways[kernel.name]
         kernels[kernel.name] = {
             "shape": list(kernel.shape),
             "way": choice.way,
             "counted_cost": dict(choice.costs),
-            "operations": {
-                "add": counts.add,
-                "mul": counts.mul,
-                "div": counts.div,
-                "sqrt": counts.sqrt,
-                "sincos": counts.sincos,
-                "other": counts.other,
-            },
+            "operations": _operations(kernel),
             "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),
         }
+    prepared = prepare(program, BATCHED)
+    for kernel in () if prepared is None else prepared.kernels:
+        kernels[kernel.name]["operations_prepared"] = _operations(kernel)
     content = {
         "symgen": __version__,
         "model": model.name,
@@ -59,3 +56,8 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
         "kernels": kernels,
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def _operations(kernel: Kernel) -> dict[str, int]:
+    counts = count_operations(kernel.statements)
+    return {name: getattr(counts, name) for name in ("add", "mul", "div", "sqrt", "sincos", "other")}

@@ -21,6 +21,7 @@ from symgen.dynamics.select import Derivations, derive_quantities
 from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
+from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.schedule import schedule
@@ -128,6 +129,7 @@ def _code(derived: _Derived, options: Options) -> dict[str, str | bytes]:
         for scalar in options.scalars:
             files |= emit_c(derived.model, derived.programs[scalar])
             files |= emit_c_batch(derived.model, derived.programs[scalar])
+            files |= emit_c_prepared(derived.model, derived.programs[scalar])
     if "python" in options.parts:
         from symgen.emit.python import emit_python
 

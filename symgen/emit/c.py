@@ -109,7 +109,7 @@ def _view(model: Model, program: Program) -> CView:
         members=_members(model, program, names),
         functions=functions,
         pairs=pairs_view(prefix, suffix, program),
-        includes_math=_uses_library(program),
+        includes_math=uses_library(program),
     )
 
 
@@ -151,10 +151,11 @@ def _kernel(model: Model, program: Program, kernel: Kernel, names: Names, parame
     arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
     prototype = f"{model.name}_status {model.name}_{kernel.name}{_suffix(program)}({', '.join(arguments)})"
     comment = c_comment_lines(f"{meaning(kernel.name)}; {shape_text(kernel)}")
-    return FunctionView(comment, prototype, _body(model, program, kernel, names))
+    return FunctionView(comment, prototype, kernel_body(model, program, kernel, names))
 
 
-def _body(model: Model, program: Program, kernel: Kernel, names: Names) -> tuple[str, ...]:
+def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) -> tuple[str, ...]:
+    """The lines of a function of one state; the parameters, or what stands for them, are the members of `*p`."""
     used = used_locals(kernel)
     sincos = None if program.sincos is None else f"{model.name}_sincos{_suffix(program)}"
     group = () if sincos is None else leading_group(kernel)
@@ -218,7 +219,8 @@ def _read_back(group: Sequence[Statement], scalar: str, names: Names) -> dict[st
     }
 
 
-def _uses_library(program: Program) -> bool:
+def uses_library(program: Program) -> bool:
+    """Whether a file with these kernels calls functions of math.h."""
     own = () if program.sincos is None else program.sincos.statements
     free = _WITHOUT_LIBRARY if program.sincos is None else _WITHOUT_LIBRARY | {"sincos"}
     statements = [*own, *(statement for kernel in program.kernels for statement in all_statements(kernel))]

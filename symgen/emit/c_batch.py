@@ -11,13 +11,14 @@ from dataclasses import dataclass, replace
 from symgen.emit.c import c_names, status_name
 from symgen.emit.comments import c_comment_lines
 from symgen.emit.locals import Names, all_statements, array_arguments, names_of
+from symgen.emit.pairs import pair_body
 from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
 from symgen.emit.statements import CStatements, c_type
-from symgen.ir.kernel import Check, Function, Kernel, Local, Operand, Program, Statement, Status
+from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
 from symgen.ir.split import names_in, names_of_blocks, split, without_first
 from symgen.model.model import Model
-from symgen.naming import c_identifiers, file_stem
+from symgen.naming import file_stem
 
 # States a block: local arrays of rows of this length; a multiple of every vector length in use.
 BLOCK = 64
@@ -95,7 +96,8 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     # the members of the parameter struct are those of the other header
     names = replace(names_of(model, program, own), members=c_names(model, program).members)
     operations = {statement.operation for kernel in kernels for statement in all_statements(kernel)}
-    angle, pair_body = _pair(program, program.sincos, pair) if program.sincos and "sincos" in operations else ("", ())
+    own_pair = program.sincos if "sincos" in operations else None
+    angle, body = ("", ()) if own_pair is None else pair_body(program.scalar, own_pair, pair)
     view = BatchFileView(
         stem=stem,
         guard=f"{stem.upper()}_H",
@@ -111,23 +113,13 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
         inline=inline,
         pair=pair,
         angle=angle,
-        pair_body=pair_body,
+        pair_body=body,
         ratio=ratio if "ratio_or_zero" in operations else "",
     )
     return {
         f"c/{stem}.h": render("c/batch.h.jinja", view),
         f"c/{stem}.c": render("c/batch.c.jinja", view),
     }
-
-
-def _pair(program: Program, function: Function, name: str) -> tuple[str, tuple[str, ...]]:
-    """The parameter and the body of the sine and cosine, which has to be part of the loop."""
-    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
-    names = c_identifiers(own, {"sine", "cosine", name})
-    printer = CStatements(program.scalar, names, frozenset(own))
-    body = [line for statement in function.statements for line in printer.statement(statement)]
-    sine, cosine = (names[result] for result in function.results)
-    return names[function.parameters[0]], (*body, f"*sine = {sine};", f"*cosine = {cosine};")
 
 
 def _function(

@@ -25,7 +25,7 @@ SUFFIXES: dict[Scalar, str] = {"float64": "", "float32": "_f"}
 class CSource:
     """A generated header and source; `stem` names the files without their endings.
 
-    `companions` are further files (name, text) that use the header: kernels over many states.
+    `companions` are further files (name, text) that use the header: kernels over many states, parameters prepared.
     """
 
     stem: str

@@ -32,6 +32,7 @@ from symgen.verify.compile import (
     find_compiler,
 )
 from symgen.verify.conditions import condition_numbers
+from symgen.verify.prepared import run_prepared
 from symgen.verify.python_module import PythonModule
 from symgen.verify.reference import Reference, ReferenceValueError
 from symgen.verify.states import (
@@ -161,7 +162,11 @@ def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[d
             stem + suffix,
             texts[f"c/{stem}{suffix}.h"],
             texts[f"c/{stem}{suffix}.c"],
-            tuple((p.removeprefix("c/"), t) for p, t in texts.items() if p.startswith(f"c/{stem}_batch{suffix}.")),
+            tuple(
+                (path.removeprefix("c/"), text)
+                for path, text in texts.items()
+                if path.startswith((f"c/{stem}_batch{suffix}.", f"c/{stem}_prepared{suffix}."))
+            ),
         )
         for scalar, suffix in SUFFIXES.items()
         if f"c/{stem}{suffix}.c" in texts
@@ -229,11 +234,18 @@ def _run_c(
             for kernel, function in zip(kernels, functions, strict=True):
                 outcomes[kernel.name].append(function(arrays, parameters))
         results[target] = (scalar, outcomes)
-        if sources[scalar].companions:
-            many, differing = run_batch(library, model.name, kernels, scalar, samples[scalar], outcomes)
+        companions = dict(sources[scalar].companions)
+        given = library, model.name, kernels, scalar, samples[scalar], outcomes
+        stem, suffix = file_stem(model.name), SUFFIXES[scalar]
+        others = {}
+        if f"{stem}_batch{suffix}.h" in companions:
+            others["batch"] = run_batch(*given)
+        if (header := companions.get(f"{stem}_prepared{suffix}.h")) is not None:
+            others["prepared"] = run_prepared(*given, header)
+        for kind, (made, differing) in others.items():
             failures += differing
-            if many:
-                results[f"{target} batch"] = (scalar, many)
+            if made:
+                results[f"{target} {kind}"] = (scalar, made)
     return results, failures
 
 

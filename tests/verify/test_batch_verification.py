@@ -1,4 +1,4 @@
-"""Batch kernels that differ from those of one state are found, in results, statuses and counts."""
+"""Batch and prepared kernels that differ from the plain ones are found, in results, statuses and counts."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ import shipped
 
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
+from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.defaults import default_values
 from symgen.emit.quantities import BATCHED
 from symgen.ir.kernel import Program
 from symgen.verify.batch import run_batch
 from symgen.verify.compile import CFunction, Compilation, c_array, find_compiler
+from symgen.verify.prepared import run_prepared
 from symgen.verify.reference import State
 from symgen.verify.run import generated_sources
 from symgen.verify.states import Sample
@@ -33,9 +35,10 @@ def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
     """What a comparison at three states says after an edit of the batch's files."""
     model, compiler = shipped.model(NAME), find_compiler()
     assert compiler is not None
-    files = emit_c(model, program()) | emit_c_batch(model, program())
+    files = emit_c(model, program()) | emit_c_batch(model, program()) | emit_c_prepared(model, program())
     source = generated_sources(model, files)[0]["float64"]
-    assert [name for name, _ in source.companions] == [f"{NAME}_batch.h", f"{NAME}_batch.c"]
+    names = [f"{NAME}_{kind}.{ending}" for kind in ("batch", "prepared") for ending in "hc"]
+    assert [name for name, _ in source.companions] == names
     edited = replace(source, companions=tuple((name, edit(text)) for name, text in source.companions))
     library = Compilation(compiler, edited, folder).library()
     parameters = tuple(float(value) for value in default_values(model).values())
@@ -54,7 +57,11 @@ def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
     samples = [Sample(state, True, (1.0, 1.0)) for state in states]
     outcomes, failures = run_batch(library, model.name, program().kernels, "float64", samples, alone)
     assert set(outcomes) == set(alone)
-    return failures
+    header = dict(source.companions)[f"{NAME}_prepared.h"]
+    given = library, model.name, program().kernels, "float64", samples, alone
+    outcomes, differing = run_prepared(*given, header)
+    assert {"forward_dynamics"} <= set(outcomes) < set(alone)
+    return failures + differing
 
 
 def test_what_is_generated_passes(tool: Callable[[str], str], tmp_path: Path) -> None:
@@ -70,6 +77,8 @@ def test_what_is_generated_passes(tool: Callable[[str], str], tmp_path: Path) ->
         ("(unsigned char)code", "0", "other status than alone where every input is"),
         ("refused += code != 0;", "", "other status than alone where every input is"),
         ("flags |= bits[k];", "", "other status than alone where every input is"),
+        ("prepared.value[0] = ", "prepared.value[0] = 2.0 * ", "at state 0 the plain kernel gives something else"),
+        ("return SKATE_ANGLE_RANGE;", "return SKATE_NOT_FINITE;", "other status than the plain kernel's where"),
     ],
 )
 def test_wrong_batch_kernels_are_found(

@@ -46,7 +46,8 @@ def good(tool: Callable[[str], str]) -> Certificate:
 def test_correct_files_pass_on_every_target(good: Certificate) -> None:
     assert good.failures == ()
     assert good.passed
-    assert good.targets == ("C float64", "C float64 batch", "C float32", "C float32 batch", "Python float64")
+    c = tuple(f"C {scalar}{kind}" for scalar in ("float64", "float32") for kind in ("", " batch", " prepared"))
+    assert good.targets == (*c, "Python float64")
     assert {record.quantity for record in good.errors} == set(QUANTITIES)
     many = [record.quantity for record in good.errors if record.target == "C float64 batch"]
     assert many == ["inverse_dynamics", "forward_dynamics"]

@@ -1,0 +1,117 @@
+"""C99 with the work on parameters taken out: a struct made once for each set of parameters, kernels that read it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from symgen.emit.c import c_names, kernel_body, status_name, uses_library
+from symgen.emit.comments import c_comment_lines
+from symgen.emit.locals import Names, array_arguments, names_of
+from symgen.emit.operations import count_operations
+from symgen.emit.pairs import PairsView, pair_names, pairs_view
+from symgen.emit.quantities import BATCHED, meaning
+from symgen.emit.render import render
+from symgen.emit.statements import CStatements, c_type
+from symgen.ir.kernel import Block, Kernel, Program, Status
+from symgen.ir.prepare import Prepared, prepare
+from symgen.model.model import Model
+from symgen.naming import file_stem
+
+
+@dataclass(frozen=True, slots=True)
+class PreparedFunctionView:
+    """One kernel: comment, prototype without semicolon, body lines."""
+
+    comment: tuple[str, ...]
+    prototype: str
+    body: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PreparedView:
+    """Everything the templates of the prepared files print."""
+
+    stem: str
+    guard: str
+    plain_stem: str
+    scalar: str
+    struct: str
+    size: int
+    prepare: str
+    prepare_body: tuple[str, ...]
+    functions: tuple[PreparedFunctionView, ...]
+    pairs: PairsView | None
+    includes_math: bool
+
+
+def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
+    """`c/<model>_prepared.h`, `.c` (float32: `_prepared_f`), or nothing where no kernel would save enough."""
+    prepared = prepare(program, BATCHED)
+    if prepared is None:
+        return {}
+    suffix = "" if program.scalar == "float64" else "_f"
+    plain = file_stem(model.name)
+    stem = f"{plain}_prepared{suffix}"
+    once = Kernel("prepare", (), prepared.loads, (Block(prepared.statements, ()),), prepared.values, ())
+    whole = replace(program, kernels=(*prepared.kernels, once))
+    # the functions of one angle at a time are those that the lines of `prepare` call
+    pairs = pairs_view(model.name, suffix, whole)
+    if pairs is not None and any(statement.operation == "sincos" for statement in prepared.statements):
+        pairs = replace(pairs, single=f"{model.name}_sincos{suffix}")
+    names = _names(model, program, whole, prepared, suffix)
+    struct = f"{model.name}_prepared{suffix}"
+    view = PreparedView(
+        stem=stem,
+        guard=f"{stem.upper()}_H",
+        plain_stem=plain + suffix,
+        scalar=c_type(program.scalar),
+        struct=struct,
+        size=len(prepared.values),
+        prepare=f"{struct} {model.name}_prepare{suffix}(const {model.name}_params{suffix} *p)",
+        prepare_body=_prepare_body(model, program, prepared, names, suffix),
+        functions=tuple(_function(model, program, kernel, names, struct, suffix) for kernel in prepared.kernels),
+        pairs=pairs,
+        includes_math=uses_library(whole),
+    )
+    return {
+        f"c/{stem}.h": render("c/prepared.h.jinja", view),
+        f"c/{stem}.c": render("c/prepared.c.jinja", view),
+    }
+
+
+def _names(model: Model, program: Program, whole: Program, prepared: Prepared, suffix: str) -> Names:
+    own = {f"{model.name}_{kernel.name}_prepared{suffix}" for kernel in prepared.kernels} | {"prepared"}
+    own |= {f"{model.name}_{name}{suffix}" for name in ("prepared", "prepare", "params")}
+    own |= pair_names(model.name, suffix) | {status_name(model, status) for status in Status}
+    members = {f"value[{k}]": f"value[{k}]" for k in range(len(prepared.values))}
+    # the members of the parameter struct are those of the other header
+    return replace(names_of(model, whole, own), members=members | c_names(model, program).members)
+
+
+def _prepare_body(model: Model, program: Program, prepared: Prepared, names: Names, suffix: str) -> tuple[str, ...]:
+    scalar = c_type(program.scalar)
+    sincos = None if program.sincos is None else f"{model.name}_sincos{suffix}"
+    targets = {target for statement in prepared.statements for target in statement.targets}
+    printer = CStatements(program.scalar, names.locals, targets, sincos)
+    lines = [] if prepared.loads else ["(void)p;"]
+    lines += [
+        f"const {scalar} {names.locals[load.local]} = p->{names.members[load.member]};" for load in prepared.loads
+    ]
+    lines += [line for statement in prepared.statements for line in printer.statement(statement)]
+    lines.append(f"{model.name}_prepared{suffix} prepared;")
+    lines += [f"prepared.value[{k}] = {printer.operand(value)};" for k, value in enumerate(prepared.values)]
+    return (*lines, "return prepared;")
+
+
+def _function(
+    model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str
+) -> PreparedFunctionView:
+    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
+    arguments += [f"const {struct} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
+    name = f"{model.name}_{kernel.name}_prepared{suffix}"
+    (plain,) = (k for k in program.kernels if k.name == kernel.name)
+    now, before = (count_operations(k.statements).total for k in (kernel, plain))
+    comment = c_comment_lines(f"{meaning(kernel.name)}; {now} operations instead of {before}")
+    body = kernel_body(model, program, kernel, names)
+    return PreparedFunctionView(comment, f"{model.name}_status {name}({', '.join(arguments)})", body)
