@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PAPER := skate front_car front_car_wheelset rear_car rapkm_2rrr_rr rapkm_two_drives
 
-.PHONY: run test generated bench stress docs lock
+.PHONY: run test generated bench stress trig docs lock
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -23,6 +23,10 @@ BENCHED := models/*.yaml docs/bench/rapkm_without_payload.yaml
 bench: $(VENV)/installed
 	$(BIN)/symgen bench $(BENCHED) --quiet
 	$(BIN)/python tools/bench_pages.py generated $(BENCHED)
+
+# The portable sine and cosine at every float32, a few minutes.
+trig: $(VENV)/installed
+	SYMGEN_TRIG_STRIDE=1 $(BIN)/pytest tests/toolchain/test_portable_pair.py -k everywhere
 
 # Numerical stability of every model: docs/stress, measured on this machine.
 stress: $(VENV)/installed

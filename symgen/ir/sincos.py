@@ -50,16 +50,17 @@ COSINE: dict[Scalar, tuple[float, ...]] = {
 }
 # 1.5 * 2^(p-1): adding and subtracting it rounds to the nearest integer.
 ROUNDER: dict[Scalar, Fraction] = {"float64": Fraction(3 * 2**51), "float32": Fraction(3 * 2**22)}
-# Bits of the two leading parts of pi/2: with the bits of the multiple they fit into the significand.
-LEADING_BITS: dict[Scalar, int] = {"float64": 36, "float32": 16}
+# Bits of the two leading parts of pi/2: their products with every multiple in range fit into the significand, and the
+# third part is so short a tail that subtracting it rounds hardly ever.
+LEADING_BITS: dict[Scalar, tuple[int, int]] = {"float64": (36, 36), "float32": (17, 18)}
 
 
 def half_pi_parts(scalar: Scalar) -> tuple[Fraction, Fraction, Fraction]:
     """pi/2 as a sum of two short parts and a rest."""
     rest = PI / 2
     parts = []
-    for _ in range(2):
-        shift = LEADING_BITS[scalar] - 1 - _exponent(rest)
+    for bits in LEADING_BITS[scalar]:
+        shift = bits - 1 - _exponent(rest)
         part = Fraction(int(rest * 2**shift), 1) / 2**shift
         parts.append(part)
         rest -= part

@@ -126,10 +126,11 @@ def test_quadrants_are_exact(scalar: Scalar) -> None:
 def test_leading_parts_of_a_right_angle_multiply_exactly(scalar: Scalar) -> None:
     digits = 53 if scalar == "float64" else 24
     first, second, third = half_pi_parts(scalar)
-    most = int(ANGLE_LIMIT[scalar] / Fraction(HALF_PI)) + 1
-    for part in (first, second):
-        # parts are odd numbers times a power of two
-        assert part.numerator.bit_length() + most.bit_length() <= digits
+    most = round(ANGLE_LIMIT[scalar] / Fraction(HALF_PI))
+    # an odd multiple of a part, an odd number times a power of two, is longest for the largest odd multiple
+    for multiple in (most, most - 1):
+        odd = multiple // (multiple & -multiple)
+        assert all((odd * part).numerator.bit_length() <= digits for part in (first, second))
     pi = Fraction(314159265358979323846264338327950288419716939937510, 10**50)
     assert abs(first + second + third - pi / 2) < Fraction(1, 10**48)
     assert abs(third) < second / 2**10

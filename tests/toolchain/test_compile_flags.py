@@ -73,8 +73,23 @@ def test_both_headers_together(tool: Callable[[str], str], folder: Path, tmp_pat
     assert made.returncode == 0, made.stderr
 
 
-def test_fast_math_is_refused(tool: Callable[[str], str], folder: Path, tmp_path: Path) -> None:
-    made = run(tool("gcc"), "-ffast-math", "-c", folder / "toy.c", "-o", tmp_path / "out.o")
+@pytest.mark.parametrize("source", ["toy.c", "toy_f.c"])
+@pytest.mark.parametrize(
+    ("compiler", "flag"),
+    [
+        ("gcc", "-ffast-math"),
+        ("gcc", "-Ofast"),
+        ("gcc", "-funsafe-math-optimizations"),
+        ("gcc", "-ffinite-math-only"),
+        ("clang", "-ffast-math"),
+        ("clang", "-Ofast"),
+        ("clang", "-ffinite-math-only"),
+    ],
+)
+def test_fast_math_is_refused(
+    tool: Callable[[str], str], folder: Path, tmp_path: Path, compiler: str, flag: str, source: str
+) -> None:
+    made = run(tool(compiler), flag, "-c", folder / source, "-o", tmp_path / "out.o")
     assert made.returncode != 0
     assert "IEEE" in made.stderr
 
