@@ -8,13 +8,17 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from symgen.dynamics.bodies import Bodies
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.factoring import Factoring
+from symgen.dynamics.newton_euler import newton_euler
 from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.translate import translate
 from symgen.graph.traverse import cost, substitute
+from symgen.model.components import components_in, definitions_before_frames
+from symgen.model.expression import Expression
 from symgen.model.model import Model
 
 
@@ -41,10 +45,21 @@ class Mechanics:
             **{c.rate: node for c, node in zip(model.coordinates, qd, strict=True)},
             **{p.name: node for p, node in zip(model.parameters, self.parameters, strict=True)},
         }
+        self.bodies = self._bodies()
         for definition in model.definitions:
-            self.names[definition.name] = translate(graph, definition.value, self.names)
+            if definition.name not in self.names:
+                self.names[definition.name] = translate(graph, definition.value, self.names)
         self.factoring = Factoring(graph, self.parameters)
         self.definitions = {d.name: self.names[d.name] for d in model.definitions}
+
+    def _bodies(self) -> Bodies:
+        """The bodies, and every component of points and frames that a formula uses, entered in `names`."""
+        for definition in definitions_before_frames(self.model):
+            self.names[definition.name] = translate(self.graph, definition.value, self.names)
+        bodies = Bodies(self.model.mechanism, self.graph, dict(self.names), self.q, self.qd)
+        for name in components_in(self.model):
+            self.names[name] = bodies.component(name)
+        return bodies
 
     @property
     def n(self) -> int:
@@ -66,12 +81,17 @@ class Mechanics:
     @cached_property
     def kinetic_energy(self) -> Scalar:
         """T(q, q_dot)."""
+        return self._written_energy + self.bodies.kinetic_energy
+
+    @cached_property
+    def _written_energy(self) -> Scalar:
+        """T as far as it is written out in the model."""
         return translate(self.graph, self.model.kinetic_energy, self.names)
 
     @cached_property
     def potential_energy(self) -> Scalar:
         """U(q)."""
-        return translate(self.graph, self.model.potential_energy, self.names)
+        return translate(self.graph, self.model.potential_energy, self.names) + self.bodies.potential_energy
 
     @cached_property
     def momentum(self) -> Vector:
@@ -118,7 +138,11 @@ class Mechanics:
     def applied_force(self) -> Vector:
         """Q_a(q, q_dot), on the right-hand side."""
         forces = {f.coordinate: translate(self.graph, f.expression, self.names) for f in self.model.applied_forces}
-        return self._components(tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates))
+        given = self._components(tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates))
+        for force in self.model.forces:
+            magnitude = translate(self.graph, force.magnitude, self.names)
+            given = tuple(x + magnitude * y for x, y in zip(given, self._worked_on(force.velocity), strict=True))
+        return given
 
     def applied_force_at(self, velocity: Vector) -> Vector:
         """Q_a along another velocity."""
@@ -140,6 +164,8 @@ class Mechanics:
     def _inertial_force(self, acceleration: Vector) -> Vector:
         """d/dt dT/dq_dot - dT/dq: by differentiating the momentum, or through G, whichever counts less."""
         graph = self.graph
+        if self.model.mechanism.has_mass:
+            return self._inertial_force_of_bodies(acceleration)
         motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
         rates = derivative_along(graph, self.momentum, motion)
         direct = [p - t for p, t in zip(rates, gradient(graph, self.kinetic_energy, self.q), strict=True)]
@@ -157,6 +183,17 @@ class Mechanics:
         linear = matvec(graph, self.mass_matrix, acceleration)
         collected = [a + b for a, b in zip(linear, squared, strict=True)]
         return tuple(min((direct, collected), key=lambda force: cost(force).weight))
+
+    def _inertial_force_of_bodies(self, acceleration: Vector) -> Vector:
+        """The same without the energies of the bodies, whose differentiation would undo the recursion."""
+        graph, none = self.graph, (self.graph.zero,) * 3
+        force = newton_euler(self.bodies, self.qd, acceleration, (none[0], none[1], none[2]))
+        if self._written_energy.is_zero:
+            return force
+        motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
+        rates = derivative_along(graph, gradient(graph, self._written_energy, self.qd), motion)
+        shifts = gradient(graph, self._written_energy, self.q)
+        return tuple(f + p - t for f, p, t in zip(force, rates, shifts, strict=True))
 
     # constraints and inputs ------------------------------------------------------------------------------------------
 
@@ -204,7 +241,17 @@ class Mechanics:
             {name: translate(self.graph, value, self.names) for name, value in i.acts_on} for i in self.model.inputs
         ]
         given = (tuple(column.get(c.name, self.graph.zero) for c in self.model.coordinates) for column in columns)
-        return transpose(tuple(map(self._components, given)), self.n)
+        found = [
+            self._components(column) if i.velocity is None else self._worked_on(i.velocity)
+            for i, column in zip(self.model.inputs, given, strict=True)
+        ]
+        return transpose(tuple(found), self.n)
+
+    def _worked_on(self, velocity: Expression) -> Vector:
+        """The generalized force of a unit force that works on this rate: its coefficients."""
+        rate = translate(self.graph, velocity, self.names)
+        zero_rates = dict.fromkeys(self.qd, self.graph.zero)
+        return tuple(substitute(self.graph, gradient(self.graph, rate, self.qd), zero_rates))
 
     def _components(self, force: Vector) -> Vector:
         """A generalized force of the model's coordinates in those of this system."""

@@ -7,11 +7,12 @@ of the magnitudes it is made of, so that "zero" has a scale.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 from symgen.diagnostics import Span
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.mechanism import is_component
 from symgen.model.walk import FUNCTIONS, power
 
 Monomial: TypeAlias = tuple[str, ...]
@@ -31,10 +32,19 @@ class NotPolynomialError(Exception):
 
 
 class Expansion:
-    """Expands expressions at one configuration: `values` of coordinates and parameters, `rates`, `definitions`."""
+    """Expands expressions at one configuration: `values` of coordinates and parameters, `rates`, `definitions`.
 
-    def __init__(self, values: Mapping[str, float], rates: frozenset[str], definitions: Mapping[str, Expression]):
-        self._values, self._rates, self._definitions = values, rates, definitions
+    `components` says what the components of points and frames are.
+    """
+
+    def __init__(
+        self,
+        values: Mapping[str, float],
+        rates: frozenset[str],
+        definitions: Mapping[str, Expression],
+        components: Callable[[str], Polynomial] | None = None,
+    ) -> None:
+        self._values, self._rates, self._definitions, self._components = values, rates, definitions, components
         self._expanded: dict[str, Polynomial | Exception] = {}
 
     def of(self, expression: Expression) -> Polynomial:
@@ -75,6 +85,8 @@ class Expansion:
     def _name(self, name: str) -> Polynomial:
         if name in self._rates:
             return {(name,): (1.0, 1.0)}
+        if self._components is not None and is_component(name):
+            return self._components(name)
         if name not in self._definitions:
             return _constant(self._values[name])
         if not self._expanded:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.body_checks import check_bodies
 from symgen.model.expression import Expression
 from symgen.model.feasibility import check_motion
 from symgen.model.mechanics import Mechanics
@@ -14,6 +15,7 @@ from symgen.model.redundancy import check_redundancy
 from symgen.model.scope import Scope
 from symgen.model.source import MappingNode
 from symgen.model.structure import check_domain, check_geometric, check_kinetic_energy, check_nonholonomic
+from symgen.model.walk import exact_value
 
 NEEDS_CONSTRAINTS = frozenset(
     {
@@ -47,9 +49,15 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     if not model.coordinates:
         return
     mechanics = Mechanics(
-        model.coordinates, model.parameters, model.definitions, model.constraints, model.kinetic_energy
+        model.coordinates,
+        model.parameters,
+        model.definitions,
+        model.constraints,
+        model.kinetic_energy,
+        model.mechanism,
     )
     before = len(scope.mistakes)
+    _add(scope, check_bodies(model.mechanism, mechanics.defaults))
     if kinetic is not None:
         _add(scope, check_domain(mechanics, kinetic, "the kinetic energy"))
     _add(scope, check_domain(mechanics, model.potential_energy, "the potential energy"))
@@ -58,14 +66,17 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     for column in model.inputs:
         for coordinate, coefficient in column.acts_on:
             _add(scope, check_domain(mechanics, coefficient, f"the coefficient of `{column.name}` on `{coordinate}`"))
+        if column.velocity is not None:
+            _add(scope, check_domain(mechanics, column.velocity, f"the direction of `{column.name}`"))
     if len(scope.mistakes) > before:
         return
-    if kinetic is not None:
+    if kinetic is not None and not (model.mechanism.has_mass and exact_value(kinetic) == 0):
         _add(scope, check_kinetic_energy(mechanics, kinetic))
     for row in model.constraints:
         check = check_geometric if row.kind == "geometric" else check_nonholonomic
         _add(scope, check(mechanics, row))
-    if whole and kinetic is not None and len(scope.mistakes) == before:
+    massive = model.mechanism.has_mass and (kinetic is not None or tree.get("kinetic_energy") is None)
+    if whole and (massive or kinetic is not None) and len(scope.mistakes) == before:
         start = {name: float(value) for name, value in model.configuration}
         _add(scope, check_motion(mechanics, start, model.independent_velocities, _block_spans(tree)))
         if model.allocation is not None and len(scope.mistakes) == before:
@@ -101,6 +112,7 @@ def _add(scope: Scope, found: Iterable[Mistake | Notice]) -> None:
 def _block_spans(tree: MappingNode) -> dict[str, Span | None]:
     keys = ("constraints", "kinetic_energy", "independent_velocities", "coordinates")
     spans = {key: key_span(tree, key) for key in keys}
+    spans["kinetic_energy"] = spans["kinetic_energy"] or key_span(tree, "bodies")
     constraints = member(tree, "constraints")
     geometric = key_span(constraints, "geometric") if isinstance(constraints, MappingNode) else None
     return {**spans, "geometric": geometric or spans["constraints"]}

@@ -8,7 +8,8 @@ from fractions import Fraction
 from symgen.diagnostics import Mistake
 from symgen.model.constants import range_of
 from symgen.model.expression import Expression, Number
-from symgen.model.model import AppliedForce, ConstraintRow, Definition, Input, Parameter, Range
+from symgen.model.mechanism import component, is_component
+from symgen.model.model import AppliedForce, ConstraintRow, Definition, Parameter, Range
 from symgen.model.names import QUOTING, did_you_mean, is_name
 from symgen.model.parser import parse_expression
 from symgen.model.reading import description_of, entries, member, text_of
@@ -23,10 +24,15 @@ def declare_names(scope: Scope, tree: MappingNode) -> None:
     """Enters every name of the file, so that each expression can be checked against all of them."""
     blocks: tuple[tuple[str, Kind], ...] = (
         ("coordinates", "coordinate"), ("parameters", "parameter"), ("definitions", "definition"), ("inputs", "input"),
+        ("frames", "frame"), ("points", "point"),
     )  # fmt: skip
     for block, kind in blocks:
         for key, _ in entries(tree.get(block)):
             scope.declare(key, kind)
+    for key, _ in entries(tree.get("bodies")):
+        # most bodies are named like their frames
+        if scope.kinds.get(key.value) != "frame":
+            scope.declare(key, "body")
     for block in ("geometric", "nonholonomic"):
         for key, _ in entries(member(tree.get("constraints"), block)):
             if scope.declare(key, "constraint row"):
@@ -93,9 +99,13 @@ def read_definitions(scope: Scope, tree: MappingNode) -> tuple[Definition, ...]:
         if not scope.owns(key):
             continue
         if value is not None and any(
-            scope.kinds[name.name] == "rate" or name.name in scope.rate_definitions for name in names_in(value)
+            _is_rate(scope, name.name) or name.name in scope.rate_definitions for name in names_in(value)
         ):
             scope.rate_definitions.add(key.value)
+        if value is not None and any(
+            is_component(name.name) or name.name in scope.place_definitions for name in names_in(value)
+        ):
+            scope.place_definitions.add(key.value)
         if value is None:
             scope.faulty.add(key.value)
         definitions.append(Definition(key.value, value or Number(Fraction(1)), key.span))
@@ -117,32 +127,19 @@ def read_constraints(scope: Scope, tree: MappingNode) -> tuple[ConstraintRow, ..
     return tuple(rows)
 
 
-def read_inputs(scope: Scope, tree: MappingNode) -> tuple[Input, ...]:
-    """The inputs with their columns of the control matrix."""
-    inputs: list[Input] = []
-    for key, node in entries(tree.get("inputs")):
-        column: list[tuple[str, Expression]] = []
-        for target, coefficient in entries(member(node, "acts_on")):
-            if _is_coordinate(scope, target, f"`acts_on` of `{key.value}`"):
-                where = f"the coefficient of `{key.value}` on `{target.value}`"
-                expression = scope.expression(coefficient, where, CONFIGURATION)
-                if expression is not None:
-                    column.append((target.value, expression))
-        unit = text_of(member(node, "unit"))
-        if scope.owns(key):
-            inputs.append(Input(key.value, unit, description_of(node), tuple(column), key.span))
-    return tuple(inputs)
-
-
 def read_applied_forces(scope: Scope, tree: MappingNode) -> tuple[AppliedForce, ...]:
     """The further generalized forces."""
     forces: list[AppliedForce] = []
     for key, node in entries(tree.get("applied_forces")):
-        if _is_coordinate(scope, key, "`applied_forces`"):
+        if is_coordinate(scope, key, "`applied_forces`"):
             expression = scope.expression(node, f"the applied force on `{key.value}`", STATE)
             if expression is not None:
                 forces.append(AppliedForce(key.value, expression, key.span))
     return tuple(forces)
+
+
+def _is_rate(scope: Scope, name: str) -> bool:
+    return component(name).is_rate if is_component(name) else scope.kinds[name] == "rate"
 
 
 def _number(value: Expression, values: dict[str, float]) -> float:
@@ -172,7 +169,8 @@ def _check_default(
         scope.wrong(message, "widen the range, or correct the value", span)
 
 
-def _is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:
+def is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:
+    """Whether the key names a coordinate; a mistake where it does not."""
     if scope.kinds.get(key.value) == "coordinate":
         return True
     coordinates = [name for name, kind in scope.kinds.items() if kind == "coordinate"]

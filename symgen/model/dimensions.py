@@ -6,11 +6,14 @@ integers that something is divided by, and quotients of integers (so that `m/2*x
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.diagnostics import Mistake, Span
+from symgen.model.body_units import BodyUnits, body_units
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.mechanism import is_component
 from symgen.model.model import Allocation, Model
 from symgen.model.reading import entries, member
 from symgen.model.source import MappingNode, ScalarNode
@@ -31,7 +34,8 @@ def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
     units = _declared(tree, mistakes)
     if not units and not mistakes:
         return []
-    inference = _Inference(model, units, mistakes)
+    bodies = body_units(model, units)
+    inference = _Inference(model, units, mistakes, bodies)
     for parameter in model.parameters:
         what = f"the value of `{parameter.name}`"
         inference.agrees(parameter.value, units.get(parameter.name), what, "its unit")
@@ -42,6 +46,18 @@ def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
             _clash("the potential energy", potential, "the kinetic energy", kinetic, model.potential_energy)
         )
     energy = kinetic if kinetic is not None else potential
+    if model.mechanism.has_mass:
+        if energy is not None and energy != bodies.energy:
+            written = model.kinetic_energy if kinetic is not None else model.potential_energy
+            mistakes.append(_clash("this energy", energy, "the energy of the bodies", bodies.energy, written))
+        energy = bodies.energy
+    for demand in bodies.demands(model.mechanism):
+        inference.agrees(demand.expression, demand.unit, demand.what, demand.other)
+    for rotor in model.mechanism.rotor_inertias:
+        if energy is not None and rotor.coordinate in units:
+            rate = units[rotor.coordinate].times(SECOND, -1)
+            demanded = energy.times(rate.to_power(Fraction(2)), -1)
+            inference.agrees(rotor.inertia, demanded, f"the rotor inertia of `{rotor.coordinate}`", "its energy")
     for row in model.constraints:
         inference.of(row.expression)
     forces = {c.name: energy.times(units[c.name], -1) for c in model.coordinates if energy and c.name in units}
@@ -57,6 +73,12 @@ def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
                 what = f"the force of `{column.name}` on `{coordinate}`"
                 needed = f"the generalized force of `{coordinate}`"
                 mistakes.append(_clash(what, input_unit.times(found), needed, force_unit, coefficient))
+        if column.velocity is not None:
+            pace, declared = inference.of(column.velocity), units.get(column.name)
+            if energy and pace and declared and declared.times(pace) != energy.times(SECOND, -1):
+                due = energy.times(SECOND, -1).times(pace, -1)
+                clash = _clash(f"`{column.name}`", declared, "what acts there", due, column.velocity)
+                mistakes.append(replace(clash, span=column.span))
     if model.allocation is not None:
         _check_allocation(model, model.allocation, units, inference)
     return mistakes
@@ -93,8 +115,8 @@ def _check_allocation(model: Model, allocation: Allocation, units: dict[str, Uni
 class _Inference:
     """The dimensions of expressions; each contradiction is recorded once and then counts as free."""
 
-    def __init__(self, model: Model, units: dict[str, Unit], mistakes: list[Mistake]) -> None:
-        self._units = dict(units)
+    def __init__(self, model: Model, units: dict[str, Unit], mistakes: list[Mistake], bodies: BodyUnits) -> None:
+        self._units, self._bodies = dict(units), bodies
         for coordinate in model.coordinates:
             if coordinate.name in units:
                 self._units[coordinate.rate] = units[coordinate.name].times(SECOND, -1)
@@ -117,6 +139,8 @@ class _Inference:
                 return NUMBER if value in _COUNTS else None
             case Pi():
                 return NUMBER
+            case Name(name=name) if is_component(name):
+                return self._bodies.component(name)
             case Name(name=name):
                 return self._units.get(name)
             case Negation(operand=operand):

@@ -81,7 +81,7 @@ def _check_masses(
     if not definite_somewhere:
         yield Mistake(
             "the accelerations are undetermined: some motion that the constraints allow moves no mass",
-            "give every coordinate that can move a mass or inertia in `kinetic_energy`",
+            "give every coordinate that can move a mass or inertia in `kinetic_energy` or `bodies`",
             span,
         )
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.mechanism import is_component
 from symgen.model.walk import FUNCTIONS, power
 
 Dual: TypeAlias = tuple[float, dict[int, float]]
@@ -28,10 +29,20 @@ _DERIVATIVES: dict[str, Callable[[float], float]] = {
 
 
 class Gradients:
-    """Evaluates expressions and their gradients at one configuration; definitions are evaluated once."""
+    """Evaluates expressions and their gradients at one configuration; definitions are evaluated once.
 
-    def __init__(self, values: Mapping[str, float], index: Mapping[str, int], definitions: Mapping[str, Expression]):
-        self._values, self._index, self._definitions = values, index, definitions
+    `components` says what the components of points and frames are, and their gradients.
+    """
+
+    def __init__(
+        self,
+        values: Mapping[str, float],
+        index: Mapping[str, int],
+        definitions: Mapping[str, Expression],
+        components: Callable[[str], Dual] | None = None,
+    ) -> None:
+        self.index = index
+        self._values, self._definitions, self._components = values, definitions, components
         self._known: dict[str, Dual | Exception] = {}
 
     def of(self, expression: Expression) -> Dual:
@@ -62,8 +73,10 @@ class Gradients:
                 return FUNCTIONS[function](value), _scaled(gradient, _DERIVATIVES[function](value)) if gradient else {}
 
     def _name(self, name: str) -> Dual:
-        if name in self._index:
-            return self._values[name], {self._index[name]: 1.0}
+        if name in self.index:
+            return self._values[name], {self.index[name]: 1.0}
+        if self._components is not None and is_component(name):
+            return self._components(name)
         if name not in self._definitions:
             return self._values[name], {}
         if not self._known:

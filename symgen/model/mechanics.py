@@ -8,7 +8,9 @@ from collections.abc import Iterator
 from symgen.model.algebra import Expansion, Polynomial
 from symgen.model.dense import Rows, solve_definite
 from symgen.model.expression import Expression
+from symgen.model.float_kinematics import FloatKinematics
 from symgen.model.gradient import Gradients
+from symgen.model.mechanism import NO_MECHANISM, Mechanism, component
 from symgen.model.model import ConstraintRow, Coordinate, Definition, Parameter
 from symgen.model.walk import evaluate
 
@@ -30,8 +32,10 @@ class Mechanics:
         definitions: tuple[Definition, ...],
         constraints: tuple[ConstraintRow, ...],
         kinetic_energy: Expression,
+        mechanism: Mechanism = NO_MECHANISM,
     ) -> None:
         self.coordinates, self.constraints = coordinates, constraints
+        self.mechanism = mechanism
         self._kinetic = kinetic_energy
         self._definitions = {definition.name: definition.value for definition in definitions}
         self._index = {coordinate.name: index for index, coordinate in enumerate(coordinates)}
@@ -42,7 +46,17 @@ class Mechanics:
 
     def expansion(self, q: list[float], parameters: dict[str, float]) -> Expansion:
         """Polynomials in the rates at a configuration."""
-        return Expansion({**parameters, **self._named(q)}, self._rates, self._definitions)
+        values = {**parameters, **self._named(q)}
+        kinematics = self._kinematics(values)
+        rates = [coordinate.rate for coordinate in self.coordinates]
+
+        def polynomial(name: str) -> Polynomial:
+            if component(name).is_rate:
+                return {(rates[i],): (value, abs(value)) for i, value in kinematics.rate(name).items()}
+            value = kinematics.value(name)
+            return {(): (value, abs(value))}
+
+        return Expansion(values, self._rates, self._definitions, polynomial)
 
     def polynomials(self, expression: Expression) -> list[Polynomial]:
         """The expression in the rates at a few random points of its domain; NotPolynomialError where it is none."""
@@ -65,7 +79,7 @@ class Mechanics:
     def mass_matrix(self, q: list[float]) -> Rows:
         """G, n x n."""
         n = len(self.coordinates)
-        matrix = [[0.0] * n for _ in range(n)]
+        matrix = self._kinematics({**self.defaults, **self._named(q)}).mass_matrix(n)
         order = {coordinate.rate: index for index, coordinate in enumerate(self.coordinates)}
         for monomial, (value, _) in self.expansion(q, self.defaults).of(self._kinetic).items():
             if len(monomial) == 2:
@@ -76,7 +90,8 @@ class Mechanics:
 
     def geometric(self, q: list[float]) -> tuple[list[float], Rows]:
         """g and its Jacobian, r_g and r_g x n."""
-        gradients = Gradients({**self.defaults, **self._named(q)}, self._index, self._definitions)
+        values = {**self.defaults, **self._named(q)}
+        gradients = Gradients(values, self._index, self._definitions, self._kinematics(values).place)
         residual: list[float] = []
         jacobian: Rows = []
         for row in self.constraints:
@@ -125,6 +140,10 @@ class Mechanics:
         for _ in range(count):
             q = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
             yield q, {p.name: _drawn(p, self.defaults[p.name], generator) for p in self._parameters}
+
+    def _kinematics(self, values: dict[str, float]) -> FloatKinematics:
+        # frames use definitions, definitions may use points: those that frames use are evaluated without components
+        return FloatKinematics(self.mechanism, Gradients(values, self._index, self._definitions))
 
     def _named(self, q: list[float]) -> dict[str, float]:
         return {coordinate.name: value for coordinate, value in zip(self.coordinates, q, strict=True)}

@@ -12,6 +12,7 @@ from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Notice, Span
 from symgen.model.expression import Expression
+from symgen.model.mechanism import NO_MECHANISM, Mechanism
 
 Range: TypeAlias = tuple[Fraction, Fraction]
 Matrix: TypeAlias = tuple[tuple[Expression, ...], ...]
@@ -74,13 +75,18 @@ class ConstraintRow:
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """One control force u_i: its column of the control matrix M(q), coordinate by coordinate."""
+    """One control force u_i: its column of the control matrix M(q), coordinate by coordinate.
+
+    A force at a point, along a cable or between bodies is given by `velocity` instead: the rate u_i works on (its power
+    is u_i times this rate), linear in the rates; the column holds its coefficients.
+    """
 
     name: str
     unit: str | None
     description: str
     acts_on: tuple[tuple[str, Expression], ...]
     span: Span | None = None
+    velocity: Expression | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +124,16 @@ class AppliedForce:
 
     coordinate: str
     expression: Expression
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Force:
+    """A force element: `magnitude`(q, q_dot) times the coefficients of `velocity` by the rates adds to Q_a."""
+
+    name: str
+    magnitude: Expression
+    velocity: Expression
     span: Span | None = None
 
 
@@ -180,7 +196,10 @@ class Path:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A mechanical system in energy form, complete: the input of every derivation."""
+    """A mechanical system, complete: the input of every derivation.
+
+    T and U are the energies written in the file plus those of `mechanism`.
+    """
 
     name: str
     description: str
@@ -203,6 +222,8 @@ class Model:
     report: Literal["full", "short"]
     notices: tuple[Notice, ...]
     text_hash: str
+    mechanism: Mechanism = NO_MECHANISM
+    forces: tuple[Force, ...] = ()
     allocation: Allocation | None = None
 
     @property

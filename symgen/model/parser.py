@@ -133,16 +133,23 @@ class _Parser:
         if following.text == "(":
             return self._call(token)
         if following.text == ".":
-            component = self._tokens[self._next + 1].text
-            message = f"`{token.text}.{component}` is a component of a point, and this version has no `points`"
-            remedy = "write the position with coordinates and parameters"
-            raise ExpressionError(message, remedy, token.offset, len(token.text) + 1 + len(component))
+            return self._component(token)
         if token.text in FUNCTION_ARITY:
             message = f"the function `{token.text}` has no argument"
             raise ExpressionError(message, f"write `{token.text}(...)`", token.offset, len(token.text))
         if token.text == "pi":
             return Pi(self._span(token)), 1
         return Name(token.text, self._span(token)), 1
+
+    def _component(self, owner: Token) -> tuple[Expression, int]:
+        """`tip.x`: one name to all later stages."""
+        dot, component = self._tokens[self._next], self._tokens[self._next + 1]
+        length = len(owner.text) + 1
+        if component.kind != "name" or not dot.offset == owner.offset + length - 1 == component.offset - 1:
+            message = f"`{owner.text}.` is not followed by the name of a component"
+            raise ExpressionError(message, "write it without spaces, as in `tip.x`", owner.offset, length)
+        self._next += 2
+        return Name(f"{owner.text}.{component.text}", self._span(owner)), 1
 
     def _call(self, name: Token) -> tuple[Expression, int]:
         if name.text not in FUNCTION_ARITY:

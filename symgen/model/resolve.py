@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Literal
 
-from symgen.diagnostics import Notice
+from symgen.diagnostics import Notice, Span
 from symgen.model.allocation import declare_settings, read_allocation
+from symgen.model.bodies import read_mechanism
 from symgen.model.checks import check_mechanics, notice_empty_outputs
 from symgen.model.constants import constant
 from symgen.model.coordinates import read_coordinates
@@ -16,12 +18,13 @@ from symgen.model.declarations import (
     read_applied_forces,
     read_constraints,
     read_definitions,
-    read_inputs,
     read_parameters,
     read_ranges,
 )
 from symgen.model.dimensions import check_units
-from symgen.model.expression import Number
+from symgen.model.expression import Call, Expression, Number
+from symgen.model.inputs import read_inputs
+from symgen.model.mechanism import Mechanism, Quaternion
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean, name_mistake
 from symgen.model.paths import read_paths
@@ -41,6 +44,8 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     ranges = read_ranges(scope, tree)
     parameters = read_parameters(scope, tree, ranges)
     definitions = read_definitions(scope, tree)
+    mechanism = read_mechanism(scope, tree)
+    _check_mass(scope, tree)
     kinetic_read = scope.expression(tree.get("kinetic_energy"), "the kinetic energy", STATE)
     kinetic = kinetic_read or ZERO
     potential = scope.expression(tree.get("potential_energy"), "the potential energy", CONFIGURATION) or ZERO
@@ -50,7 +55,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     forces = read_applied_forces(scope, tree)
     used = [
         kinetic, potential, *(row.expression for row in constraints), *(force.expression for force in forces),
-        *(coefficient for column in inputs for _, coefficient in column.acts_on),
+        *(coefficient for column in inputs for _, coefficient in column.acts_on), *_placing(mechanism),
     ]  # fmt: skip
     coordinates = read_coordinates(tree, ranges, definitions, used)
     names = tuple(coordinate.name for coordinate in coordinates)
@@ -81,12 +86,32 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         report=_report(tree.get("report")),
         notices=(),
         text_hash=hashlib.sha256(text.encode()).hexdigest(),
+        mechanism=mechanism,
     )
     scope.mistakes.extend(check_units(tree, model))
     check_mechanics(scope, tree, model, kinetic_read, whole)
     notice_empty_outputs(scope, tree, model)
     _notice_unused(scope, tree)
     return model
+
+
+def _check_mass(scope: Scope, tree: MappingNode) -> None:
+    """Something must have mass."""
+    if tree.get("kinetic_energy") is None and tree.get("bodies") is None:
+        span = Span(tree.span.line, tree.span.column, tree.span.column + 1)
+        remedy = "add `kinetic_energy`: T, quadratic in the rates; or `frames` and `bodies`"
+        scope.wrong("the model has no `kinetic_energy` and no `bodies`", remedy, span)
+
+
+def _placing(mechanism: Mechanism) -> Iterator[Expression]:
+    """What places frames and points; an angle of a turn counts as inside a sine."""
+    for frame in mechanism.frames:
+        yield from frame.translation
+        if isinstance(frame.rotation, Quaternion):
+            yield from frame.rotation.parts
+        else:
+            yield from (Call("sin", (turn.angle,)) for turn in frame.rotation)
+    yield from (entry for point in mechanism.points for entry in point.at)
 
 
 def _model_name(scope: Scope, tree: MappingNode) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symgen.model.mechanism import INERTIA_ELEMENTS
 from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
 from symgen.model.shape import (
     Either,
@@ -18,6 +19,8 @@ from symgen.model.shape import (
 )
 
 _RANGE = Listing(Formula(), 2, 2)
+_VECTOR = Listing(Formula(), 3, 3)
+_AXIS = Either((Word(), _VECTOR))
 _UNIT = Field("unit", Text(), "SI unit such as m, kg*m**2, N*m, rad; a declaration, nothing is converted")
 _DESCRIPTION = Field("description", Text(), "what it is, in a few words; stands in headers and reports")
 _MATRIX = Listing(Either((Formula(), Listing(Formula(), 1))), 1)
@@ -55,9 +58,62 @@ _INPUT = Record(
     (
         _UNIT,
         _DESCRIPTION,
-        Field("acts_on", Table(Formula(), 1), "coordinate: coefficient of the input in its equation", required=True),
+        Field("acts_on", Table(Formula(), 1), "coordinate: coefficient of the input in its equation"),
+        Field("joint", Word(), "a coordinate: short for acts_on: {it: 1}"),
+        Field("point", Word(), "a point (or frame, for its origin) where a force acts, along `direction`"),
+        Field("torque_on", Word(), "a frame on which a torque acts, about `direction`"),
+        Field("direction", _VECTOR, "unit vector of the force or torque"),
+        Field("axes", Word(), "the frame whose axes the direction is given in, world if absent"),
+        Field("reaction", Word(), "the point or frame on which the opposite force or torque acts"),
+        Field("cable", Listing(Word(), 2), "points that a cable runs through; the input is its tension"),
     ),
-    later=("joint", "point", "direction", "axes"),
+)
+_FRAME = Record(
+    "a frame",
+    (
+        Field("parent", Word(), "the frame it is moved and turned against, world if absent"),
+        Field("translation", _VECTOR, "where its origin is, in the parent's axes; absent: 0"),
+        Field(
+            "rotation",
+            Either(
+                (
+                    Listing(Listing(Either((Formula(), _VECTOR)), 2, 2)),
+                    Record(
+                        "`rotation`",
+                        (Field("quaternion", Listing(Formula(), 4, 4), "its four parts, scalar first", required=True),),
+                    ),
+                )
+            ),
+            "turns after the translation, each [axis, angle] about the axes reached so far; or {quaternion: [...]}",
+        ),
+        _DESCRIPTION,
+    ),
+)
+_BODY = Record(
+    "a body",
+    (
+        Field("mass", Formula(), "its mass, of parameters; 0 for a body without mass", required=True),
+        Field("com", _VECTOR, "centre of mass in the frame's axes; absent: the frame's origin"),
+        Field(
+            "inertia",
+            Record(
+                "`inertia`",
+                tuple(Field(name, Formula(), f"element {name} of the tensor") for name in INERTIA_ELEMENTS),
+            ),
+            "inertia tensor about the centre of mass in the frame's axes; missing elements are 0",
+        ),
+        Field("frame", Word(), "the frame it moves with; absent: the frame of its own name"),
+        _DESCRIPTION,
+    ),
+)
+_POINT = Record(
+    "a point",
+    (
+        Field("frame", Word(), "the frame whose axes `at` is given in, world if absent"),
+        Field("at", _VECTOR, "its place; absent: the frame's origin"),
+        Field("moves_with", Word(), "the frame whose material point it is, for velocities; absent: `frame`"),
+        _DESCRIPTION,
+    ),
 )
 _PUBLISHED = Variants(
     (
@@ -152,7 +208,7 @@ MODEL = Record(
         ),
         Field("parameters", Table(Either((Formula(), _PARAMETER))), "run-time parameters of the kernels"),
         Field("definitions", Table(Formula()), "named sub-expressions, in order of use"),
-        Field("kinetic_energy", Formula(), "T, quadratic in the rates", required=True),
+        Field("kinetic_energy", Formula(), "T, quadratic in the rates; that of `bodies` is added"),
         Field("potential_energy", Formula(), "U of coordinates and parameters; absent: 0"),
         Field(
             "constraints",
@@ -165,6 +221,11 @@ MODEL = Record(
             ),
             "constraint rows by name",
         ),
+        Field("gravity", _VECTOR, "acceleration of gravity in world axes, such as [0, 0, -g]; absent: 0"),
+        Field("frames", Table(_FRAME), "axes that move with the bodies: a tree that hangs on `world`"),
+        Field("bodies", Table(_BODY), "rigid bodies by name; their energies are added to those written out"),
+        Field("rotor_inertias", Table(Formula()), "coordinate: J of a geared rotor, adds J/2*rate**2 to T"),
+        Field("points", Table(_POINT), "places with components `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` in expressions"),
         Field("inputs", Table(_INPUT), "control forces: the columns of the control matrix"),
         Field("allocation", _ALLOCATION, "how redundant inputs share the work: members of the parameter struct"),
         Field("applied_forces", Table(Formula()), "coordinate: further generalized force of q, rates, parameters"),
@@ -192,7 +253,7 @@ MODEL = Record(
         Field("report", Word(("full", "short")), "length of the report"),
     ),
     later=(
-        "gravity", "frames", "bodies", "rotor_inertias", "points", "joints", "loops", "springs", "rolling", "friction",
+        "joints", "loops", "springs", "rolling", "friction",
         "urdf", "trig_range",
     ),
 )  # fmt: skip

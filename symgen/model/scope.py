@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.expression import Expression
+from symgen.model.mechanism import PLACES, TURNING_RATES, VELOCITIES, WORLD, is_component
 from symgen.model.names import did_you_mean, name_mistake
 from symgen.model.parser import parse_expression
 from symgen.model.source import Node, ScalarNode
@@ -15,13 +16,14 @@ from symgen.model.walk import names_in
 
 Kind: TypeAlias = Literal[
     "coordinate", "rate", "acceleration", "parameter", "definition", "input", "constraint row", "multiplier", "time",
-    "symbol", "setting",
+    "symbol", "setting", "place", "velocity", "frame", "body", "point",
 ]  # fmt: skip
 
 CONSTANT: frozenset[Kind] = frozenset()
 PARAMETERS: frozenset[Kind] = frozenset({"parameter"})
-CONFIGURATION: frozenset[Kind] = frozenset({"coordinate", "parameter", "definition"})
-STATE: frozenset[Kind] = CONFIGURATION | {"rate"}
+FRAME: frozenset[Kind] = frozenset({"coordinate", "parameter", "definition"})
+CONFIGURATION: frozenset[Kind] = FRAME | {"place"}
+STATE: frozenset[Kind] = CONFIGURATION | {"rate", "velocity"}
 PATH_DEFINITION: frozenset[Kind] = frozenset({"time", "parameter", "symbol"})
 PATH_CONDITION: frozenset[Kind] = CONFIGURATION | {"time", "symbol"}
 MOTION: frozenset[Kind] = STATE | {"acceleration", "input", "multiplier", "symbol"}
@@ -38,6 +40,11 @@ _REMEDIES: dict[Kind, str] = {
     "definition": "use numbers, parameters and earlier definitions",
     "setting": "weights, preload and limits act through `allocation` only; name the number under `parameters`",
     "symbol": "symbols of `where` belong to their formula only",
+    "place": "frames and points are placed by coordinates and parameters; points are for what comes after them",
+    "velocity": "forces that depend on velocities belong into `applied_forces`, constraints into `nonholonomic`",
+    "frame": "write a component of its origin or its turning rate, such as `.x`, `.vx`, `.wz`",
+    "point": "write one of its components, such as `.x` or `.vx`",
+    "body": "write a component of its frame, such as `.x`, `.vx`, `.wz`",
 }
 
 
@@ -48,6 +55,7 @@ class Scope:
     kinds: dict[str, Kind] = field(default_factory=dict)
     spans: dict[str, Span] = field(default_factory=dict)
     rate_definitions: set[str] = field(default_factory=set)
+    place_definitions: set[str] = field(default_factory=set)
     used: set[str] = field(default_factory=set)
     faulty: set[str] = field(default_factory=set)
     mistakes: list[Mistake] = field(default_factory=list)
@@ -68,6 +76,9 @@ class Scope:
             self.mistakes.append(mistake)
             return False
         name = node.value
+        if kind == "frame" and name == WORLD:
+            self.wrong("`world` is the frame at rest that all others hang on", "give the frame another name", node.span)
+            return False
         if name in self.kinds:
             taken = self.kinds[name]
             where = f" (line {self.spans[name].line})" if name in self.spans else ""
@@ -106,6 +117,8 @@ class Scope:
     def _name(
         self, name: str, span: Span | None, where: str, allowed: frozenset[Kind], earlier: set[str] | None
     ) -> bool:
+        if is_component(name):
+            return self._component(name, span, where, allowed)
         kind = self.kinds.get(name, "time" if name == "t" else None)
         if kind is None:
             visible = [other for other, its in self.kinds.items() if its in allowed]
@@ -123,5 +136,31 @@ class Scope:
             return False
         if name in self.rate_definitions and "rate" not in allowed:
             self.wrong(f"`{name}` contains rates, which {where} must not contain", _REMEDIES["rate"], span)
+            return False
+        if name in self.place_definitions and "place" not in allowed:
+            message = f"`{name}` contains components of points or frames, which {where} must not contain"
+            self.wrong(message, _REMEDIES["place"], span)
+            return False
+        return True
+
+    def _component(self, name: str, span: Span | None, where: str, allowed: frozenset[Kind]) -> bool:
+        """Whether `owner.what` is known here."""
+        owner, _, what = name.partition(".")
+        kind = self.kinds.get(owner)
+        if kind not in ("point", "frame"):
+            owners = [other for other, its in self.kinds.items() if its in ("point", "frame")]
+            remedy = did_you_mean(owner, owners, "declare it under `points` or `frames`")
+            self.wrong(f"unknown point or frame `{owner}` in {where}", remedy, span)
+            return False
+        known = (*PLACES, *VELOCITIES, *(TURNING_RATES if kind == "frame" else ()))
+        if what not in known:
+            self.wrong(f"a {kind} has no component `{what}`", f"its components are {', '.join(known)}", span)
+            return False
+        self.used.add(owner)
+        is_place = what in PLACES
+        if ("place" if is_place else "velocity") not in allowed:
+            noun = "a place" if is_place else "a velocity"
+            remedy = _REMEDIES["place" if "place" not in allowed else "velocity"]
+            self.wrong(f"`{name}` is {noun}, which {where} must not contain", remedy, span)
             return False
         return True

@@ -58,6 +58,8 @@ def _base(index: int) -> Unit:
 
 NUMBER = _unit()
 SECOND = _unit(s=1)
+METRE = _unit(m=1)
+KILOGRAM = _unit(kg=1)
 _PREFIXABLE: dict[str, Unit] = {
     "g": _unit(kg=1, ten=-3),
     "m": _unit(m=1),

@@ -16,8 +16,9 @@ from symgen.verify.reference_linear import (
     rows_of,
     solve,
 )
-from symgen.verify.reference_system import System, default_parameters, literal_values
+from symgen.verify.reference_system import System, default_parameters
 from symgen.verify.reference_tape import precision
+from symgen.verify.reference_translation import literal_values
 
 RANK_BITS = 256
 RANK_STARTS = 24

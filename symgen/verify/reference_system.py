@@ -7,33 +7,20 @@ the rates, the parameters and the literals of the model, in this order.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeAlias
 
-from flint import arb, arb_mat
+from flint import arb_mat
 
-from symgen.diagnostics import SymgenBug
-from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.expression import Expression
+from symgen.model.mechanism import component
 from symgen.model.model import Model
+from symgen.verify.reference_frames import Frames
 from symgen.verify.reference_tape import Register, Replay, Tape, ball, replay_of
 from symgen.verify.reference_taylor import CONSTANT, Polynomial, Taylor
-
-
-def literals_of(model: Model) -> tuple[Number | Pi, ...]:
-    """Every literal of the model's formulas, in order of reading; default values of parameters do not count."""
-    found: dict[int, Number | Pi] = {}
-    for expression in _formulas(model):
-        for node in _walk(expression):
-            if isinstance(node, Pi) or (isinstance(node, Number) and node.value != 0):
-                found.setdefault(id(node), node)
-    return tuple(found.values())
-
-
-def literal_values(literals: Sequence[Number | Pi]) -> list[Any]:
-    """The literals as balls of the working precision."""
-    return [arb.pi() if isinstance(literal, Pi) else ball(literal.value) for literal in literals]
+from symgen.verify.reference_translation import Translation, literals_of
 
 
 def default_parameters(model: Model) -> list[Any]:
@@ -47,7 +34,7 @@ def parameters_from(model: Model, chosen: dict[str, Any]) -> list[Any]:
     algebra = Taylor(tape, 0, 0)
     names: dict[str, Polynomial] = {}
     given: list[Any] = []
-    translation = _Translation(algebra, names, {}, {})
+    translation = Translation(algebra, names, {}, {})
     for parameter in model.parameters:
         if parameter.name in chosen:
             given.append(ball(chosen[parameter.name]))
@@ -80,15 +67,18 @@ class System:
         self.n, self.m, self.r = n, m, r
         self.r_geometric = sum(row.kind == "geometric" for row in model.constraints)
         self._tape = Tape()
-        self._shared: dict[tuple[int, int], _Translation] = {}
-        energy = self._translation(1, 2).polynomial(model.kinetic_energy)
-        potential = self._translation(1, 0).polynomial(model.potential_energy)
+        self._shared: dict[tuple[int, int], Translation] = {}
+        places = self._translation(2, 0)
+        self.frames = Frames(model.mechanism, places.algebra, places.polynomial)
+        energy = self._kinetic_energy(1, 2)
+        potential = self._potential_energy(1, 0)
         rows = [self._constraint_row(index) for index in range(r)]
         columns = [dict(control.acts_on) for control in model.inputs]
+        worked_on = [self._coefficients(control.velocity) for control in model.inputs]
         control = [
-            self._translation(1, 0).polynomial(column[c.name]) if c.name in column else {}
-            for c in model.coordinates
-            for column in columns
+            worked[k] if worked else self._translation(1, 0).polynomial(column[c.name]) if c.name in column else {}
+            for k, c in enumerate(model.coordinates)
+            for column, worked in zip(columns, worked_on, strict=True)
         ]
         zero = self._tape.zero
         gradients: list[Register] = []
@@ -119,14 +109,10 @@ class System:
         self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1))
         self._configuration = replay_of(self._tape, [*(x for block in outputs for x in block), *gradients])
         self._geometry = replay_of(self._tape, [*outputs[2], *outputs[1][: self.r_geometric * n]])
-        plain = self._translation(0, 0)
-        self._energies = self._plain([plain.polynomial(model.kinetic_energy), plain.polynomial(model.potential_energy)])
-        forces = {force.coordinate: force.expression for force in model.applied_forces}
+        self._energies = self._plain([self._kinetic_energy(0, 0), self._potential_energy(0, 0)])
         self._applied: Replay | None = None
-        if forces:
-            self._applied = self._plain(
-                [plain.polynomial(forces[c.name]) if c.name in forces else {} for c in model.coordinates]
-            )
+        if model.applied_forces or model.forces:
+            self._applied = self._plain(self._applied_force())
 
     def configuration(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> Configuration:
         """Evaluate at q."""
@@ -167,6 +153,67 @@ class System:
         """Number of recorded operations, for estimates of cost."""
         return len(self._tape.records)
 
+    def _kinetic_energy(self, coordinates: int, rates: int) -> Polynomial:
+        """T as written out plus that of the bodies and rotors."""
+        translation, mechanism = self._translation(coordinates, rates), self.model.mechanism
+        algebra = translation.algebra
+        total = translation.polynomial(self.model.kinetic_energy)
+        if mechanism.bodies:
+            settled = self._settled_rate if not rates else _unchanged
+            total = algebra.add(total, self.frames.kinetic_energy(algebra, settled))
+        half: Polynomial = {CONSTANT: self._tape.constant(Fraction(1, 2))}
+        for rotor in mechanism.rotor_inertias:
+            rate = translation.names[next(c.rate for c in self.model.coordinates if c.name == rotor.coordinate)]
+            inertia = algebra.multiply(half, translation.polynomial(rotor.inertia))
+            total = algebra.add(total, algebra.multiply(inertia, algebra.multiply(rate, rate)))
+        return total
+
+    def _potential_energy(self, coordinates: int, rates: int) -> Polynomial:
+        """U as written out plus that of the bodies."""
+        translation = self._translation(coordinates, rates)
+        weight = _truncated(self.frames.potential_energy(), coordinates)
+        return translation.algebra.add(translation.polynomial(self.model.potential_energy), weight)
+
+    def _applied_force(self) -> list[Polynomial]:
+        """Q_a: what is given by coordinates, and each force times the coefficients of the rate it works on."""
+        plain = self._translation(0, 0)
+        forces = {force.coordinate: force.expression for force in self.model.applied_forces}
+        total = [plain.polynomial(forces[c.name]) if c.name in forces else {} for c in self.model.coordinates]
+        for force in self.model.forces:
+            magnitude = plain.polynomial(force.magnitude)
+            shares = [_truncated(share, 0) for share in self._coefficients(force.velocity)]
+            total = [
+                plain.algebra.add(x, plain.algebra.multiply(magnitude, share))
+                for x, share in zip(total, shares, strict=True)
+            ]
+        return total
+
+    def _coefficients(self, velocity: Expression | None) -> list[Polynomial]:
+        """The coefficients of a rate by the rates of the coordinates, to degree 1 in the coordinates."""
+        if velocity is None:
+            return []
+        linear = self._translation(1, 1).polynomial(velocity)
+        return [
+            {(place, ()): register for (place, rates), register in linear.items() if rates == (j,)}
+            for j in range(self.n)
+        ]
+
+    def _component(self, name: str, coordinates: int, rates: int) -> Polynomial:
+        """A component of a point or frame, to these degrees."""
+        found = self.frames.component(name)
+        if not component(name).is_rate:
+            return _truncated(found, coordinates)
+        return found if rates else self._settled_rate(found)
+
+    def _settled_rate(self, rate: Polynomial) -> Polynomial:
+        """A rate with the rates of the coordinates at their values."""
+        total = self._tape.zero
+        for (place, moving), register in rate.items():
+            if not place:
+                value = self._tape.input(self.n + moving[0])
+                total = self._tape.binary("add", total, self._tape.binary("mul", register, value))
+        return {CONSTANT: total}
+
     def _plain(self, polynomials: Sequence[Polynomial]) -> Replay:
         return replay_of(self._tape, [p.get(CONSTANT, self._tape.zero) for p in polynomials])
 
@@ -198,14 +245,14 @@ class System:
         ]
         return entries, gradient, g.get(CONSTANT, zero)
 
-    def _translation(self, coordinates: int, rates: int) -> _Translation:
+    def _translation(self, coordinates: int, rates: int) -> Translation:
         """The shared translation for polynomials of these degrees; degree 0 in both takes the rates at their value."""
         key = (coordinates, rates)
         if key not in self._shared:
             self._shared[key] = self._new_translation(coordinates, rates)
         return self._shared[key]
 
-    def _new_translation(self, coordinates: int, rates: int) -> _Translation:
+    def _new_translation(self, coordinates: int, rates: int) -> Translation:
         tape, n = self._tape, self.n
         names: dict[str, Polynomial] = {}
         for j, coordinate in enumerate(self.model.coordinates):
@@ -221,56 +268,22 @@ class System:
         first = 2 * n + len(self.model.parameters)
         literals = {id(literal): tape.input(first + j) for j, literal in enumerate(self.literals)}
         definitions = {definition.name: definition.value for definition in self.model.definitions}
-        return _Translation(Taylor(tape, coordinates, rates), names, definitions, literals)
+        return Translation(
+            Taylor(tape, coordinates, rates),
+            names,
+            definitions,
+            literals,
+            lambda name: self._component(name, coordinates, rates),
+        )
 
 
-@dataclass(frozen=True)
-class _Translation:
-    """Expressions to polynomials; a literal that is not among `literals` is a constant."""
+def _unchanged(rate: Polynomial) -> Polynomial:
+    return rate
 
-    algebra: Taylor
-    names: dict[str, Polynomial]
-    definitions: dict[str, Expression]
-    literals: dict[int, Register]
 
-    def polynomial(self, expression: Expression) -> Polynomial:
-        """The Taylor polynomial of an expression."""
-        algebra = self.algebra
-        match expression:
-            case Number(value):
-                if value == 0:
-                    return {}
-                register = self.literals.get(id(expression))
-                return {CONSTANT: algebra.tape.constant(value) if register is None else register}
-            case Pi():
-                register = self.literals.get(id(expression))
-                return {CONSTANT: self._pi() if register is None else register}
-            case Name(name):
-                if name not in self.names:
-                    self.names[name] = self.polynomial(self.definitions[name])
-                return self.names[name]
-            case Negation(operand):
-                return algebra.negate(self.polynomial(operand))
-            case Binary(operator, left, right):
-                combine = {
-                    "+": algebra.add,
-                    "-": algebra.subtract,
-                    "*": algebra.multiply,
-                    "/": algebra.divide,
-                }[operator]
-                return combine(self.polynomial(left), self.polynomial(right))
-            case Power(base, exponent):
-                return algebra.power(self.polynomial(base), exponent)
-            case Call("atan2", (y, x)):
-                return algebra.angle(self.polynomial(y), self.polynomial(x))
-            case Call(function, (argument,)):
-                return algebra.function(function, self.polynomial(argument))
-        raise SymgenBug(f"reference: no rule for {expression}")
-
-    def _pi(self) -> Register:
-        """pi of a parameter's default value, as 4 atan(1)."""
-        tape = self.algebra.tape
-        return tape.scaled(Fraction(4), tape.unary("atan", tape.one))
+def _truncated(place: Polynomial, degree: int) -> Polynomial:
+    """The polynomial up to a degree in the coordinates."""
+    return {monomial: register for monomial, register in place.items() if len(monomial[0]) <= degree}
 
 
 Position: TypeAlias = tuple[int, int, int]
@@ -322,28 +335,3 @@ def _bilinear(terms: Terms, n: int) -> Replay:
             total = tape.binary("add", total, tape.scaled(factor, product))
         outputs.append(total)
     return replay_of(tape, outputs)
-
-
-def _formulas(model: Model) -> Iterator[Expression]:
-    yield from (definition.value for definition in model.definitions)
-    yield model.kinetic_energy
-    yield model.potential_energy
-    yield from (row.expression for row in model.constraints)
-    yield from (entry for control in model.inputs for _, entry in control.acts_on)
-    yield from (force.expression for force in model.applied_forces)
-
-
-def _walk(expression: Expression) -> Iterator[Expression]:
-    pending = [expression]
-    while pending:
-        node = pending.pop()
-        yield node
-        match node:
-            case Negation(operand):
-                pending.append(operand)
-            case Binary(_, left, right):
-                pending.extend((right, left))
-            case Power(base, _):
-                pending.append(base)
-            case Call(_, arguments):
-                pending.extend(reversed(arguments))

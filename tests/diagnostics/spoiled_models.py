@@ -81,7 +81,6 @@ SHAPE = {
     "scalar_for_a_coordinate": GOOD.replace("x: {unit: m}", "x: m"),
     "bodies_form": GOOD
     + "gravity: [0, 0, -9.81]\nbodies: {b: {mass: 1}}\ntrig_range: wide\n",
-    "input_on_a_joint": GOOD + "inputs: {T: {joint: a}}\n",
     "comma_in_flow": GOOD + "inputs: {T: {acts_on: {a: atan2(x, l)}}}\n",
     "comma_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, from the vertical"),
     "comma_and_one_word_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, absolute"),
@@ -285,6 +284,93 @@ PUBLISHED_AND_PATHS = {
     "path_names": GOOD
     + "paths: {p: {duration: 1, definitions: {b: x, x: t, r: c}, conditions: {c: x - s, d: a_dot}, start: {z: 0}}}\n",
 }
+
+ARM = """\
+model: arm
+coordinates:
+  a: {unit: rad}
+  b: {unit: rad}
+parameters:
+  l: {value: 0.5, unit: m}
+  m: {value: 2, unit: kg}
+  J: {value: 0.1, unit: kg*m**2}
+gravity: [0, -9.81, 0]
+"""
+FRAMES = """\
+frames:
+  upper: {rotation: [[z, a]]}
+  lower: {parent: upper, translation: [l, 0, 0], rotation: [[z, b]]}
+"""
+MASSES = """\
+bodies:
+  upper: {mass: m, com: [l/2, 0, 0], inertia: {zz: J}}
+  lower: {mass: m, com: [l/2, 0, 0], inertia: {zz: J}}
+"""
+POINTS = """\
+points:
+  tip: {frame: lower, at: [l, 0, 0]}
+"""
+GOOD_ARM = ARM + FRAMES + MASSES + POINTS
+
+
+def arm(frames: str = FRAMES, bodies: str = MASSES, points: str = POINTS, more: str = "") -> str:
+    """The good arm with some of its blocks replaced."""
+    return f"{ARM}{frames}{bodies}{points}{more}"
+
+
+def turned(rotation: str) -> str:
+    """The arm with that rotation of its upper part."""
+    return arm(frames=FRAMES.replace("[[z, a]]", rotation))
+
+
+def heavy(inertia: str) -> str:
+    """The arm with that inertia of its lower part."""
+    return arm(bodies=MASSES.replace("{zz: J}}\n", f"{{{inertia}}}}}\n"))
+
+
+BODIES = {
+    "loop_in_the_frame_tree": arm(frames=FRAMES.replace("{rotation", "{parent: lower, rotation")),
+    "unknown_parent": arm(frames=FRAMES.replace("parent: upper", "parent: uper")),
+    "frame_without_a_turn": turned("[z, a]"),
+    "axis_of_zero_length": turned("[[[0, 0, 0], a]]"),
+    "unknown_axis": turned("[[w, a]]"),
+    "axis_that_moves": turned("[[[b, 0, 1], a]]"),
+    "rate_in_a_frame": turned("[[z, a_dot]]"),
+    "point_in_a_frame": arm(frames=FRAMES.replace("[l, 0, 0]", "[tip.x, 0, 0]")),
+    "quaternion_of_three": turned("{quaternion: [1, 0, a]}"),
+    "two_components": arm(frames=FRAMES.replace("[l, 0, 0]", "[l, 0]")),
+    "world_is_taken": arm(frames=FRAMES + "  world: {}\n"),
+    "body_without_mass": arm(bodies=MASSES.replace("mass: m, ", "")),
+    "body_without_frame": arm(bodies=MASSES + "  loader: {mass: 1}\n"),
+    "negative_mass": arm(bodies=MASSES.replace("lower: {mass: m", "lower: {mass: m - 3")),
+    "mass_that_changes": arm(bodies=MASSES.replace("lower: {mass: m", "lower: {mass: m*a")),
+    "triangle_inequality": heavy("xx: 1, yy: 1, zz: 2.5"),
+    "negative_moment": heavy("xx: 1, yy: 1, zz: 1, xy: 1.5"),
+    "unknown_element": heavy("zy: 1"),
+    "massless_motion": arm(bodies="bodies: {upper: {mass: 0}, lower: {mass: m}}\n"),
+    "rotor_on_a_frame": arm(more="rotor_inertias: {upper: J}\n"),
+    "negative_rotor": arm(more="rotor_inertias: {a: -J}\n"),
+    "point_in_an_unknown_frame": arm(points=POINTS.replace("lower", "hand")),
+    "unknown_component": arm(more="constraints: {geometric: {c: tip.u}}\n"),
+    "component_of_a_number": arm(more="constraints: {geometric: {c: l.x}}\n"),
+    "component_with_a_space": arm(more="constraints: {geometric: {c: tip. x}}\n"),
+    "velocity_in_geometry": arm(more="constraints: {geometric: {c: tip.vx}}\n"),
+    "place_in_a_parameter": arm(more="ranges: {m: [1, tip.x]}\n"),
+    "point_as_a_number": arm(more="constraints: {geometric: {c: tip - 1}}\n"),
+    "wrong_units": arm(bodies=MASSES.replace("mass: m, com: [l/2", "mass: l, com: [m/2").replace("zz: J", "zz: m")),
+    "gravity_in_kilograms": arm().replace("-9.81", "-m"),
+    "input_without_action": arm(more="inputs: {u: {unit: N}}\n"),
+    "input_with_two_actions": arm(more="inputs: {u: {joint: a, acts_on: {b: 1}}}\n"),
+    "input_on_no_joint": arm(more="inputs: {u: {joint: c}}\n"),
+    "force_without_direction": arm(more="inputs: {u: {point: tip}}\n"),
+    "force_on_an_unknown_point": arm(more="inputs: {u: {point: tp, direction: [1, 0, 0]}}\n"),
+    "torque_on_a_point": arm(more="inputs: {u: {torque_on: tip, direction: [0, 0, 1]}}\n"),
+    "unknown_axes": arm(more="inputs: {u: {point: tip, direction: [1, 0, 0], axes: hand}}\n"),
+    "force_in_newton_metres": arm(more="inputs: {u: {unit: N*m, point: tip, direction: [1, 0, 0]}}\n"),
+    "loop_that_cannot_close": arm(more="constraints: {geometric: {far: tip.x - 3*l}}\n"),
+    "no_freedom_left": arm(more="constraints: {geometric: {c: tip.x - l, d: tip.y}}\n"),
+}
+
 GROUPS = {
     "yaml": YAML,
     "shape": SHAPE,
@@ -292,6 +378,7 @@ GROUPS = {
     "names": NAMES,
     "structure": STRUCTURE,
     "mechanism": MECHANISM,
+    "bodies": BODIES,
     "units": UNITS,
     "allocation": ALLOCATION,
     "published_and_paths": PUBLISHED_AND_PATHS,

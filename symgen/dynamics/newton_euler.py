@@ -1,0 +1,148 @@
+"""Generalized forces of the bodies by Newton and Euler's equations, frame by frame in body axes.
+
+Outwards: angular velocity, angular acceleration and acceleration of each origin.  Inwards: the force and moment every
+frame passes to its parent.  A frame's coordinates get the power of that wrench on their own relative motion; no energy
+is formed or differentiated (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 5.3; Luh, Walker, Paul 1980).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from symgen.dynamics.bodies import Bodies, Vector3
+from symgen.graph.calculus import derivative_along, gradient
+from symgen.graph.matrix import Vector
+from symgen.graph.scalar import Scalar
+from symgen.model.mechanism import WORLD, Body
+from symgen.model.triples import applied, plus, transposed
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Angular velocity and acceleration of a frame and the acceleration of its origin, in its axes."""
+
+    velocity: Vector3
+    acceleration: Vector3
+    linear: Vector3
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """Force and moment about a frame's origin, in its axes."""
+
+    force: Vector3
+    moment: Vector3
+
+
+def newton_euler(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> Vector:
+    """d/dt dT/dq_dot - dT/dq + dU/dq of all bodies and rotors for the accelerations `qdd`.
+
+    `qd` is the symbols of the rates, or zeros for a mechanism at rest; `gravity` may be zero to leave out weights.
+    """
+    return _Recursion(bodies, qd, qdd, gravity).forces()
+
+
+class _Recursion:
+    def __init__(self, bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> None:
+        self.bodies, self.graph, self.kinematics = bodies, bodies.graph, bodies.kinematics
+        self.at_rest = all(rate.is_zero for rate in qd)
+        # relative velocities are linear in the rates: at rest their derivatives have terms in q_ddot alone
+        motion = {} if self.at_rest else dict(zip(bodies.q, bodies.qd, strict=True))
+        self.direction = {**motion, **dict(zip(bodies.qd, qdd, strict=True))}
+        self.moves = not (self.at_rest and all(rate.is_zero for rate in qdd))
+        zero = self.graph.zero
+        self.none: Vector3 = (zero, zero, zero)
+        self.motions = {WORLD: Motion(self.none, self.none, _negative(gravity))}
+
+    def forces(self) -> Vector:
+        """One generalized force for each coordinate."""
+        loaded = self._loaded()
+        frames = [frame for frame in self.bodies.mechanism.frames if frame.name in loaded]
+        for frame in frames:
+            self.motions[frame.name] = self._motion(frame.name)
+        wrenches = {frame.name: Wrench(self.none, self.none) for frame in frames}
+        for body in self.bodies.mechanism.bodies:
+            if body.frame != WORLD:
+                wrenches[body.frame] = _sum(wrenches[body.frame], self._inertial(body))
+        totals = [self.graph.zero] * len(self.bodies.q)
+        for frame in reversed(frames):
+            wrench, joint = wrenches[frame.name], self.kinematics.joint(frame.name)
+            carried = applied(joint.axes, wrench.force)
+            self._work(totals, joint.turning, wrench.moment)
+            self._work(totals, joint.place_rate, carried)
+            if frame.parent != WORLD:
+                moment = plus(applied(joint.axes, wrench.moment), self._cross(joint.place, carried))
+                wrenches[frame.parent] = _sum(wrenches[frame.parent], Wrench(carried, moment))
+        for rotor in self.bodies.mechanism.rotor_inertias:
+            rate = self.bodies.names[f"{rotor.coordinate}_dot"]
+            acceleration = derivative_along(self.graph, [rate], self.direction)[0]
+            torque = self.bodies.scalars.value(rotor.inertia) * acceleration
+            self._work(totals, (rate,), (torque,))
+        return tuple(totals)
+
+    def _loaded(self) -> set[str]:
+        """Frames that carry bodies, by themselves or further out."""
+        loaded: set[str] = set()
+        for body in self.bodies.mechanism.bodies:
+            loaded.update(self.kinematics.lineage(body.frame))
+        return loaded
+
+    def _motion(self, name: str) -> Motion:
+        """The parent's motion carried to the frame's origin, the joint's own added."""
+        joint, parent = self.kinematics.joint(name), self.motions[self.kinematics.frames[name].parent]
+        inward = transposed(joint.axes)
+        linear = plus(parent.linear, self._cross(parent.acceleration, joint.place))
+        if self.moves:
+            linear = plus(linear, self._rates(joint.place_rate))
+        acceleration = applied(inward, parent.acceleration)
+        if self.moves:
+            acceleration = plus(acceleration, self._rates(joint.turning))
+        if self.at_rest:
+            return Motion(self.none, acceleration, applied(inward, linear))
+        swing = self._cross(parent.velocity, joint.place)
+        linear = plus(linear, self._cross(parent.velocity, plus(swing, plus(joint.place_rate, joint.place_rate))))
+        carried = applied(inward, parent.velocity)
+        return Motion(
+            self.kinematics.twist(name).angular,
+            plus(acceleration, self._cross(carried, joint.turning)),
+            applied(inward, linear),
+        )
+
+    def _inertial(self, body: Body) -> Wrench:
+        """m a of the centre of mass and its moment, I w' + w x I w."""
+        motion, com = self.motions[body.frame], self.kinematics.space.values(body.com)
+        mass, tensor = self.bodies.scalars.value(body.mass), self.bodies.inertia(body.name)
+        place = plus(motion.linear, self._cross(motion.acceleration, com))
+        moment = applied(tensor, motion.acceleration)
+        if not self.at_rest:
+            place = plus(place, self._cross(motion.velocity, self._cross(motion.velocity, com)))
+            moment = plus(moment, self._cross(motion.velocity, applied(tensor, motion.velocity)))
+        force = (mass * place[0], mass * place[1], mass * place[2])
+        return Wrench(force, plus(moment, self._cross(com, force)))
+
+    def _rates(self, rates: Vector3) -> Vector3:
+        x, y, z = derivative_along(self.graph, rates, self.direction)
+        return x, y, z
+
+    def _work(self, totals: list[Scalar], rates: Sequence[Scalar], load: Sequence[Scalar]) -> None:
+        """Adds the power of a load on relative rates, per rate of each coordinate."""
+        for rate, component in zip(rates, load, strict=True):
+            if rate.is_zero or component.is_zero:
+                continue
+            for index, share in enumerate(gradient(self.graph, rate, self.bodies.qd)):
+                if not share.is_zero:
+                    totals[index] = totals[index] + share * component
+
+    def _cross(self, a: Vector3, b: Vector3) -> Vector3:
+        if a is self.none or b is self.none:
+            return self.none
+        return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _negative(vector: Vector3) -> Vector3:
+    return -vector[0], -vector[1], -vector[2]
+
+
+def _sum(one: Wrench, other: Wrench) -> Wrench:
+    return Wrench(plus(one.force, other.force), plus(one.moment, other.moment))

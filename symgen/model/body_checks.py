@@ -1,0 +1,93 @@
+"""Whether masses, inertias and axes are those of a possible body, at the default values of the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import acos, cos, pi, sqrt
+
+from symgen.diagnostics import Mistake, Span
+from symgen.model.expression import Expression
+from symgen.model.mechanism import Body, Frame, Mechanism, Quaternion, Vector3
+from symgen.model.walk import evaluate, exact_value
+
+# a pair of equal moments comes out with errors of the square root of the rounding unit
+RELATIVE = 1e-7
+
+
+def check_bodies(mechanism: Mechanism, defaults: Mapping[str, float]) -> Iterator[Mistake]:
+    """Masses and moments that are negative, inertias that no mass distribution has, axes without a direction."""
+    for frame in mechanism.frames:
+        yield from _check_axes(frame, defaults)
+    for body in mechanism.bodies:
+        mass = _value(body.mass, defaults)
+        if mass is not None and mass < 0:
+            remedy = "a mass is positive, or 0 for a body without mass"
+            yield Mistake(f"the mass of `{body.name}` is {mass:.6g}", remedy, _place(body.mass, body.span))
+        yield from _check_inertia(body, defaults)
+    for rotor in mechanism.rotor_inertias:
+        inertia = _value(rotor.inertia, defaults)
+        if inertia is not None and inertia < 0:
+            message = f"the rotor inertia of `{rotor.coordinate}` is {inertia:.6g}"
+            yield Mistake(message, "a moment of inertia is positive", _place(rotor.inertia, rotor.span))
+
+
+def _check_axes(frame: Frame, defaults: Mapping[str, float]) -> Iterator[Mistake]:
+    turns = () if isinstance(frame.rotation, Quaternion) else frame.rotation
+    for turn in turns:
+        values = [_value(entry, defaults) for entry in turn.axis]
+        if all(value == 0 for value in values):
+            remedy = "give the direction it turns about, such as z or [0, 0.6, 0.8]; its length does not matter"
+            yield Mistake(f"an axis of the frame `{frame.name}` has length zero", remedy, _first(turn.axis, frame.span))
+
+
+def _check_inertia(body: Body, defaults: Mapping[str, float]) -> Iterator[Mistake]:
+    tensor = body.inertia
+    given = (tensor.xx, tensor.yy, tensor.zz, tensor.xy, tensor.xz, tensor.yz)
+    values = [_value(entry, defaults) for entry in given]
+    if any(value is None for value in values):
+        return
+    xx, yy, zz, xy, xz, yz = (value or 0.0 for value in values)
+    low, middle, high = principal_moments(xx, yy, zz, xy, xz, yz)
+    span = _first(given, body.span)
+    if low < -RELATIVE * high:
+        remedy = "check signs: xy, xz, yz are elements of the tensor, the negatives of CAD's products of inertia"
+        yield Mistake(f"the inertia of `{body.name}` has a negative principal moment, {low:.6g}", remedy, span)
+    elif all(exact_value(entry) != 0 for entry in given[:3]) and low + middle < high * (1 - RELATIVE):
+        # one or two moments alone are how planar mechanisms are written: nothing turns about the others
+        yield Mistake(
+            f"the inertia of `{body.name}` violates the triangle inequality: its principal moments are "
+            f"{low:.6g}, {middle:.6g}, {high:.6g}, and no mass distribution has one above the sum of the others",
+            "check units, signs of xy, xz, yz, and that the tensor is the one about the centre of mass",
+            span,
+        )
+
+
+def principal_moments(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float) -> tuple[float, float, float]:
+    """Eigenvalues of a symmetric 3 x 3 matrix in ascending order, by the trigonometric solution of the cubic."""
+    mean = (xx + yy + zz) / 3
+    off = xy * xy + xz * xz + yz * yz
+    spread = sqrt(((xx - mean) ** 2 + (yy - mean) ** 2 + (zz - mean) ** 2 + 2 * off) / 6)
+    if spread == 0:
+        return mean, mean, mean
+    a, b, c = ((x - mean) / spread for x in (xx, yy, zz))
+    d, e, f = xy / spread, xz / spread, yz / spread
+    half = (a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e)) / 2
+    angle = acos(max(-1.0, min(1.0, half))) / 3
+    high = mean + 2 * spread * cos(angle)
+    low = mean + 2 * spread * cos(angle + 2 * pi / 3)
+    return low, 3 * mean - low - high, high
+
+
+def _value(expression: Expression, defaults: Mapping[str, float]) -> float | None:
+    try:
+        return evaluate(expression, defaults)
+    except (ArithmeticError, ValueError, KeyError):
+        return None
+
+
+def _place(expression: Expression, otherwise: Span | None) -> Span | None:
+    return expression.span or otherwise
+
+
+def _first(entries: tuple[Expression, ...] | Vector3, otherwise: Span | None) -> Span | None:
+    return next((entry.span for entry in entries if entry.span is not None), otherwise)

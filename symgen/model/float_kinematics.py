@@ -1,0 +1,97 @@
+"""Frames and points in floats at one configuration, for the checks made while loading."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TypeAlias
+
+from symgen.model.dense import Rows
+from symgen.model.expression import Expression
+from symgen.model.gradient import Dual, Gradients
+from symgen.model.kinematics import Kinematics
+from symgen.model.mechanism import Mechanism, component
+
+Form: TypeAlias = dict[int, float]
+"""Coefficients of the rates by the number of the coordinate."""
+
+_FUNCTIONS = {"sin": math.sin, "cos": math.cos, "sqrt": math.sqrt}
+
+
+class Floats:
+    """The arithmetic of `Kinematics` in floats; raises ArithmeticError or ValueError outside a domain."""
+
+    def __init__(self, gradients: Gradients) -> None:
+        self._gradients = gradients
+
+    def value(self, expression: Expression) -> float:
+        """The value of an expression."""
+        return self._gradients.of(expression)[0]
+
+    def rate(self, expression: Expression) -> Form:
+        """Its gradient."""
+        return self._gradients.of(expression)[1]
+
+    def number(self, value: int) -> float:
+        """A whole number."""
+        return float(value)
+
+    def function(self, name: str, operand: float) -> float:
+        """sin, cos or sqrt."""
+        return _FUNCTIONS[name](operand)
+
+    def combination(self, terms: Iterable[tuple[float, Form]]) -> Form:
+        """Sum of products."""
+        total: Form = {}
+        for factor, form in terms:
+            if factor != 0.0:
+                for index, value in form.items():
+                    total[index] = total.get(index, 0.0) + factor * value
+        return total
+
+    def named(self, name: str, value: float) -> float:  # noqa: ARG002
+        """Floats have no names."""
+        return value
+
+
+class FloatKinematics:
+    """Components, and the mass matrix of the bodies, at one configuration."""
+
+    def __init__(self, mechanism: Mechanism, gradients: Gradients) -> None:
+        self._mechanism, self._index = mechanism, gradients.index
+        self._arithmetic = Floats(gradients)
+        self._kinematics: Kinematics[float, Form] = Kinematics(mechanism, self._arithmetic)
+
+    def place(self, name: str) -> Dual:
+        """Value and gradient of a component that is no rate."""
+        one = component(name)
+        if one.is_rate:
+            raise KeyError(name)
+        return self._kinematics.component(one), self._kinematics.component_rate(one)
+
+    def value(self, name: str) -> float:
+        """The value of a component that is no rate."""
+        return self._kinematics.component(component(name))
+
+    def rate(self, name: str) -> Form:
+        """Coefficients of a component that is a rate."""
+        return self._kinematics.component_rate(component(name))
+
+    def mass_matrix(self, n: int) -> Rows:
+        """G of the bodies and rotors, n x n."""
+        matrix = [[0.0] * n for _ in range(n)]
+        for rotor in self._mechanism.rotor_inertias:
+            i = self._index[rotor.coordinate]
+            matrix[i][i] += self._arithmetic.value(rotor.inertia)
+        for body in self._mechanism.bodies:
+            twist, space = self._kinematics.twist(body.frame), self._kinematics.space
+            mass, com = self._arithmetic.value(body.mass), space.values(body.com)
+            linear = space.summed(twist.linear, space.crossed(twist.angular, com))
+            rows = tuple(space.values(row) for row in body.inertia.rows)
+            momenta = [self._arithmetic.combination(zip(row, twist.angular, strict=True)) for row in rows]
+            pairs = [(self._arithmetic.combination([(mass, v)]), v) for v in linear]
+            for momentum, rate in (*pairs, *zip(momenta, twist.angular, strict=True)):
+                for i, a in momentum.items():
+                    for j, b in rate.items():
+                        matrix[i][j] += a * b
+        return matrix

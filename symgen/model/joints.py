@@ -1,0 +1,100 @@
+"""One frame against its parent: the matrix of its turns, its place, and the rates of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic
+
+from symgen.model.expression import Expression
+from symgen.model.mechanism import Frame, Quaternion, Turn, Vector3
+from symgen.model.triples import P, Rates, Rows, Space, Triple, V, product, transposed
+from symgen.model.walk import exact_value
+
+
+@dataclass(frozen=True)
+class Joint(Generic[P, V]):
+    """`axes` turns components in the frame into components in the parent, `place` is its origin in the parent's axes.
+
+    `turning` is the relative angular velocity in the frame's axes, `turning_before` the same in the parent's.
+    """
+
+    axes: Rows[P]
+    place: Triple[P]
+    place_rate: Rates[V]
+    turning: Rates[V]
+    turning_before: Rates[V]
+
+
+def joint_of(space: Space[P, V], frame: Frame) -> Joint[P, V]:
+    """The frame against its parent."""
+    rotation = frame.rotation
+    axes, turning, before = (
+        _attitude(space, rotation.parts) if isinstance(rotation, Quaternion) else _turns(space, rotation)
+    )
+    if axes is not space.identity:
+        axes = space.named(f"{frame.name}.axes", axes)
+    return Joint(axes, space.values(frame.translation), space.rates(frame.translation), turning, before)
+
+
+def _turns(space: Space[P, V], turns: tuple[Turn, ...]) -> tuple[Rows[P], Rates[V], Rates[V]]:
+    axes, turning, before = space.identity, space.still, space.still
+    for turn in turns:
+        axis = unit_axis(space, turn.axis)
+        matrix = _turn_matrix(space, turn, axis)
+        spin = space.scaled(axis, space.arithmetic.rate(turn.angle))
+        turning = space.summed(space.turned(transposed(matrix), turning), spin)
+        before = space.summed(before, space.turned(axes, spin))
+        axes = matrix if axes is space.identity else product(axes, matrix)
+    return axes, turning, before
+
+
+def _turn_matrix(space: Space[P, V], turn: Turn, axis: Triple[P]) -> Rows[P]:
+    """Rodrigues' formula 1 + s K + (1 - c) K^2 with K = axis x."""
+    angle = space.arithmetic.value(turn.angle)
+    sine, cosine = space.arithmetic.function("sin", angle), space.arithmetic.function("cos", angle)
+    x, y, z = axis
+    versed = space.one - cosine
+    xy, xz, yz = x * y * versed, x * z * versed, y * z * versed
+    return (
+        (cosine + x * x * versed, xy - z * sine, xz + y * sine),
+        (xy + z * sine, cosine + y * y * versed, yz - x * sine),
+        (xz - y * sine, yz + x * sine, cosine + z * z * versed),
+    )
+
+
+def unit_axis(space: Space[P, V], axis: Vector3) -> Triple[P]:
+    """The axis with length 1."""
+    exact = [exact_value(entry) for entry in axis]
+    if sorted(abs(value) if value is not None else 2 for value in exact) == [0, 0, 1]:
+        x, y, z = (space.arithmetic.number(int(value or 0)) for value in exact)
+        return x, y, z
+    x, y, z = space.values(axis)
+    length = space.arithmetic.function("sqrt", x * x + y * y + z * z)
+    return x / length, y / length, z / length
+
+
+def _attitude(
+    space: Space[P, V], parts: tuple[Expression, Expression, Expression, Expression]
+) -> tuple[Rows[P], Rates[V], Rates[V]]:
+    """The rotation e / |e|; its angular velocity is 2 (w v' - w' v -+ v x v') / (e . e) in the axes after or before."""
+    combination = space.arithmetic.combination
+    w, x, y, z = (space.arithmetic.value(part) for part in parts)
+    w_rate, x_rate, y_rate, z_rate = (space.arithmetic.rate(part) for part in parts)
+    two = (space.one + space.one) / (w * w + x * x + y * y + z * z)
+    axes = (
+        (space.one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)),
+        (two * (x * y + w * z), space.one - two * (x * x + z * z), two * (y * z - w * x)),
+        (two * (x * z - w * y), two * (y * z + w * x), space.one - two * (x * x + y * y)),
+    )
+    w, x, y, z = two * w, two * x, two * y, two * z
+    turning = (
+        combination(((w, x_rate), (-x, w_rate), (-y, z_rate), (z, y_rate))),
+        combination(((w, y_rate), (-y, w_rate), (-z, x_rate), (x, z_rate))),
+        combination(((w, z_rate), (-z, w_rate), (-x, y_rate), (y, x_rate))),
+    )
+    before = (
+        combination(((w, x_rate), (-x, w_rate), (y, z_rate), (-z, y_rate))),
+        combination(((w, y_rate), (-y, w_rate), (z, x_rate), (-x, z_rate))),
+        combination(((w, z_rate), (-z, w_rate), (x, y_rate), (-y, x_rate))),
+    )
+    return axes, turning, before
