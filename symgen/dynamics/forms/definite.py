@@ -31,6 +31,10 @@ class Definite:
         bounds = self.bounds(node)
         return bounds is not None and (bounds[0] > 0 or bounds[1] < 0)
 
+    def parameter(self, name: str) -> Scalar:
+        """The parameter of that name."""
+        return self._graph.symbol(name)
+
     def bounds(self, node: Scalar) -> Interval | None:
         """An enclosure, or None where the scalar depends on anything else or may be unbounded."""
         for inner in topological([node], self._known):

@@ -1,0 +1,231 @@
+"""A search for regular states at which a scalar vanishes: many seeded starts, counted steps, 40 digits.
+
+Levenberg and Marquardt's method drives the constraint residuals and the scalar (each of its squares, if it is a sum of
+squares) to 0 together, over all coordinates and over the parameters within their ranges (Nocedal and Wright, Numerical
+Optimization, ch. 10).  Angles run through the whole circle whatever range they are sampled from.  A state counts only
+where the ranks of B and of [B; M^T] are beyond doubt, so a scalar that vanishes with a rank is not blamed.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from fractions import Fraction
+
+from symgen.dynamics.admission.decimals import DIGITS, ONE, ZERO, DecimalEvaluator, UndefinedError
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.matrix import flatten
+from symgen.graph.scalar import PI, Scalar
+from symgen.graph.translate import translate
+from symgen.graph.traverse import topological
+
+SEED = 20120731
+STARTS = 12
+STEPS = 40
+MOST_TERMS = 12  # of a sum of squares that are driven to 0 one by one
+VANISHED = Decimal("1e-12")  # of the scalar's usual size, and of the constraint residuals
+REGULAR = Decimal("1e-4")  # of the largest pivot of a matrix with rows of length 1
+Point = dict[str, Decimal]
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A regular state at which a scalar vanishes: coordinates and parameters."""
+
+    point: tuple[tuple[str, Decimal], ...]
+
+
+class Search:
+    """Looks for zeros of scalars on V, away from drops of rank."""
+
+    def __init__(self, mechanics: Mechanics, generic: Genericity) -> None:
+        self._generic = generic
+        model = mechanics.model
+        self._box: dict[str, tuple[Decimal, Decimal]] = {}
+        self._angles: set[str] = set()
+        turn = 2 * PI
+        for c in model.coordinates:
+            lower, upper = (Fraction(0), turn) if c.is_angle else c.range
+            self._box[c.name] = (_decimal(lower), _decimal(upper))
+            if c.is_angle:
+                self._angles.add(c.name)
+        for p in model.parameters:
+            if p.range is not None:
+                self._box[p.name] = (_decimal(p.range[0]), _decimal(p.range[1]))
+        self._fixed = self._defaults(mechanics)
+        self._residuals = mechanics.constraint_residual
+        inputs = [entry for column in mechanics.inputs for entry in column]
+        self._rows = DecimalEvaluator([*flatten(mechanics.constraint_jacobian), *inputs])
+
+    def zero_of(self, scalar: Scalar) -> Found | None:
+        """A regular state at which the scalar vanishes, or None if no start led to one."""
+        with localcontext() as context:
+            context.prec = DIGITS
+            terms = squares(scalar)
+            if len(terms) > MOST_TERMS:
+                terms = [scalar]
+            reached = {str(n.payload) for n in topological([scalar, *self._residuals]) if n.op == "symbol"}
+            names = [name for name in self._box if name in reached]
+            evaluator = DecimalEvaluator([*self._residuals, *terms])
+            source = random.Random(SEED)
+            sizes: list[Decimal] = []
+            for start in range(STARTS):
+                point = self._start(source, inner=start < STARTS // 2)
+                found = self._descend(evaluator, point, names, sizes)
+                if found is not None and self._regular(found):
+                    shown = [*self._angles, *names]
+                    return Found(tuple((name, found[name]) for name in self._box if name in shown))
+            return None
+
+    def _start(self, source: random.Random, inner: bool) -> Point:
+        """Anywhere in the box; parameters at their defaults in the first half of the starts."""
+        point = dict(self._fixed)
+        for name, (lower, upper) in self._box.items():
+            share = Decimal(source.randrange(10**9)) / 10**9
+            if not (inner and name in self._fixed):
+                point[name] = lower + (upper - lower) * share
+        return point
+
+    def _descend(
+        self, evaluator: DecimalEvaluator, point: Point, names: Sequence[str], sizes: list[Decimal]
+    ) -> Point | None:
+        damping = Decimal("1e-3")
+        rows = len(self._residuals)
+        try:
+            values, slopes = evaluator.gradients(point, names)
+        except UndefinedError:
+            return None
+        sizes.append(max(map(abs, values[rows:])))
+        usual = sorted(sizes)[len(sizes) // 2] or ONE
+        weights = [ONE] * rows + [ONE / usual] * (len(values) - rows)
+        widths = [self._box[name][1] - self._box[name][0] for name in names]
+        size = _size(values, weights)
+        for _ in range(STEPS):
+            if size <= VANISHED:
+                return point
+            trial = self._step(point, names, values, slopes, weights, widths, damping)
+            try:
+                fresh, fresh_slopes = evaluator.gradients(trial, names)
+            except UndefinedError:
+                return None
+            fresh_size = _size(fresh, weights)
+            if fresh_size < size:
+                point, values, slopes, size, damping = trial, fresh, fresh_slopes, fresh_size, damping / 10
+            else:
+                damping = damping * 10
+                if damping > 1000:
+                    return None
+        return point if size <= VANISHED else None
+
+    def _step(
+        self,
+        point: Point,
+        names: Sequence[str],
+        values: Sequence[Decimal],
+        slopes: Sequence[Sequence[Decimal]],
+        weights: Sequence[Decimal],
+        widths: Sequence[Decimal],
+        damping: Decimal,
+    ) -> Point:
+        j = [
+            [w * s * width for s, width in zip(row, widths, strict=True)]
+            for w, row in zip(weights, slopes, strict=True)
+        ]
+        right = [w * v for w, v in zip(weights, values, strict=True)]
+        scale = sum((x * x for row in j for x in row), ZERO) / len(j)
+        normal = [[sum((x * y for x, y in zip(p, q, strict=True)), ZERO) for q in j] for p in j]
+        for i, row in enumerate(normal):
+            row[i] += damping * scale + Decimal("1e-30")
+        y = _solve(normal, right)
+        trial = dict(point)
+        for k, name in enumerate(names):
+            moved = point[name] - widths[k] * sum((j[i][k] * y[i] for i in range(len(j))), ZERO)
+            if name not in self._angles:
+                lower, upper = self._box[name]
+                moved = min(max(moved, lower), upper)
+            trial[name] = moved
+        return trial
+
+    def _regular(self, point: Point) -> bool:
+        """Whether B and [B; M^T] have their generic ranks beyond doubt."""
+        generic = self._generic
+        try:
+            values = self._rows.values(point)
+        except UndefinedError:
+            return False
+        n = generic.n
+        rows = [values[i * n : (i + 1) * n] for i in range(generic.r + generic.m)]
+        return (
+            _smallest_pivot(rows[: generic.r], generic.rank) > REGULAR
+            and _smallest_pivot(rows, generic.rank + generic.alpha) > REGULAR
+        )
+
+    @staticmethod
+    def _defaults(mechanics: Mechanics) -> Point:
+        graph = mechanics.graph
+        with localcontext() as context:
+            context.prec = DIGITS
+            values: Point = {}
+            for parameter in mechanics.model.parameters:
+                names = {name: graph.symbol(name) for name in values}
+                values[parameter.name] = DecimalEvaluator([translate(graph, parameter.value, names)]).values(values)[0]
+        return values
+
+
+def squares(scalar: Scalar) -> list[Scalar]:
+    """What is squared in a sum of squares; the scalar itself if it is none."""
+    match scalar.op:
+        case "add":
+            left, right = (squares(argument) for argument in scalar.args)
+            own = any(parts == [argument] for parts, argument in zip((left, right), scalar.args, strict=True))
+            return [scalar] if own else [*left, *right]
+        case "mul" if scalar.args[0] is scalar.args[1]:
+            return [scalar.args[0]]
+        case _:
+            return [scalar]
+
+
+def _decimal(value: Fraction) -> Decimal:
+    return Decimal(value.numerator) / Decimal(value.denominator)
+
+
+def _size(values: Sequence[Decimal], weights: Sequence[Decimal]) -> Decimal:
+    return max(abs(v) * w for v, w in zip(values, weights, strict=True))
+
+
+def _solve(a: list[list[Decimal]], b: Sequence[Decimal]) -> list[Decimal]:
+    """A y = b for a symmetric positive definite A."""
+    rows = [[*row, value] for row, value in zip(a, b, strict=True)]
+    size = len(rows)
+    for k in range(size):
+        for i in range(k + 1, size):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
+    y = [ZERO] * size
+    for k in reversed(range(size)):
+        y[k] = (rows[k][size] - sum((rows[k][i] * y[i] for i in range(k + 1, size)), ZERO)) / rows[k][k]
+    return y
+
+
+def _smallest_pivot(rows: Sequence[Sequence[Decimal]], rank: int) -> Decimal:
+    """The pivot number `rank` of elimination with complete pivoting, rows scaled to length 1."""
+    work = []
+    for row in rows:
+        length = sum((x * x for x in row), ZERO).sqrt()
+        if length:
+            work.append([x / length for x in row])
+    size = ONE
+    for k in range(rank):
+        pivots = [(abs(work[i][j]), -i, -j) for i in range(k, len(work)) for j in range(len(work[i]))]
+        size, i, j = max(pivots, default=(ZERO, 0, 0))
+        if not size:
+            return ZERO
+        i, j = -i, -j
+        work[k], work[i] = work[i], work[k]
+        for other in range(k + 1, len(work)):
+            factor = work[other][j] / work[k][j]
+            work[other] = [x - factor * y for x, y in zip(work[other], work[k], strict=True)]
+    return size

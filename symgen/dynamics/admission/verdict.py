@@ -1,0 +1,71 @@
+"""Whether a form may be chosen by itself: a proof for each of its denominators and pivots, or else a search."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from symgen.dynamics.admission.formula import formula
+from symgen.dynamics.admission.proof import Proof
+from symgen.dynamics.admission.search import STARTS, Search
+from symgen.dynamics.forms.form import Form
+from symgen.dynamics.forms.system import System
+from symgen.graph.scalar import Scalar
+
+DECIMALS = 6  # of a state in a message
+
+
+@dataclass(frozen=True, slots=True)
+class Singular:
+    """A denominator, as text, that vanishes at a regular state: coordinates (and parameters) rounded for reading."""
+
+    where_zero: str
+    state: tuple[tuple[str, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """How many denominators are proved harmless, how many were searched in vain, and which are singular."""
+
+    proved: int
+    searched: int
+    singular: tuple[Singular, ...]
+
+    @property
+    def admitted(self) -> bool:
+        """Whether the form is valid wherever the ranks of B and M~ are what they generically are."""
+        return not self.singular
+
+    @property
+    def explanation(self) -> str:
+        """One sentence for the report, derivation.json and the terminal."""
+        if self.singular:
+            places = " or ".join(f"{entry.where_zero} = 0" for entry in self.singular)
+            return f"this form is singular where {places}, although B and M~ keep their ranks"
+        parts = []
+        if self.proved:
+            parts.append(f"{self.proved} proved to vanish only where a rank drops")
+        if self.searched:
+            parts.append(f"{self.searched} searched for other zeros from {STARTS} starts without finding one")
+        return f"denominators and pivots: {', '.join(parts)}" if parts else "nothing is divided by"
+
+
+def proof_for(system: System, measures: Sequence[Scalar]) -> Proof:
+    """The rules about a system's scalars; `measures` may live on another graph."""
+    return Proof(system.definite, [p.name for p in system.mechanics.model.parameters], measures)
+
+
+def verdict(system: System, form: Form, measures: Sequence[Scalar], first_only: bool = False) -> Verdict:
+    """The verdict on a form of `system`; with `first_only` one singular denominator is enough."""
+    left = proof_for(system, measures).unproved(form.divisors)
+    singular: list[Singular] = []
+    if left:
+        search = Search(system.mechanics, system.generic)
+        for divisor in left:
+            found = search.zero_of(divisor)
+            if found is not None:
+                state = tuple((name, round(float(value), DECIMALS)) for name, value in found.point)
+                singular.append(Singular(formula(divisor), state))
+                if first_only:
+                    break
+    return Verdict(len(form.divisors) - len(left), len(left) - len(singular), tuple(singular))

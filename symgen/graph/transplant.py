@@ -1,0 +1,30 @@
+"""Scalars brought to another graph, operation by operation.
+
+The constructors' rules have been applied where the scalars were made; applying them again beside other nodes would
+replace a form by an equal function that was derived before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import topological
+
+
+def transplanted(graph: Graph, outputs: Iterable[Scalar]) -> list[Scalar]:
+    """The same scalars as nodes of `graph`; symbols keep their names."""
+    outputs = list(outputs)
+    image: dict[Scalar, Scalar] = {}
+    for node in topological(outputs):
+        args = tuple(image[argument] for argument in node.args)
+        if node.op == "symbol":
+            image[node] = graph.symbol(str(node.payload))
+        elif node.constant is not None:
+            image[node] = graph.const(node.constant)
+        elif node.op in ("sin", "cos"):
+            # keyed by the angle, as the addition theorem expects them
+            image[node] = graph.trig(node.op, args[0])
+        else:
+            image[node] = graph.raw(node.op, args, node.payload)
+    return [image[output] for output in outputs]
