@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from symgen.closedform.forms import ClosedForm, ClosedForms
 
 Value = TypeVar("Value")
+CHOOSES = "kept in its named parts, see closed_forms.forms: limits choose by minima and maxima"
 DESCRIPTIONS = {quantity.name: f"{quantity.symbol}, {quantity.description}" for quantity in QUANTITIES}
 
 
@@ -78,8 +79,8 @@ class Derived:
         Named intermediates are written out; `closed_forms` has them.  Forms that are too long to write are missing.
         """
         forms = self.closed_forms.forms
-        written = tuple(name for name, form in forms.items() if form.matrix is not None)
-        missing = {name: f"{name}: {form.note}" for name, form in forms.items() if form.matrix is None}
+        written = tuple(name for name, form in forms.items() if form.matrix is not None and not _chooses(form))
+        missing = {name: f"{name}: {form.note or CHOOSES}" for name, form in forms.items() if name not in written}
         return Quantities("SymPy matrices", written, missing, lambda name: _written_out(forms[name]))
 
     @cached_property
@@ -111,6 +112,13 @@ class Derived:
 def derive(model: str | Path | Model) -> Derived:
     """The quantities of a model file or model; ModelError with every mistake of the file, OSError without a file."""
     return Derived(model if isinstance(model, Model) else load_model(Path(model)))
+
+
+def _chooses(form: ClosedForm) -> bool:
+    """Whether minima and maxima are among the intermediates: SymPy takes minutes to write them into each other."""
+    from sympy import Max, Min
+
+    return any(isinstance(meaning, (Max, Min)) for _, meaning in form.intermediates)
 
 
 def _written_out(form: ClosedForm) -> sympy.ImmutableDenseMatrix:

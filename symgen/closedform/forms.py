@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from sympy import Expr, ImmutableDenseMatrix, Symbol
 
+from symgen.closedform.allocated import structured_allocation
 from symgen.closedform.display import latex_name
 from symgen.closedform.exact import Exact
 from symgen.closedform.limits import TooLargeError
@@ -26,7 +27,7 @@ from symgen.closedform.structured import (
 )
 from symgen.closedform.substitution import substitute
 from symgen.model.expression import Expression
-from symgen.model.model import Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
+from symgen.model.model import Allocation, Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
 
 LONG_MATRIX = 60
 """A derived matrix whose numerators have more terms than this is printed in named minors when such a form exists."""
@@ -212,6 +213,9 @@ class _Writer:
             exact.control_pseudoinverse_work,
         )
         yield pseudoinverse
+        if self.model.allocation is not None:
+            yield self._allocated(self.model.allocation)
+            return
         left = pseudoinverse.matrix
         known = None if left is None else Structured(left, pseudoinverse.intermediates)
         yield self._direct(
@@ -221,6 +225,18 @@ class _Writer:
             None if known is None else lambda: structured_inverse_dynamics(exact, speller, known, taken),
             exact.inverse_dynamics_work,
         )
+
+    def _allocated(self, allocation: Allocation) -> ClosedForm:
+        """u as the model's allocation says, in named parts."""
+        quantity, reason = "inverse_dynamics", "not written out: the inputs do not reach every direction of motion"
+        if self.exact.full_actuation:
+            try:
+                with self.exact.ring.work.limited("inverse dynamics"):
+                    form = structured_allocation(self.exact, self.speller, self.taken, allocation)
+                return self._record(ClosedForm(quantity, form.matrix, form.intermediates, ""))
+            except TooLargeError as large:
+                reason = f"not written out: {large}"
+        return ClosedForm(quantity, None, (), f"{reason}; the allocation of redundant inputs")
 
     def _pseudoinverse(self) -> ClosedForm:
         """B^+, or the entries of S = B B^T with the formula."""

@@ -30,19 +30,20 @@ from symgen.report.prose import (
 )
 from symgen.report.prose import C as CORIOLIS
 from symgen.report.prose import Q as POTENTIAL
+from symgen.report.section_allocation import allocated_inputs
 
 
 def inverse_dynamics(context: Context) -> Section:
     """From a motion to the inputs that produce it."""
     if not context.model.m:
         return Section(say("Inverse dynamics"), (paragraph("Without inputs there is no inverse dynamics."),))
-    structure, m = context.structure, context.model.m
+    structure, m, allocation = context.structure, context.model.m, context.model.allocation
     full = structure.degree_of_actuation == structure.differential_freedom
     blocks: list[Block] = [*_projected_control(context)]
     blocks.append(_pseudoinverse(context, full))
     blocks += context.quantity("projected_control_pseudoinverse", "Mplus")
     blocks += [
-        paragraph("The inputs that produce a motion are, paper (27),"),
+        paragraph("The {} that produce a motion are, paper (27),", "smallest inputs" if allocation else "inputs"),
         displayed((equals(u, juxtaposed(pseudoinverse(Mt), tau)), equals(tau, _balance(context))), "u"),
     ]
     if context.model.r:
@@ -54,6 +55,8 @@ def inverse_dynamics(context: Context) -> Section:
                 equals(juxtaposed(pseudoinverse(Mt), NB), pseudoinverse(Mt)),
             )
         )
+    if allocation is not None:
+        blocks += allocated_inputs(allocation)
     blocks += _inputs_written_out(context)
     if full and m == structure.differential_freedom:
         wt = transposed(W)
