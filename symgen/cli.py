@@ -18,7 +18,7 @@ from types import FrameType
 from symgen import __version__
 from symgen.diagnostics import ModelError, SymgenBug
 from symgen.ir.kernel import Scalar
-from symgen.results import DEFAULT_STATES, PARTS, Options, Part, Result, WrongUseError
+from symgen.results import DEFAULT_STATES, PARTS, TRIG, Options, Part, Result, WrongUseError
 from symgen.terminal import SPELLED, Progress, notice_line, summary_table
 
 DONE, MODEL_WRONG, WRONG_USE = 0, 1, 2
@@ -116,6 +116,7 @@ def _generate(arguments: list[str]) -> int:
         parts=given.only,
         verify=given.verify and not given.check,
         states=given.states,
+        trig=given.trig,
     )
     finish = _check_files if given.check else _write_files
     return _each_model(given.models, options, given.quiet, lambda result: finish(result, given.out, given.quiet))
@@ -132,7 +133,7 @@ def _verify(arguments: list[str]) -> int:
 
     if find_compiler() is None:
         raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")
-    options = Options(parts=("c", "python"), states=given.states)
+    options = Options(parts=("c", "python"), states=given.states, trig=given.trig)
     return _each_model(
         given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)
     )
@@ -369,6 +370,12 @@ def _add_generation_options(parser: argparse.ArgumentParser) -> None:
         type=_states,
         default=DEFAULT_STATES,
         help=f"states to verify (default: {DEFAULT_STATES})",
+    )
+    parser.add_argument(
+        "--trig",
+        choices=TRIG,
+        default="portable",
+        help="sine and cosine: portable has the same bits everywhere, libm calls the library's (default: portable)",
     )
     parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
 

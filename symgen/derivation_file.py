@@ -53,6 +53,7 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
         "dependent_rows": list(structure.dependent_rows),
         "skipped": [{"what": d.what, "why": d.why} for d in structure.decisions],
         "absent": [{"quantity": name, "why": why} for name, why in derivations.absent],
+        "sine_and_cosine": "libm" if program.sincos is None else "portable",
         "kernels": kernels,
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"

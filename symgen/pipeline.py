@@ -24,6 +24,7 @@ from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Program, Scalar
+from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
@@ -120,6 +121,8 @@ def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> _Derive
     structure = analyse(derivations.mechanics, derivations.generic)
     scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
     programs = schedule(derivations.mechanics, derivations.quantities, scalars)
+    if options.trig == "libm":
+        programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
     return _Derived(model, derivations, structure, programs)
 
 

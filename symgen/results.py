@@ -13,6 +13,8 @@ from symgen.model.model import Model
 Part: TypeAlias = Literal["c", "python", "report"]
 PARTS: tuple[Part, ...] = ("c", "python", "report")
 DEFAULT_STATES = 64
+Trig: TypeAlias = Literal["portable", "libm"]
+TRIG: tuple[Trig, ...] = ("portable", "libm")
 
 
 class WrongUseError(Exception):
@@ -21,12 +23,16 @@ class WrongUseError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What to generate; `outputs` None takes the model's own list, `states` is the number of states to verify."""
+    """What to generate; `outputs` None takes the model's own list, `states` is the number of states to verify.
+
+    `trig` says whose sine and cosine the code calls: its own, with the same bits everywhere, or the library's.
+    """
 
     outputs: tuple[str, ...] | None = None
     scalars: tuple[Scalar, ...] = ("float64", "float32")
     parts: tuple[Part, ...] = PARTS
     verify: bool = True
+    trig: Trig = "portable"
     states: int = DEFAULT_STATES
 
 

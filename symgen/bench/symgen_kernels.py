@@ -14,6 +14,7 @@ from symgen.emit.operations import count_operations
 from symgen.emit.pairs import pair_names
 from symgen.emit.python import emit_python
 from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
 from symgen.naming import file_stem
@@ -43,7 +44,7 @@ def symgen_candidates(
     for number, (way, by_scalar) in enumerate(programs.items()):
         portable = by_scalar[scalar]
         trigonometric = any(s.operation == "sincos" for kernel in portable.kernels for s in kernel.statements)
-        variants = {PORTABLE: portable} | ({LIBRARY: replace(portable, sincos=None)} if trigonometric else {})
+        variants = {PORTABLE: portable} | ({LIBRARY: with_library_trig(portable)} if trigonometric else {})
         found += [
             replace(_candidate(model, program, way, trig), chosen=number == 0) for trig, program in variants.items()
         ]
