@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import symgen
+from symgen.bench.batch import BEST_PEERS, Many, many_states
 from symgen.bench.build import Built, Footprint, build, find_gcc, nanoseconds, results_of
 from symgen.bench.callgrind import count_instructions, find_valgrind
 from symgen.bench.candidate import CCandidate, PythonCandidate, Task
@@ -19,6 +20,7 @@ from symgen.bench.python_timing import run_python
 from symgen.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
 from symgen.bench.workload import Errors, Workload, admissible_samples, errors_of, workload
 from symgen.ir.kernel import Program, Scalar
+from symgen.model.allocation import without_allocation
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.results import WrongUseError
@@ -69,6 +71,7 @@ class Comparison:
     states: int
     measured: tuple[Measured, ...]
     left_out: tuple[tuple[str, str], ...]
+    many: tuple[Many, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +94,7 @@ class Benchmark:
                     "states": comparison.states,
                     "left_out": dict(comparison.left_out),
                     "measured": [_finite(asdict(measured)) for measured in comparison.measured],
+                    "many_states": [asdict(many) for many in comparison.many],
                 }
                 for comparison in self.comparisons
             ],
@@ -104,7 +108,7 @@ def benchmark(path: Path, states: int, progress: Progress) -> Benchmark:
     """
     if find_gcc() is None:
         raise WrongUseError("symgen bench compiles everything with gcc, and there is no gcc on this machine")
-    model = load_model(path)
+    model = without_allocation(load_model(path))
     reference = Reference(model)
     tasks = [_task(model, name) for name in QUANTITIES if name in reference.quantities()]
     if not tasks:
@@ -143,6 +147,9 @@ def _compare(
         built = build(Path(folder), model, task, candidates, loads)
         progress(f"running {task.quantity}")
         measured = _measure(built, Path(folder), task, candidates, loads)
+        progress(f"running {task.quantity} on many states")
+        chosen = next(iter(programs.values()))
+        many = many_states(Path(folder), model, task, chosen, _loops(candidates, measured), loads["float64"])
     for candidate in _python(model, task, programs, full_rank):
         results, together, alone = run_python(model, candidate, loads["float64"])
         errors = errors_of(loads["float64"], results)
@@ -160,7 +167,15 @@ def _compare(
             chosen=candidate.generator == "symgen",
         )
         measured.append(row)
-    return Comparison(task, len(samples), _with_front(measured), left_out)
+    return Comparison(task, len(samples), _with_front(measured), left_out, many)
+
+
+def _loops(candidates: Sequence[CCandidate], measured: Sequence[Measured]) -> list[CCandidate]:
+    """symgen's kernel and the fastest peers, to be called state by state; a library holds no -fPIE."""
+    timed = [(m.nanoseconds, c) for c, m in zip(candidates, measured, strict=True) if c.scalar == "float64"]
+    own = [c for _, c in timed if c.chosen][:1]
+    peers = sorted((t for t in timed if t[1].generator != "symgen" and "-fPIE" not in t[1].flags), key=lambda t: t[0])
+    return own + [c for _, c in peers[:BEST_PEERS]]
 
 
 def _measure(

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from symgen.diagnostics import Span
 from symgen.model.declarations import DeclaredRanges
 from symgen.model.expression import Expression
 from symgen.model.mechanics import default_values
-from symgen.model.model import Allocation, Input, Limit, Parameter, Range
-from symgen.model.names import counted, did_you_mean
+from symgen.model.model import Allocation, Input, Limit, Model, Parameter, Range
+from symgen.model.names import did_you_mean
 from symgen.model.reading import entries, items, member
 from symgen.model.scope import PARAMETERS, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
@@ -188,13 +188,15 @@ def _with_range(parameter: Parameter, values: Mapping[str, float], limits: list[
             low, high = value - width / 4, value
     if not (low < high and math.isfinite(low) and math.isfinite(high)):
         return parameter
-    given = (Fraction(low), Fraction(high))
-    return Parameter(parameter.name, parameter.unit, parameter.description, parameter.value, given, parameter.span)
+    return replace(parameter, range=(Fraction(low), Fraction(high)))
 
 
-def summary(allocation: Allocation) -> str:
-    """What the block asks for, in words: `2 weights, a preload, limits of 3 inputs`."""
-    preload = ["a preload"] if allocation.preload or allocation.preferred else []
-    weights = [counted(len(allocation.weights), "weight")] if allocation.weights else []
-    limits = [f"limits of {counted(len(allocation.limits), 'input')}"] if allocation.limits else []
-    return ", ".join([*weights, *preload, *limits])
+def without_allocation(model: Model) -> Model:
+    """The model whose inputs are those of least norm: for comparisons with what knows no allocation."""
+    allocation = model.allocation
+    if allocation is None:
+        return model
+    settings = {name for _, name in (*allocation.weights, *allocation.preferred)} | {allocation.preload}
+    settings |= {name for limit in allocation.limits for name in (limit.lower, limit.upper)}
+    kept = tuple(parameter for parameter in model.parameters if parameter.name not in settings)
+    return replace(model, allocation=None, parameters=kept)

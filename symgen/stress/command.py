@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from symgen.model.allocation import without_allocation
 from symgen.model.load import load_model
 from symgen.stress.charts import stress_charts
 from symgen.stress.run import Progress, json_text, stress
@@ -19,7 +20,7 @@ def run_stress(path: Path, out: Path, steps: int, quiet: bool, progress: Progres
 
     Raises ModelError for mistakes in the file.
     """
-    model = load_model(path)
+    model = without_allocation(load_model(path))
     try:
         result = stress(model, steps, progress)
     except (ReferenceValueError, VerificationError) as fault:
