@@ -45,4 +45,4 @@ def householder_form(system: System) -> Form | str:
 def _form(system: System, name: str, derivation: Derivation | str) -> Form | str:
     if isinstance(derivation, str):
         return derivation
-    return form(name, "inverse_dynamics", derivation.inverse_dynamics, derivation.actuation_guards, system.given)
+    return form(name, "inverse_dynamics", derivation.inverse_dynamics, derivation.inverse_dynamics_guards, system.given)
