@@ -19,7 +19,7 @@ from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 
 # Position-independent for all, as a library that is loaded needs it; see docs/bench for what that means for CasADi.
-FLAGS = ("-O2", "-std=c99", "-ffp-contract=off", "-fPIC")
+FLAGS = ("-O2", "-std=c99", "-ffp-contract=off")
 C_TYPE: dict[Scalar, str] = {"float64": "double", "float32": "float"}
 # A tool that only knows double is given float by its own type name, type-generic functions and float constants.
 SINGLE = ("-include", "tgmath.h", "-fsingle-precision-constant")
@@ -77,7 +77,7 @@ def build(
 ) -> Built:
     """Compile and link in `folder`, and write the states beside the program."""
     with ThreadPoolExecutor(PROCESSES) as pool:
-        compiled = list(pool.map(lambda c: _compile(folder / c.entry, c), candidates))
+        compiled = list(pool.map(lambda c: compile_candidate(folder / c.entry, c), candidates))
     scalars = [scalar for scalar in loads if any(c.scalar == scalar for c in candidates)]
     view = DriverView(
         n=model.n,
@@ -85,9 +85,7 @@ def build(
         parameters=len(model.parameters),
         size=task.size,
         timed_states=TIMED_STATES,
-        groups=tuple(
-            DriverGroup(C_TYPE[s], tuple(c.entry for c in candidates if c.scalar == s)) for s in scalars
-        ),
+        groups=tuple(DriverGroup(C_TYPE[s], tuple(c.entry for c in candidates if c.scalar == s)) for s in scalars),
     )
     (folder / "driver.c").write_text(render("bench/driver.c.jinja", view), encoding="utf-8")
     for scalar in scalars:
@@ -95,7 +93,7 @@ def build(
     objects = [str(path) for paths, _ in compiled for path in paths]
     program = folder / "bench"
     # Symbols are bound before the first call, so that no call is dearer than the next.
-    _gcc(["-O1", "-std=c99", "-o", str(program), str(folder / "driver.c"), *objects, "-Wl,-z,now", "-lm"], "the driver")
+    gcc(["-O1", "-std=c99", "-o", str(program), str(folder / "driver.c"), *objects, "-Wl,-z,now", "-lm"], "the driver")
     return Built(program, {c.entry: footprint for c, (_, footprint) in zip(candidates, compiled, strict=True)})
 
 
@@ -121,7 +119,13 @@ def nanoseconds(built: Built, passes: int) -> dict[str, float]:
     return {name: float(value) for name, value in (line.split() for line in told.stdout.splitlines())}
 
 
-def _compile(folder: Path, candidate: CCandidate) -> tuple[list[Path], Footprint]:
+def compile_candidate(
+    folder: Path, candidate: CCandidate, common: Sequence[str] | None = None
+) -> tuple[list[Path], Footprint]:
+    """The objects of a candidate and what they take; `common` stands in for the usual flags of all candidates.
+
+    Raises BuildError with the compiler's words.
+    """
     folder.mkdir()
     objects = []
     code = stack = 0
@@ -130,11 +134,12 @@ def _compile(folder: Path, candidate: CCandidate) -> tuple[list[Path], Footprint
             (folder / name).write_text(text, encoding="utf-8")
         source, target = folder / f"unit{number}.c", folder / f"unit{number}.o"
         source.write_text(unit.source, encoding="utf-8")
-        flags = [*FLAGS, *candidate.flags, "-fstack-usage", f"-DREAL={C_TYPE[candidate.scalar]}", "-Dcasadi_real=REAL"]
+        flags = [*(FLAGS if common is None else common), "-fPIC", *candidate.flags, "-fstack-usage"]
+        flags += [f"-DREAL={C_TYPE[candidate.scalar]}", "-Dcasadi_real=REAL"]
         if candidate.scalar == "float32" and not unit.headers:
             flags += SINGLE
         flags += [f"-D{name}={new}" for name, new in unit.renamed.items()]
-        _gcc([*flags, "-c", "-o", str(target), str(source)], candidate.label)
+        gcc([*flags, "-c", "-o", str(target), str(source)], candidate.label)
         objects.append(target)
         if not unit.is_adaptor:
             functions = {unit.renamed.get(name, name) for name in candidate.functions}
@@ -143,7 +148,8 @@ def _compile(folder: Path, candidate: CCandidate) -> tuple[list[Path], Footprint
     return objects, Footprint(code, stack)
 
 
-def _gcc(arguments: Sequence[str], what: str) -> None:
+def gcc(arguments: Sequence[str], what: str) -> None:
+    """Run gcc; raises BuildError with its words and `what` it refuses."""
     told = subprocess.run(["gcc", *arguments], capture_output=True, text=True, check=False)
     if told.returncode:
         raise BuildError(f"gcc refuses {what}: {told.stderr[:2000]}")

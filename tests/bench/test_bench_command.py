@@ -83,4 +83,4 @@ def test_without_valgrind_instructions_are_left_out(
 def test_a_candidate_that_does_not_compile_is_named(tmp_path: Path) -> None:
     broken = CCandidate("SymPy", "lean", "float64", "entry", (CUnit("int entry(void) { return x; }\n"),), ("entry",))
     with pytest.raises(build.BuildError, match="SymPy lean"):
-        build._compile(tmp_path / "entry", broken)
+        build.compile_candidate(tmp_path / "entry", broken)
