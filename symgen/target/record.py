@@ -12,9 +12,9 @@ from symgen.ir.kernel import Scalar
 class Cell:
     """One build (core or host, compiler, level, kind of sine and cosine) compared with the host's gcc -O2.
 
-    `different` records (one for each kernel and vector: status and output bits) of `records` are not the same; where
-    a libm is involved they are allowed to be, and `distance` is the largest one of regular states in units of
-    d + eps |y|.
+    `kernels` were built, and `different` of `records` are not the same (one for each kernel and vector: status and
+    output bits).  Where a libm is involved they may differ, and `distance` is the largest of regular states in units
+    of d + eps |y|.
     """
 
     where: str
@@ -22,6 +22,7 @@ class Cell:
     level: str
     scalar: Scalar
     trig: str
+    kernels: int
     records: int
     different: int
     distance: float = 0.0

@@ -12,7 +12,9 @@ from pathlib import Path
 
 from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
+from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Program, Scalar
+from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
 from symgen.naming import file_stem
@@ -40,6 +42,10 @@ Progress = Callable[[str], None]
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 COSTED = ("-O2", "-Os")  # the levels at which instructions, footprint and stack are measured
 BASE: tuple[Compiler, str] = ("gcc", "-O2")
+# With these every kernel is built; elsewhere those of more operations are left out, for the time that compilers take.
+WHOLE: tuple[tuple[Compiler, str], ...] = (BASE, ("gcc", "-Os"), ("clang", "-O2"))
+MOST_OPERATIONS = 700
+CHOICES = ("ratio_or_zero", "copysign")
 PROCESSES = 2
 PORTABLE, LIBM = "portable", "libm"
 
@@ -58,6 +64,10 @@ class _Build:
         return "host" if self.core is None else self.core.name
 
     @property
+    def kernels(self) -> str:
+        return f"{self.trig} {'all' if (self.compiler, self.level) in WHOLE else 'small'}"
+
+    @property
     def label(self) -> str:
         return f"{self.where}, {self.compiler} {self.level}, {self.trig}"
 
@@ -70,20 +80,22 @@ class _Bench:
         programs = dict(schedule(derivations.mechanics, derivations.quantities, SCALARS).items())
         self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
         self.programs: dict[str, dict[Scalar, Program]] = {
-            PORTABLE: programs,
-            LIBM: {scalar: replace(program, sincos=None) for scalar, program in programs.items()},
+            f"{PORTABLE} all": programs,
+            f"{PORTABLE} small": {scalar: _small(program) for scalar, program in programs.items()},
+            f"{LIBM} all": {scalar: with_library_trig(program) for scalar, program in programs.items()},
         }
-        self.sources = {trig: self._sources(trig) for trig in self.programs}
+        self.sources = {kernels: self._sources(programs) for kernels, programs in self.programs.items()}
         self.states = {scalar: vectors.rounded(scalar) for scalar in SCALARS}
         self.inputs = self._written("states", self.states)
         self.counter = build_counter(folder)
-        base = {trig: self.image(_Build(None, *BASE, trig), 0)[1] for trig in self.programs}
-        self.expected = {trig: self._run(None, image, trig) for trig, image in base.items()}
-        self.units = {scalar: self._units(scalar, base[PORTABLE]) for scalar in SCALARS}
+        base = {trig: _Build(None, *BASE, trig) for trig in (PORTABLE, LIBM)}
+        images = {trig: self.image(build, 0)[1] for trig, build in base.items()}
+        self.expected = {trig: self._run(build, images[trig]) for trig, build in base.items()}
+        self.units = {scalar: self._units(scalar, images[PORTABLE]) for scalar in SCALARS}
 
     def results(self, build: _Build) -> dict[Scalar, Results]:
         """Builds an image, runs it, and reads what it wrote."""
-        return self._run(build.core, self.image(build, 0)[1], build.trig)
+        return self._run(build, self.image(build, 0)[1])
 
     def image(self, build: _Build, watched: int) -> tuple[Workshop, Path]:
         """An image with its input files beside it."""
@@ -99,7 +111,7 @@ class _Bench:
         """A folder for one compiler and level: builds run side by side."""
         name = f"{build.where}-{build.trig}-{build.compiler}{build.level}"
         shop = Workshop(self.folder / name, build.core)
-        shop.write(self.sources[build.trig])
+        shop.write(self.sources[build.kernels])
         return shop
 
     def read(
@@ -115,13 +127,13 @@ class _Bench:
                 raise ToolError(f"{image.parent.name}: {error}") from error
         return found
 
-    def _run(self, core: Core | None, image: Path, trig: str) -> dict[Scalar, Results]:
-        run_image(core, image)
-        return self.read(image, self.programs[trig], {s: len(states) for s, states in self.states.items()})
+    def _run(self, build: _Build, image: Path) -> dict[Scalar, Results]:
+        run_image(build.core, image)
+        return self.read(image, self.programs[build.kernels], {s: len(states) for s, states in self.states.items()})
 
-    def _sources(self, trig: str) -> dict[str, str]:
-        files = {"driver.c": driver_source(self.model, self.programs[trig])}
-        for program in self.programs[trig].values():
+    def _sources(self, programs: Mapping[Scalar, Program]) -> dict[str, str]:
+        files = {"driver.c": driver_source(self.model, programs)}
+        for program in programs.values():
             files |= {path.rpartition("/")[2]: text for path, text in emit_c(self.model, program).items()}
         return files
 
@@ -136,7 +148,7 @@ class _Bench:
     def _units(self, scalar: Scalar, image: Path) -> Units:
         """d + eps |y| of the regular states, by the float64 kernels of an image of the host."""
         regular = self.states[scalar][: len(self.vectors.regular)]
-        program = self.programs[PORTABLE]["float64"]
+        program = self.programs[f"{PORTABLE} all"]["float64"]
         made = []
         for kind, states in (("exact", regular), ("moved", perturbed(regular, scalar))):
             # both scalar types run; what float32 makes of these states is of no interest
@@ -183,13 +195,22 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
         vectors={"regular": len(vectors.regular), "singular": len(vectors.singular), "odd": len(vectors.odd)},
         statuses=_statuses(bench),
         versions=_versions(cores),
-        sources={path: hashlib.sha256(text.encode()).hexdigest() for path, text in bench.sources[PORTABLE].items()
-                 if path != "driver.c"},
+        sources={
+            path: hashlib.sha256(text.encode()).hexdigest()
+            for path, text in bench.sources[f"{PORTABLE} all"].items()
+            if path != "driver.c"
+        },
         cells=tuple(cell for cells, _, _ in made for cell in cells),
         cores=reports,
         failures=tuple(failures),
         notes=() if "clang" in compilers() else ("clang is not installed: builds with clang are left out",),
     )
+
+
+def _small(program: Program) -> Program:
+    """The program without its largest kernels."""
+    kept = tuple(k for k in program.kernels if count_operations(k.statements).total <= MOST_OPERATIONS)
+    return replace(program, kernels=kept)
 
 
 def _builds(cores: Sequence[Core]) -> list[_Build]:
@@ -209,22 +230,24 @@ def _measured(bench: _Bench, build: _Build) -> tuple[list[Cell], list[KernelCost
     else:
         results, costs = bench.results(build), []
     cells, failures = [], []
-    for scalar, program in bench.programs[build.trig].items():
+    for scalar, program in bench.programs[build.kernels].items():
         portable = build.trig == PORTABLE
         found = compare(
             program.kernels, scalar, portable, bench.expected[build.trig][scalar], results[scalar],
             bench.units[scalar], len(bench.vectors.regular),
         )
         records = len(program.kernels) * len(bench.states[scalar])
-        cells.append(Cell(build.where, build.compiler, build.level, scalar, build.trig, records, found.different,
-                          found.distance))
+        cells.append(Cell(
+            build.where, build.compiler, build.level, scalar, build.trig, len(program.kernels), records,
+            found.different, found.distance,
+        ))
         failures += [f"{build.label}, {scalar}: {wrong}" for wrong in found.wrong]
     return cells, costs, [*failures, *(wrong for cost in costs for wrong in _wrong(bench, build, cost))]
 
 
 def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Results], list[KernelCost]]:
     shop, image = bench.image(build, STACK_WATCHED)
-    programs = bench.programs[build.trig]
+    programs = bench.programs[build.kernels]
     names = {(s, k.name): function_name(bench.model, k, s) for s, p in programs.items() for k in p.kernels}
     counts = count_calls(core, image, bench.counter, addresses(shop, image, list(names.values())))
     results = bench.read(image, programs, {scalar: len(states) for scalar, states in bench.states.items()})
@@ -247,10 +270,10 @@ def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Resu
 def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
     """What must hold where the FPU computes in the type: constant counts, no library; no RAM and a known stack always.
 
-    Counts may vary where a quotient is defined to be 0 for a divisor of 0: compilers make a jump of that choice.
+    Counts may vary where a sign is copied or a quotient is 0 for a divisor of 0: compilers make jumps of such choices.
     """
     assert build.core is not None
-    kernel = next(k for k in bench.programs[PORTABLE][cost.scalar].kernels if k.name == cost.kernel)
+    kernel = next(k for k in bench.programs[build.kernels][cost.scalar].kernels if k.name == cost.kernel)
     where = f"{build.label}, {cost.scalar}: {cost.kernel}"
     wrong = []
     if cost.ram:
@@ -258,7 +281,7 @@ def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
     if cost.stack >= STACK_WATCHED:
         wrong.append(f"{where} takes more than {STACK_WATCHED} bytes of stack")
     if cost.scalar in build.core.native and not uses_library(kernel, portable=True):
-        chooses = any(statement.operation == "ratio_or_zero" for statement in kernel.statements)
+        chooses = any(statement.operation in CHOICES for statement in kernel.statements)
         if cost.fewest != cost.most and not chooses:
             wrong.append(f"{where} takes {cost.fewest} to {cost.most} instructions")
         if cost.undefined:

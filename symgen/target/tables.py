@@ -24,12 +24,15 @@ def _conformance(cells: Sequence[Cell]) -> str:
     rows = []
     for where, trig in dict.fromkeys((cell.where, cell.trig) for cell in cells):
         here = [cell for cell in cells if (cell.where, cell.trig) == (where, trig)]
-        levels = dict.fromkeys(f"{cell.compiler} {cell.level}" for cell in here)
+        largest = max(cell.kernels for cell in here)
+        marks = {f"{cell.compiler} {cell.level}": "" if cell.kernels == largest else "*" for cell in here}
+        levels = [build + mark for build, mark in marks.items()]
         different = sum(cell.different for cell in here)
         distance = max(cell.distance for cell in here)
         told = "the same bits" if not different else f"{different} differ, by {distance:.2g} units at most"
         rows.append((where, trig, ", ".join(levels), str(sum(cell.records for cell in here)), told))
-    return columns(("beside the host", "trig", "builds", "results", ""), rows, "<<<><")
+    note = "\n  * without the largest kernels" if any("*" in row[2] for row in rows) else ""
+    return columns(("beside the host", "trig", "builds", "results", ""), rows, "<<<><") + note
 
 
 def _costs(core: CoreReport) -> str:

@@ -16,7 +16,7 @@ from symgen.verify.states import sample_states
 
 FEWEST = 256
 SINGULAR_KINDS = ("constraint", "input", "parameter")
-NEAR = (0.0, 1e-12, 1e-8, 1e-4)  # distances from a singular configuration
+NEAR = (0.0, 1e-8)  # distances from a singular configuration
 FAR = (1e-3, 1e-6)  # angles of a thousand and a million
 PERTURBATIONS = 6
 
@@ -63,9 +63,9 @@ def _singular(reference: Reference) -> Iterator[State]:
 
 
 def _odd(state: State) -> Iterator[State]:
-    """Every number in turn replaced by one that is none, infinite or far too large."""
+    """Every number in turn replaced by one that is none, the first of each array by infinity and a huge one as well."""
     for part in PARTS:
         values = getattr(state, part)
         for place in range(len(values)):
-            for odd in (nan, inf, -3e38):
+            for odd in (nan, inf, -3e38) if place == 0 else (nan,):
                 yield replace(state, **{part: (*values[:place], odd, *values[place + 1 :])})
