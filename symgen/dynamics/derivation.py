@@ -15,11 +15,12 @@ from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
 from symgen.dynamics.exterior import square as multivector_square
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.dynamics.forms.motion import Motion, Problem
-from symgen.dynamics.forms.motions import candidates, motion
+from symgen.dynamics.forms.motions import MotionName, candidates, cheapest, motion
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
-from symgen.dynamics.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia, ShiftedInertia
+from symgen.dynamics.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.pivoted import elementary_symmetric, reflected
 from symgen.dynamics.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
 from symgen.graph.calculus import derivative_along
 from symgen.graph.matrix import (
@@ -80,25 +81,22 @@ class Derivation:
             return FreeInertia(self.graph, mass_matrix)
         if isinstance(space, HouseholderSpace):
             return BasisInertia(space, mass_matrix)
-        if self.generic.rank == self.r:
-            return BasisInertia(HouseholderSpace(self.graph, self.mechanics.constraint_jacobian, self.n), mass_matrix)
-        assert isinstance(space, MinorSpace)
-        return ShiftedInertia(space, mass_matrix)
+        return BasisInertia(reflected(self.graph, space.rows, self.n, self.generic.rank), mass_matrix)
 
     @cached_property
-    def _motions(self) -> tuple[Motion, ...]:
-        names = candidates(self.mechanics, self.generic, self.space)
-        return tuple(motion(name, self.mechanics, self.space, self.inertia) for name in names)
+    def _motions(self) -> dict[MotionName, Motion]:
+        names = candidates(self.generic, self.space)
+        return {name: motion(name, self.mechanics, self.space, self.inertia) for name in names}
 
     @cached_property
     def acceleration(self) -> Motion:
         """The form of q_ddot that counts least."""
-        return min(self._motions, key=lambda m: cost((*m.accelerations, *(g.denominator for g in m.guards))).weight)
+        return cheapest(self._motions, "accelerations", self.mechanics)
 
     @cached_property
     def reaction(self) -> Motion:
         """The form of lambda that counts least."""
-        return min(self._motions, key=lambda m: cost((*m.multipliers, *(g.denominator for g in m.guards))).weight)
+        return cheapest(self._motions, "multipliers", self.mechanics)
 
     @cached_property
     def _actuation(self) -> tuple[ActuationForms, Restriction]:
@@ -172,7 +170,7 @@ class Derivation:
     def _newton_space(self) -> NullSpace:
         rows = self.mechanics.geometric_jacobian
         if isinstance(self.space, HouseholderSpace):
-            return HouseholderSpace(self.graph, rows, self.n)
+            return reflected(self.graph, rows, self.n, self.generic.geometric_rank)
         return MinorSpace(self.graph, rows, self.n, self.generic.geometric_rank)
 
     @cached_property
@@ -367,20 +365,19 @@ class Derivation:
             tuple(graph.function("ratio_or_zero", (x, length)) for x in row)
             for row, length in zip(rows, lengths, strict=True)
         )
+        present = [graph.function("ratio_or_zero", (length, length)) for length in lengths]
+        possible = elementary_symmetric(graph, present, self.generic.rank)
+        dependent = self.generic.rank < self.r
         if isinstance(self.space, HouseholderSpace):
-            space = HouseholderSpace(graph, unit_rows, self.n, everywhere=True)
-            constraint = graph.product(space.reflections.pivots)
+            space = reflected(graph, unit_rows, self.n, self.generic.rank, everywhere=True)
+            constraint = space.square
             seen, _ = space.actuation(mechanics.inputs, self.generic.alpha)
             regular = graph.function("ratio_or_zero", (constraint, constraint))
-            return constraint, self._actuation_measure(seen.square() * regular)
+            actuation = self._actuation_measure(seen.square() * regular)
+            return graph.function("ratio_or_zero", (constraint, possible)) if dependent else constraint, actuation
         forms = RowForms(graph, unit_rows, self.n, self.generic.rank)
-        present = [graph.function("ratio_or_zero", (length, length)) for length in lengths]
-        possible = graph.sum(
-            graph.product(present[k] for k in subset) for subset in combinations(range(self.r), self.generic.rank)
-        )
         constraint = graph.one
         if self.r:
-            dependent = self.generic.rank < self.r
             constraint = graph.function("ratio_or_zero", (forms.square, possible)) if dependent else forms.square
         projected = ActuationForms(forms, mechanics.inputs, self.generic.alpha).square()
         if self.r:

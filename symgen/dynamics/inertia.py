@@ -152,27 +152,3 @@ class BasisInertia:
 
     def solve(self, force: Vector) -> Vector:
         return matvec(self._graph, self._basis, self._factor.solve(matvec(self._graph, self._transposed, force)))
-
-
-class ShiftedInertia:
-    """Dependent rows, delta > 2: K = S^-1 N with S = N G N + mu P, mu = tr G / n (theory, errata (22) C)."""
-
-    def __init__(self, space: MinorSpace, mass_matrix: Matrix) -> None:
-        graph, n, projector = space.graph, space.n, space.projector
-        self._space = space
-        inner = matmul(graph, matmul(graph, projector, mass_matrix, n), projector, n)
-        mu = graph.sum(_diagonal(mass_matrix)) / n
-        eye = identity(graph, n)
-        shifted = tuple(
-            tuple(inner[i][j] + mu * (eye[i][j] - projector[i][j]) for j in range(n)) for i in range(n)
-        )
-        g = diagonal_sizes(graph, mass_matrix)
-        scales = [
-            graph.sum(x * x * size for x, size in zip(row, g, strict=True)) + mu * (1 - row[k])
-            for k, row in enumerate(projector)
-        ]
-        self._factor = Cholesky(graph, shifted, scales)
-        self.guards = (*space.guards, *self._factor.guards)
-
-    def solve(self, force: Vector) -> Vector:
-        return self._factor.solve(self._space.project(force))

@@ -11,7 +11,8 @@ from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, derive, missi
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.spaces import HouseholderSpace, MinorSpace
+from symgen.dynamics.pivoted import reflected
+from symgen.dynamics.spaces import MinorSpace
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
 
@@ -47,11 +48,11 @@ def ways(mechanics: Mechanics, generic: Genericity) -> dict[str, Derivation]:
     """The derivations that are valid at every regular configuration, by name."""
     rows, n = mechanics.constraint_jacobian, mechanics.n
     found: dict[str, Derivation] = {}
-    if comb(n, generic.rank) * comb(len(rows), generic.rank) <= MINOR_LIMIT or generic.rank < len(rows):
+    if comb(n, generic.rank) * comb(len(rows), generic.rank) <= MINOR_LIMIT:
         space = MinorSpace(mechanics.graph, rows, n, generic.rank)
         found["minors"] = Derivation(mechanics, generic, space)
-    if rows and generic.rank == len(rows):
-        found["householder"] = Derivation(mechanics, generic, HouseholderSpace(mechanics.graph, rows, n))
+    if rows:
+        found["householder"] = Derivation(mechanics, generic, reflected(mechanics.graph, rows, n, generic.rank))
     return found
 
 

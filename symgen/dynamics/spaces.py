@@ -118,7 +118,7 @@ class Reflections:
     """
 
     def __init__(self, graph: Graph, columns: Sequence[Vector], n: int, everywhere: bool = False) -> None:
-        self.graph, self.n = graph, n
+        self.graph, self.n, self.everywhere = graph, n, everywhere
         self.reflectors: list[tuple[int, Vector, Scalar]] = []
         self.pivots: list[Scalar] = []
         self.triangle: list[Vector] = []
@@ -181,6 +181,11 @@ class HouseholderSpace:
     @cached_property
     def size(self) -> Scalar:
         return self.graph.product(dot(self.graph, row, row) for row in self.rows)
+
+    @property
+    def square(self) -> Scalar:
+        """det(B B^T)."""
+        return self.graph.product(self.reflections.pivots)
 
     @cached_property
     def basis(self) -> Matrix:

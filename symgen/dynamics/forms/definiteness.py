@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import random
+from functools import lru_cache
 
 from symgen.dynamics.genericity import parameter_values
 from symgen.dynamics.inertia import Cholesky, diagonal_sizes
@@ -18,12 +19,13 @@ from symgen.graph.scalar import Scalar
 from symgen.graph.traverse import topological
 
 SEED = 15
-STARTS = 8
-HALVINGS = 7
-# Inertias of one machine may differ by some orders of magnitude; what vanishes is found much closer to zero.
-SMALLEST = 1e-6
+STARTS = 4
+HALVINGS = 11
+# Between what inertias of one machine differ by and what is left of a pivot that vanishes after the last halving.
+SMALLEST = 1e-4
 
 
+@lru_cache(maxsize=2)  # asked for q_ddot and for lambda, along each null space
 def positive_definite(mechanics: Mechanics) -> bool:
     """Whether G is positive definite at every configuration, for parameters in their ranges."""
     graph = mechanics.graph

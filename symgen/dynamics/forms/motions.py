@@ -7,6 +7,7 @@ lose digits with the square of the condition number of B, the last is long.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal, TypeAlias
 
 from symgen.dynamics.forms.definiteness import positive_definite
@@ -18,22 +19,37 @@ from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.inertia import ConstrainedInertia
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.spaces import MinorSpace, NullSpace
+from symgen.graph.traverse import cost
 
 MotionName: TypeAlias = Literal["minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt"]
 MOTION_NAMES: tuple[MotionName, ...] = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt")
 
 
-def candidates(mechanics: Mechanics, generic: Genericity, space: NullSpace) -> tuple[MotionName, ...]:
-    """The forms among which counted cost may decide."""
-    found: list[MotionName] = []
+def candidates(generic: Genericity, space: NullSpace) -> tuple[MotionName, ...]:
+    """The forms among which counted cost may decide; `schur_qr` only where `positive_definite` says so."""
+    by_minors = isinstance(space, MinorSpace) and 1 <= generic.delta <= LARGEST_DELTA
     if generic.r == 0:
-        return ("minor", "schur_qr") if generic.n <= LARGEST_DELTA else ("schur_qr",)
-    if generic.rank == generic.r:
-        if isinstance(space, MinorSpace) and 1 <= generic.delta <= LARGEST_DELTA:
-            found.append("minor")
-        if positive_definite(mechanics):
-            found.append("schur_qr")
-    return tuple(found) or ("nullspace",)
+        return ("minor", "schur_qr") if by_minors else ("schur_qr",)
+    if generic.rank < generic.r:
+        return ("nullspace",)
+    return ("minor", "schur_qr") if by_minors else ("schur_qr", "nullspace")
+
+
+def cheapest(
+    motions: Mapping[MotionName, Motion], part: Literal["accelerations", "multipliers"], mechanics: Mechanics
+) -> Motion:
+    """The candidate that counts least, outputs and tested denominators together.
+
+    `nullspace` is for systems in which G is definite along the constraints only: it is normwise accurate in units in
+    which B is, where `schur_qr` measures by G.
+    """
+    weights = {
+        name: cost((*getattr(one, part), *(guard.denominator for guard in one.guards))).weight
+        for name, one in motions.items()
+    }
+    order = sorted(motions, key=lambda name: (name == "nullspace", weights[name]))
+    usable = (name for name in order if name != "schur_qr" or len(order) == 1 or positive_definite(mechanics))
+    return motions[next(usable)]
 
 
 def motion(name: MotionName, mechanics: Mechanics, space: NullSpace, inertia: ConstrainedInertia) -> Motion:
