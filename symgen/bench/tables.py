@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symgen.bench.batch_pages import many_lines
 from symgen.bench.run import Benchmark, Comparison, Measured
 from symgen.terminal import columns
 
@@ -13,6 +14,7 @@ def bench_tables(result: Benchmark) -> str:
     sections = [result.model]
     for comparison in result.comparisons:
         sections.append(f"{comparison.task.quantity}, {comparison.states} states\n{_table(comparison)}")
+        sections += [many_lines(comparison.many)] if comparison.many else []
         sections += [f"  not measured: {name} ({why})" for name, why in comparison.left_out]
     sections += [f"  note: {note}" for note in result.notes]
     return "\n\n".join(sections) + "\n"

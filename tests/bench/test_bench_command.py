@@ -9,13 +9,20 @@ from pathlib import Path
 import pytest
 from shipped import ROOT
 
-from symgen.bench import build, callgrind, charts, command, run
+from symgen.bench import batch, build, callgrind, charts, command, run
 from symgen.bench.candidate import CCandidate, CUnit
 from symgen.bench.peers import roster
 from symgen.bench.peers.casadi_engine import CasadiEngine
 from symgen.cli import main
 
 SKATE = str(ROOT / "models" / "skate.yaml")
+
+
+@pytest.fixture(autouse=True)
+def few_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "STREAMED", 128)
+    monkeypatch.setattr(batch, "CACHED", 64)
+    monkeypatch.setattr(batch, "PASSES", 1)
 
 
 @pytest.fixture
@@ -42,6 +49,7 @@ def test_files_and_table(
     (comparison,) = data["comparisons"]
     assert comparison["states"] == 8
     rows = {(row["generator"], row["form"], row["scalar"]): row for row in comparison["measured"]}
+    assert {row["form"] for row in comparison["many_states"]} > {"batch", "compile()", "native, in a loop"}
     chosen = next(row for row in comparison["measured"] if row["chosen"] and row["scalar"] == "float64")
     native = rows["CasADi", "native", "float64"]
     assert chosen["errors"]["largest"] < 1e-12
