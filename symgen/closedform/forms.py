@@ -26,6 +26,7 @@ from symgen.closedform.structured import (
     structured_pseudoinverse,
 )
 from symgen.closedform.substitution import substitute
+from symgen.model.energy_form import energy_form
 from symgen.model.expression import Expression
 from symgen.model.model import Allocation, Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
 
@@ -77,6 +78,7 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     more than ten times that is given in named intermediates or not at all.  Raises ArithmeticError for a model that
     divides by something identically zero, TooLargeError when already B or M is too long to write out.
     """
+    model = energy_form(model)
     translator = make_translator(model, published_expressions(model))
     mechanics = Mechanics(model, translator)
     points = generic_points(model, mechanics, 3) or generic_points(model, mechanics, 3, on_constraints=False)

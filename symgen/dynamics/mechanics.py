@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from symgen.dynamics.bodies import Bodies
+from symgen.dynamics.bodies import Bodies, Vector3
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.factoring import Factoring
 from symgen.dynamics.newton_euler import newton_euler
@@ -91,7 +91,12 @@ class Mechanics:
     @cached_property
     def potential_energy(self) -> Scalar:
         """U(q)."""
-        return translate(self.graph, self.model.potential_energy, self.names) + self.bodies.potential_energy
+        return self._written_potential + self.bodies.potential_energy
+
+    @cached_property
+    def _written_potential(self) -> Scalar:
+        """U as far as it is written out in the model."""
+        return translate(self.graph, self.model.potential_energy, self.names)
 
     @cached_property
     def momentum(self) -> Vector:
@@ -158,14 +163,23 @@ class Mechanics:
     @cached_property
     def balance(self) -> Vector:
         """tau = G q_ddot + C q_dot + Q - Q_a; built without the matrices G and C."""
-        conservative = [i + f for i, f in zip(self._inertial_force(self.qdd), self.potential_force, strict=True)]
-        return tuple(f - a for f, a in zip(conservative, self.applied_force, strict=True))
+        return tuple(f - a for f, a in zip(self._conservative_force(self.qdd), self.applied_force, strict=True))
+
+    def _conservative_force(self, acceleration: Vector) -> Vector:
+        """G a + C q_dot + Q; with bodies in one recursion, where weight is an acceleration of the world."""
+        if self.model.mechanism.has_mass:
+            inertial = self._inertial_force_of_bodies(acceleration, self.bodies.gravity)
+            potential: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
+        else:
+            inertial, potential = self._inertial_force(acceleration), self.potential_force
+        return tuple(i + f for i, f in zip(inertial, potential, strict=True))
 
     def _inertial_force(self, acceleration: Vector) -> Vector:
         """d/dt dT/dq_dot - dT/dq: by differentiating the momentum, or through G, whichever counts less."""
         graph = self.graph
         if self.model.mechanism.has_mass:
-            return self._inertial_force_of_bodies(acceleration)
+            none = self.graph.zero
+            return self._inertial_force_of_bodies(acceleration, (none, none, none))
         motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
         rates = derivative_along(graph, self.momentum, motion)
         direct = [p - t for p, t in zip(rates, gradient(graph, self.kinetic_energy, self.q), strict=True)]
@@ -184,10 +198,10 @@ class Mechanics:
         collected = [a + b for a, b in zip(linear, squared, strict=True)]
         return tuple(min((direct, collected), key=lambda force: cost(force).weight))
 
-    def _inertial_force_of_bodies(self, acceleration: Vector) -> Vector:
+    def _inertial_force_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
         """The same without the energies of the bodies, whose differentiation would undo the recursion."""
-        graph, none = self.graph, (self.graph.zero,) * 3
-        force = newton_euler(self.bodies, self.qd, acceleration, (none[0], none[1], none[2]))
+        graph = self.graph
+        force = newton_euler(self.bodies, self.qd, acceleration, gravity)
         if self._written_energy.is_zero:
             return force
         motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
@@ -270,5 +284,5 @@ class Mechanics:
     @cached_property
     def bias_force(self) -> Vector:
         """C q_dot + Q - Q_a."""
-        conservative = [c + f for c, f in zip(self.coriolis_force, self.potential_force, strict=True)]
+        conservative = self._conservative_force(tuple(self.graph.zero for _ in self.q))
         return tuple(f - a for f, a in zip(conservative, self.applied_force, strict=True))

@@ -6,7 +6,14 @@ from collections.abc import Iterator
 
 from symgen.model.expression import Expression
 from symgen.model.mechanism import is_component
-from symgen.model.model import Definition, Model
+from symgen.model.model import (
+    Definition,
+    Model,
+    Published,
+    PublishedEquations,
+    PublishedMatrix,
+    PublishedSingularSet,
+)
 from symgen.model.walk import names_in
 
 
@@ -24,6 +31,22 @@ def formulas(model: Model) -> Iterator[Expression]:
     for element in model.forces:
         yield element.magnitude
         yield element.velocity
+
+
+def printed_formulas(published: tuple[Published, ...]) -> Iterator[Expression]:
+    """Every formula that was printed somewhere, and its correction."""
+    for one in published:
+        match one:
+            case PublishedMatrix():
+                yield from (entry for matrix in (one.value, one.corrected or ()) for row in matrix for entry in row)
+                yield from (value for _, value in one.where)
+            case PublishedEquations():
+                yield from (side for pair in (*one.equations, *one.corrected) for side in pair)
+                yield from (value for _, value in one.where)
+            case PublishedSingularSet():
+                yield one.where_zero
+                if one.corrected is not None:
+                    yield one.corrected
 
 
 def components_in(model: Model) -> tuple[str, ...]:

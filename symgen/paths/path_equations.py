@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symgen.diagnostics import Mistake
+from symgen.model.energy_form import energy_form
 from symgen.model.model import Model, Path
 
 Array = NDArray[np.float64]
@@ -58,6 +59,7 @@ def path_equations(model: Model, path: Path) -> PathEquations:
 
     from symgen.witness.translate import default_parameters, translate, with_definitions
 
+    model = energy_form(model)
     q, qd, t = casadi.SX.sym("q", model.n), casadi.SX.sym("qd", model.n), casadi.SX.sym("t")
     p = casadi.SX.sym("p", len(model.parameters))
     positions = {coordinate.name: q[i] for i, coordinate in enumerate(model.coordinates)}

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from symgen.model.energy_form import energy_form
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.model import Model
 
@@ -16,6 +17,7 @@ DEGREES = Fraction("57.295779513082320876798154814105170332405472466564321549160
 
 def in_degrees(model: Model) -> Model:
     """The model in degrees; generalized forces become power per degree/s, inputs and multipliers stay."""
+    model = energy_form(model)
     angles = [c for c in model.coordinates if c.is_angle]
     names: dict[str, Expression] = {}
     for c in angles:

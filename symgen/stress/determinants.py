@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import arb, arb_mat, fmpq
 
+from symgen.model.energy_form import energy_form
 from symgen.model.expression import Name
 from symgen.model.model import Model
 from symgen.verify.reference import Reference
@@ -105,6 +106,7 @@ def _factored(model: Model) -> Choices | None:
     from symgen.closedform.points import generic_points
     from symgen.closedform.structure import derive_structure
 
+    model = energy_form(model)
     try:
         mechanics = Mechanics(model, make_translator(model, ()))
         points = generic_points(model, mechanics, 3) or generic_points(model, mechanics, 3, on_constraints=False)

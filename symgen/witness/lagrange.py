@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import casadi
 
+from symgen.model.energy_form import energy_form
 from symgen.model.expression import Expression
 from symgen.model.model import Model
 from symgen.witness.translate import translate, with_definitions
@@ -40,6 +41,7 @@ class Lagrange:
 
 def differentiate(model: Model) -> Lagrange:
     """All of `Lagrange` from the model alone."""
+    model = energy_form(model)
     q, qd, qdd = (casadi.SX.sym(name, model.n) for name in ("q", "qd", "qdd"))
     u, p = casadi.SX.sym("u", model.m), casadi.SX.sym("p", len(model.parameters))
     scope = {coordinate.name: q[i] for i, coordinate in enumerate(model.coordinates)}

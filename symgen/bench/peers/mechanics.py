@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from symgen.bench.peers.algebra import total
 from symgen.bench.peers.engine import Engine, Inputs, Matrix, Symbol, scope_of, translate
+from symgen.model.energy_form import energy_form
 from symgen.model.model import Model
 
 
@@ -22,6 +23,7 @@ class Mechanics:
 
 def mechanics(engine: Engine, model: Model) -> Mechanics:
     """Lagrange's equations of the first kind without their multipliers, all in the tool's scalars."""
+    model = energy_form(model)
     lengths = {"q": model.n, "qd": model.n, "qdd": model.n, "p": len(model.parameters)}
     inputs = {array: engine.symbols(array, length) for array, length in lengths.items()}
     scope = scope_of(engine, model, inputs)
