@@ -18,7 +18,7 @@ from types import FrameType
 from symgen import __version__
 from symgen.diagnostics import ModelError, SymgenBug
 from symgen.ir.kernel import Scalar
-from symgen.results import DEFAULT_STATES, PARTS, TRIG, Options, Part, Result, WrongUseError
+from symgen.results import DEFAULT_STATES, FORMS, PARTS, TRIG, Options, Part, Result, WrongUseError
 from symgen.terminal import SPELLED, Progress, notice_line, summary_table
 
 DONE, MODEL_WRONG, WRONG_USE = 0, 1, 2
@@ -102,6 +102,7 @@ def _generate(arguments: list[str]) -> int:
         "--scalar", choices=tuple(_SCALARS), default="both", help="scalar types of the C (default: both)"
     )
     parser.add_argument("--only", metavar="PARTS", type=_parts, default=PARTS, help="of c,python,report (default: all)")
+    _add_form(parser)
     parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
     parser.add_argument(
         "--check",
@@ -116,6 +117,7 @@ def _generate(arguments: list[str]) -> int:
         parts=given.only,
         verify=given.verify and not given.check,
         states=given.states,
+        form=given.form,
         trig=given.trig,
     )
     finish = _check_files if given.check else _write_files
@@ -143,6 +145,7 @@ def _explain(arguments: list[str]) -> int:
     parser = _parser("symgen explain", "Closed forms, structure, and what is skipped and why.")
     parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file")
     parser.add_argument("quantity", metavar="QUANTITY", nargs="?", help="one quantity (default: an overview)")
+    _add_form(parser)
     given = parser.parse_args(arguments)
 
     if not given.model.is_file():
@@ -152,7 +155,7 @@ def _explain(arguments: list[str]) -> int:
         from symgen.pipeline import explain
 
         progress = Progress(given.model.stem, quiet=not sys.stderr.isatty())
-        text = explain(given.model, given.quantity, progress)
+        text = explain(given.model, given.quantity, progress, given.form)
         progress.done()
         print(text)
         return DONE
@@ -378,6 +381,15 @@ def _add_generation_options(parser: argparse.ArgumentParser) -> None:
         help="sine and cosine: portable has the same bits everywhere, libm calls the library's (default: portable)",
     )
     parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
+
+
+def _add_form(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--form",
+        choices=FORMS,
+        default="auto",
+        help="how the inverse dynamics are computed (default: auto, the cheapest valid at every regular state)",
+    )
 
 
 def _names(text: str) -> tuple[str, ...]:

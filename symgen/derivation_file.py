@@ -9,6 +9,7 @@ import json
 from typing import Any
 
 from symgen import __version__
+from symgen.dynamics.inverse import FormChoice
 from symgen.dynamics.select import Derivations
 from symgen.dynamics.structure import Structure
 from symgen.emit.operations import count_operations
@@ -54,9 +55,23 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
         "skipped": [{"what": d.what, "why": d.why} for d in structure.decisions],
         "absent": [{"quantity": name, "why": why} for name, why in derivations.absent],
         "sine_and_cosine": "libm" if program.sincos is None else "portable",
+        "form_of_inverse_dynamics": _form(derivations.form),
         "kernels": kernels,
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def _form(form: FormChoice | None) -> dict[str, Any] | None:
+    """The form of u: whether it is valid at every regular state, why or where not, and what is known of the others."""
+    if form is None:
+        return None
+    return {
+        "name": form.way,
+        "valid_at_every_regular_state": form.verdict.admitted,
+        "because": form.verdict.explanation,
+        "singular": [{"where_zero": s.where_zero, "for_example": dict(s.state)} for s in form.verdict.singular],
+        "forms": [{"name": name, "counted_cost": weight, "remark": remark} for name, weight, remark in form.others],
+    }
 
 
 def _operations(kernel: Kernel) -> dict[str, int]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.dynamics.catalogue import BY_NAME
-from symgen.dynamics.select import Derivations, derive_quantities
+from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities
 from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
@@ -84,8 +84,11 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     return replace(result, files={**result.files, **report.files}, notices=(*result.notices, *report.notices))
 
 
-def explain(path: Path, quantity: str | None, progress: Progress) -> str:
-    """Structure and closed forms as text for the terminal; of one quantity when it is named."""
+def explain(path: Path, quantity: str | None, progress: Progress, form: str = "auto") -> str:
+    """Structure and closed forms as text for the terminal; of one quantity when it is named.
+
+    `form` is the form of u whose validity is told.
+    """
     from symgen.closedform.limits import TooLargeError
     from symgen.explain import overview, quantity_text
     from symgen.report.gather import gather
@@ -95,7 +98,7 @@ def explain(path: Path, quantity: str | None, progress: Progress) -> str:
     progress("reading the model")
     model = load_model(path)
     progress("deriving")
-    derived = _derive(model, ("all",), Options(scalars=("float64",)))
+    derived = _derive(model, ("all",), Options(scalars=("float64",), form=form))
     progress("closed forms")
     try:
         report = gather(model, _facts(derived))
@@ -117,7 +120,10 @@ def _unknown_quantity(name: str) -> WrongUseError:
 
 
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> _Derived:
-    derivations = derive_quantities(model, outputs)
+    try:
+        derivations = derive_quantities(model, outputs, options.form)
+    except NoSuchFormError as reason:
+        raise WrongUseError(f"{model.name} has no form {options.form!r} of inverse_dynamics: {reason}") from reason
     structure = analyse(derivations.mechanics, derivations.generic)
     scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
     programs = schedule(derivations.mechanics, derivations.quantities, scalars)
@@ -160,13 +166,23 @@ def _facts(derived: _Derived) -> Facts:
 
     operations = {kernel.name: count_operations(kernel.statements) for kernel in derived.program.kernels}
     decisions = tuple((decision.what, decision.why) for decision in derived.structure.decisions)
-    return Facts(operations, (*decisions, *derived.derivations.absent))
+    return Facts(operations, (*decisions, *derived.derivations.absent, *_forms(derived.derivations)))
 
 
 def _reporting(model: Model) -> Background[ReportFiles]:
     from symgen.background import Background
 
     return Background(lambda receive: _report(model, receive))
+
+
+def _forms(derivations: Derivations) -> tuple[tuple[str, str], ...]:
+    """Forms of u that are not chosen because they fail at regular states, and whether the one asked for does."""
+    form = derivations.form
+    if form is None:
+        return ()
+    if not form.verdict.admitted:
+        return (("validity of u at every regular state", f"form {form.way}: {form.verdict.explanation}"),)
+    return tuple((f"form {name} of u", why) for name, why in form.failed)
 
 
 def _report(model: Model, receive: Receive) -> ReportFiles:
@@ -197,7 +213,10 @@ def _summary(derived: _Derived, certificate: Certificate | None) -> Summary:
         r=generic.r,
         delta=generic.delta,
         m=generic.m,
-        skipped=tuple((decision.what, decision.why) for decision in derived.structure.decisions),
+        skipped=(
+            *((decision.what, decision.why) for decision in derived.structure.decisions),
+            *_forms(derived.derivations),
+        ),
         operations=tuple((k.name, count_operations(k.statements).total) for k in derived.program.kernels),
     )
     if certificate is None:

@@ -13,6 +13,7 @@ from symgen.model.model import Model
 Part: TypeAlias = Literal["c", "python", "report"]
 PARTS: tuple[Part, ...] = ("c", "python", "report")
 DEFAULT_STATES = 64
+FORMS = ("auto", "minor", "nullspace", "range", "householder", "printed", "weighted", "kkt")
 Trig: TypeAlias = Literal["portable", "libm"]
 TRIG: tuple[Trig, ...] = ("portable", "libm")
 
@@ -34,6 +35,7 @@ class Options:
     verify: bool = True
     trig: Trig = "portable"
     states: int = DEFAULT_STATES
+    form: str = "auto"  # of the inverse dynamics, one of FORMS
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from math import comb
 from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, derive, missing, scalars
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity, genericity
+from symgen.dynamics.inverse import FormChoice, InverseDynamics, derived_on
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import MinorSpace
@@ -42,6 +43,11 @@ class Derivations:
     quantities: tuple[Derived, ...]
     choices: tuple[Choice, ...]
     absent: tuple[tuple[str, str], ...]
+    form: FormChoice | None = None  # of the inverse dynamics, where they are among the quantities
+
+
+class NoSuchFormError(Exception):
+    """A form that this system does not have, with the reason."""
 
 
 def ways(mechanics: Mechanics, generic: Genericity) -> dict[str, Derivation]:
@@ -71,15 +77,24 @@ def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tupl
     return present, absent
 
 
-def derive_quantities(model: Model, outputs: Sequence[str]) -> Derivations:
-    """Derive what is asked for and nothing else."""
+def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") -> Derivations:
+    """Derive what is asked for and nothing else; NoSuchFormError if u does not have the `form` asked for."""
     mechanics = Mechanics(model)
     generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
     derivations = ways(mechanics, generic)
     quantities: list[Derived] = []
     choices: list[Choice] = []
+    chosen_form: FormChoice | None = None
     for name in present:
+        if name == "inverse_dynamics":
+            found = InverseDynamics(model, generic).choose(form)
+            if isinstance(found, str):
+                raise NoSuchFormError(found)
+            offer, chosen_form = found
+            quantities.append(derived_on(mechanics.graph, offer))
+            choices.append(Choice(name, chosen_form.way, chosen_form.costs))
+            continue
         candidates = {way: derive(BY_NAME[name], derivation) for way, derivation in derivations.items()}
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
         best = min(costs, key=lambda way: costs[way])
@@ -94,4 +109,4 @@ def derive_quantities(model: Model, outputs: Sequence[str]) -> Derivations:
                 candidates["factored"], best = shorter, "factored"
         quantities.append(candidates[best])
         choices.append(Choice(name, best, tuple(costs.items())))
-    return Derivations(mechanics, generic, tuple(quantities), tuple(choices), tuple(absent))
+    return Derivations(mechanics, generic, tuple(quantities), tuple(choices), tuple(absent), chosen_form)

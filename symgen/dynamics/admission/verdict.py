@@ -13,6 +13,7 @@ from symgen.dynamics.forms.system import System
 from symgen.graph.scalar import Scalar
 
 DECIMALS = 6  # of a state in a message
+FAILS = "this form is singular where"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,7 @@ class Verdict:
         """One sentence for the report, derivation.json and the terminal."""
         if self.singular:
             places = " or ".join(f"{entry.where_zero} = 0" for entry in self.singular)
-            return f"this form is singular where {places}, although B and M~ keep their ranks"
+            return f"{FAILS} {places}, although B and M~ keep their ranks"
         parts = []
         if self.proved:
             parts.append(f"{self.proved} proved to vanish only where a rank drops")

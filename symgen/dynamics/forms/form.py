@@ -1,7 +1,7 @@
 """A form: one way to compute one quantity, with its guards and the list of all its denominators.
 
 Forms are data; one module builds each of them.  Whether a form may be chosen by itself is decided on its `divisors`
-(`symgen.dynamics.admissibility`), never on the way it was built.
+(`symgen.dynamics.admission`), never on the way it was built.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from symgen.dynamics.guards import Guard
+from symgen.graph.angles import share_angles
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Scalar
 from symgen.graph.traverse import cost, topological
@@ -35,8 +36,9 @@ class Form:
 
     @property
     def weight(self) -> int:
-        """Counted cost of a regular state: outputs and tested denominators."""
-        return cost((*self.outputs, *(guard.denominator for guard in self.guards))).weight
+        """Counted cost of a regular state, outputs and tested denominators; angles that are sums follow from others."""
+        needed = [*self.outputs, *(guard.denominator for guard in self.guards)]
+        return cost(share_angles(needed[0].graph, needed)).weight if needed else 0
 
 
 def form(

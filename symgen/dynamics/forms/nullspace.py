@@ -1,23 +1,23 @@
 """The null-space form: a closed basis W of ker B, then u = (W^T M)^+ W^T tau with delta x delta determinants.
 
-B q_dot = 0 is first reduced by steps that cannot fail (`rates`).  Of the small rest a basis is the cross product of its
-rows where one direction is left; where more are, some rates have to be solved for by Cramer's rule, and the basis fails
-where their determinant vanishes although the rest keeps its rank: every such choice is a form of its own, and its
-determinant one of its pivots.
+B q_dot = 0 is first reduced by steps that cannot fail (`rates`).  The small rest falls into components that share no
+rate.  Where one direction is left in a component, it is the cross product of its rows; where more are, some rates have
+to be solved for by Cramer's rule, and the basis fails where their determinant vanishes although the rest keeps its
+rank: that determinant is one of the form's pivots.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations, islice
+from itertools import combinations, islice, product
 
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product
 from symgen.dynamics.forms.form import Form, form
-from symgen.dynamics.forms.rates import reduced_rates
+from symgen.dynamics.forms.rates import Rates, reduced_rates
 from symgen.dynamics.forms.system import System
 from symgen.dynamics.guards import Guard
-from symgen.graph.matrix import Matrix, Vector, matmul, transpose
+from symgen.graph.matrix import Matrix, Vector, identity, matmul, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost
 from symgen.ir.kernel import Status
@@ -32,6 +32,14 @@ class _Basis:
     """W (n x delta) and the determinants that must not vanish for its columns to be independent."""
 
     columns: Matrix
+    pivots: Vector
+
+
+@dataclass(frozen=True, slots=True)
+class _Kernel:
+    """Null vectors of the rest, and the determinants that make them independent."""
+
+    vectors: Matrix
     pivots: Vector
 
 
@@ -59,24 +67,56 @@ def nullspace_form(system: System, allowed: Callable[[Scalar], bool]) -> Form | 
 def _bases(system: System) -> Iterator[_Basis]:
     graph, mechanics, delta = system.mechanics.graph, system.mechanics, system.generic.delta
     rest = reduced_rates(graph, system.definite, mechanics.constraint_jacobian, mechanics.n)
-    if not rest.core:
-        yield _Basis(rest.motion, ())
-        return
-    if len(rest.core) > LARGEST_REST:
-        return
-    if delta == 1:
-        kernel = cross_product(graph, rest.core, rest.width)
-        yield _Basis(matmul(graph, rest.motion, tuple((x,) for x in kernel), 1), ())
-        return
-    found = [_solved(graph, rest.core, chosen) for chosen in combinations(range(rest.width), len(rest.core))]
-    kernels = [entry for entry in found if entry is not None]
-    for vectors, determinant in sorted(kernels, key=lambda entry: cost(x for v in entry[0] for x in v).weight):
-        columns = matmul(graph, rest.motion, transpose(vectors, rest.width), delta)
-        yield _Basis(columns, (determinant,))
+    families = [_kernels(graph, rest, rows, rates) for rows, rates in _parts(rest)]
+    for choice in product(*families):
+        vectors = [vector for kernel in choice for vector in kernel.vectors]
+        if len(vectors) == delta:
+            columns = matmul(graph, rest.motion, transpose(tuple(vectors), rest.width), delta)
+            yield _Basis(columns, tuple(pivot for kernel in choice for pivot in kernel.pivots))
 
 
-def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> tuple[Matrix, Scalar] | None:
-    """Null vectors of the rest with the rates `chosen` solved for, and det C_S; None where that is always 0.
+def _parts(rest: Rates) -> list[tuple[list[int], list[int]]]:
+    """The connected components (rows, rates) of the rest; a rate in no row is one of its own."""
+    parts: list[tuple[list[int], list[int]]] = []
+    left = list(range(rest.width))
+    while left:
+        rates, rows = [left.pop(0)], list[int]()
+        for rate in rates:
+            for i, row in enumerate(rest.core):
+                if i not in rows and not row[rate].is_zero:
+                    rows.append(i)
+                    fresh = [j for j in left if not row[j].is_zero]
+                    rates += fresh
+                    left = [j for j in left if j not in fresh]
+        parts.append((sorted(rows), sorted(rates)))
+    return parts
+
+
+def _kernels(graph: Graph, rest: Rates, rows: list[int], rates: list[int]) -> list[_Kernel]:
+    """Bases of the null space of one component, the cheapest first."""
+    part = tuple(tuple(rest.core[i][j] for j in rates) for i in rows)
+    width = rest.width
+    if len(rows) > LARGEST_REST or len(rows) > len(rates):
+        return []
+    if not rows:
+        return [_Kernel(_spread(graph, identity(graph, len(rates)), rates, width), ())]
+    if len(rates) == len(rows):
+        return [_Kernel((), ())]
+    if len(rates) == len(rows) + 1:
+        return [_Kernel(_spread(graph, (cross_product(graph, part, len(rates)),), rates, width), ())]
+    found = [_solved(graph, part, chosen) for chosen in combinations(range(len(rates)), len(rows))]
+    kernels = [_Kernel(_spread(graph, k.vectors, rates, width), k.pivots) for k in found if k is not None]
+    return sorted(kernels, key=lambda kernel: cost(x for v in kernel.vectors for x in v).weight)[:MOST_CHOICES]
+
+
+def _spread(graph: Graph, vectors: Matrix, rates: list[int], width: int) -> Matrix:
+    """Vectors of a component as vectors of all rates."""
+    placed = [dict(zip(rates, vector, strict=True)) for vector in vectors]
+    return tuple(tuple(values.get(j, graph.zero) for j in range(width)) for values in placed)
+
+
+def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> _Kernel | None:
+    """Null vectors with the rates `chosen` solved for, and det C_S; None where that is always 0.
 
     The vector of a free rate f is the cross product of the rows on the columns S and f.
     """
@@ -91,4 +131,4 @@ def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> tuple[Matrix
             return None
         values = dict(zip(places, part, strict=True))
         vectors.append(tuple(values.get(j, graph.zero) for j in range(width)))
-    return tuple(vectors), determinant
+    return _Kernel(tuple(vectors), (determinant,))

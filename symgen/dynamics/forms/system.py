@@ -42,9 +42,9 @@ class System:
     @property
     def driven(self) -> str | None:
         """Why forms that solve the balance exactly do not apply, or None: they need full actuation."""
-        if self.generic.full_actuation:
-            return None
-        return "it needs inputs that span every admissible direction"
+        if self.mechanics.model.allocation is not None:
+            return "the model's `allocation` shares the inputs in another way than by their norm"
+        return None if self.generic.full_actuation else "it needs inputs that span every admissible direction"
 
     @property
     def regular(self) -> str | None:

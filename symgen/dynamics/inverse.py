@@ -1,0 +1,245 @@
+"""The inverse dynamics u along the cheapest admitted form, or along the form that is asked for.
+
+Forms are counted on graphs of their own; the chosen one is brought to the graph of the other quantities.  A form that
+is not cheaper than one already admitted is not examined.  Chosen by themselves are range, minor, nullspace and
+householder; the others work on whole matrices and are there to be asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from symgen.dynamics.admission.verdict import FAILS, Verdict, proof_for, verdict
+from symgen.dynamics.catalogue import Derived
+from symgen.dynamics.coordinates import absolute_angles
+from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.forms.by_space import householder_derivation, householder_form, minor_derivation, minor_form
+from symgen.dynamics.forms.form import FORM_NAMES, Form, form
+from symgen.dynamics.forms.nullspace import nullspace_form
+from symgen.dynamics.forms.printed import printed_form
+from symgen.dynamics.forms.range import range_form
+from symgen.dynamics.forms.system import System
+from symgen.dynamics.forms.weighted import kkt_form, weighted_form
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.guards import Guard
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.angles import share_angles
+from symgen.graph.matrix import flatten
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.transplant import transplanted
+from symgen.graph.traverse import cost
+from symgen.model.model import Model
+
+AUTOMATIC = ("range", "minor", "nullspace", "householder")
+# Longer outputs are not multiplied out; multiplied out, terms that vanish have cancelled exactly, which is worth a few
+# operations more where minors were summed.
+FACTORING_LIMIT = 450
+CANCELLATION_WORTH = Fraction(1, 4)
+FACTORING_GAIN = Fraction(1, 3)
+# A root and a division for each reflection are the least that the Householder form adds to its data.
+REFLECTION = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """A form with the system it was derived on; `way` tells whether it was multiplied out."""
+
+    way: str
+    system: System
+    form: Form
+
+
+@dataclass(frozen=True, slots=True)
+class FormChoice:
+    """The form u takes, why it is valid or where it is not, and what is known of the others (name, cost, remark)."""
+
+    way: str
+    verdict: Verdict
+    others: tuple[tuple[str, int, str], ...]
+
+    @property
+    def failed(self) -> tuple[tuple[str, str], ...]:
+        """Cheaper forms that were examined and are singular at regular states, and where."""
+        return tuple((name, remark) for name, _, remark in self.others if remark.startswith(FAILS))
+
+    @property
+    def costs(self) -> tuple[tuple[str, int], ...]:
+        """Counted cost of every form that was derived."""
+        return tuple((name, weight) for name, weight, _ in self.others)
+
+
+class InverseDynamics:
+    """The forms of u of one model, each built when it is first needed."""
+
+    def __init__(self, model: Model, generic: Genericity) -> None:
+        self._model = model
+        self._generic = generic
+        self._offers: dict[str, Offer | str] = {}
+        self._minor: Derivation | str | None = None
+
+    def offer(self, name: str) -> Offer | str:
+        """A form by name, or why this system does not have it."""
+        if name not in self._offers:
+            system = System.fresh(self._model, self._generic)
+            made = _BUILDERS[name](self, system)
+            self._offers[name] = made if isinstance(made, str) else Offer(name, system, made)
+        return self._offers[name]
+
+    def verdict(self, offer: Offer, first_only: bool = False) -> Verdict:
+        """Whether the form may be chosen by itself."""
+        return verdict(offer.system, offer.form, self._measures(offer), first_only)
+
+    def choose(self, name: str = "auto") -> tuple[Offer, FormChoice] | str:
+        """The form asked for, or the cheapest admitted one; why there is none by that name."""
+        if name != "auto":
+            offer = self.offer(name)
+            if isinstance(offer, str):
+                return offer
+            found = self.verdict(offer)
+            return offer, FormChoice(offer.way, found, ((offer.way, offer.form.weight, found.explanation),))
+        return self._cheapest()
+
+    def _cheapest(self) -> tuple[Offer, FormChoice] | str:
+        offers = {name: offer for name in AUTOMATIC[:-1] if isinstance(offer := self.offer(name), Offer)}
+        weights = {name: offer.form.weight for name, offer in offers.items()}
+        if not weights or self._least_householder() < min(weights.values()):
+            householder = self.offer(AUTOMATIC[-1])
+            if isinstance(householder, Offer):
+                offers[householder.way], weights[householder.way] = householder, householder.form.weight
+        remarks: dict[str, str] = {}
+        chosen: str | None = None
+        for name in sorted(offers, key=lambda name: (weights[name], AUTOMATIC.index(name))):
+            if chosen is not None:
+                remarks[name] = "not examined, because it is not cheaper"
+                continue
+            found = self.verdict(offers[name], first_only=True)
+            remarks[name] = found.explanation
+            if found.admitted:
+                chosen = name
+        if chosen is None:
+            return "no form is valid at every regular state"
+        best, least = offers[chosen], weights[chosen]
+        for shorter in self._factored(best):
+            weights[shorter.way] = weight = shorter.form.weight
+            offers[shorter.way] = shorter
+            found = self.verdict(shorter, first_only=True)
+            remarks[shorter.way] = found.explanation
+            worth = weights[chosen] * (1 + CANCELLATION_WORTH)
+            if found.admitted and (weight <= worth if shorter.form.name == chosen == "minor" else weight < least):
+                best, least = shorter, weight
+        others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
+        return best, FormChoice(best.way, self.verdict(best, first_only=True), others)
+
+    def _factored(self, best: Offer) -> list[Offer]:
+        """The best form and the minor form multiplied out and factored, where they are short enough.
+
+        Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.
+        """
+        if self._generic.rank < self._generic.r:
+            return []
+        limit = min(FACTORING_LIMIT, int(best.form.weight * (1 + FACTORING_GAIN)))
+        minor = self.offer("minor")
+        found = []
+        for offer in dict.fromkeys((best, minor)):
+            if isinstance(offer, str) or offer.way == "householder" or not 0 < offer.form.weight <= limit:
+                continue
+            kept: frozenset[Scalar] = frozenset()
+            if offer.way == "minor":
+                derivation = minor_derivation(offer.system)
+                kept = frozenset() if isinstance(derivation, str) else derivation.common_speeds
+            system = offer.system
+            outputs = system.mechanics.factoring.shorten(offer.form.outputs, kept)
+            made = form(offer.form.name, offer.form.quantity, outputs, offer.form.guards, system.given)
+            found.append(Offer(f"{offer.way} factored", system, made))
+        return found
+
+    def _least_householder(self) -> int:
+        """A cost that the Householder form exceeds: its data, and a root and a division for each reflection."""
+        mechanics = System.fresh(self._model, self._generic).mechanics
+        data = [*mechanics.balance, *flatten(mechanics.constraint_jacobian), *flatten(mechanics.control_matrix)]
+        return cost(share_angles(mechanics.graph, data)).weight + REFLECTION * mechanics.r
+
+    def _measures(self, offer: Offer) -> list[Scalar]:
+        """Denominators that vanish only where a rank drops, by theorem: minors, pivots of reflections, or else the
+        rest that the range form's invertible steps leave."""
+        if self._minor is None:
+            self._minor = minor_derivation(System.fresh(self._model, self._generic))
+        found = [] if isinstance(self._minor, str) else _denominators(self._minor)
+        if offer.form.name == "householder":
+            derivation = householder_derivation(offer.system)
+            return [*found, *([] if isinstance(derivation, str) else _denominators(derivation))]
+        if not found and offer.form.name == "range":
+            return [guard.denominator for guard in offer.form.guards]
+        return found
+
+
+def _denominators(derivation: Derivation) -> list[Scalar]:
+    return [guard.denominator for guard in (*derivation.actuation_guards, *derivation.space.guards)]
+
+
+def _nullspace(_: InverseDynamics, system: System) -> Form | str:
+    minor = minor_derivation(System.fresh(system.mechanics.model, system.generic))
+    proof = proof_for(system, [] if isinstance(minor, str) else _denominators(minor))
+    return nullspace_form(system, proof.shown)
+
+
+def _range(_: InverseDynamics, system: System) -> Form | str:
+    if system.driven is not None:
+        return system.driven
+    mechanics = system.mechanics
+    change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
+    seen = mechanics if change.is_identity else Mechanics(mechanics.model, mechanics, change)
+    made = range_form(seen, system.generic)
+    return "its steps leave more than a few rows, or M does not select rows" if made is None else made
+
+
+_BUILDERS: dict[str, Callable[[InverseDynamics, System], Form | str]] = {
+    "minor": lambda _, system: minor_form(system),
+    "nullspace": _nullspace,
+    "range": _range,
+    "householder": lambda _, system: householder_form(system),
+    "printed": lambda _, system: printed_form(system),
+    "weighted": lambda _, system: weighted_form(system),
+    "kkt": lambda _, system: kkt_form(system),
+}
+assert tuple(_BUILDERS) == FORM_NAMES
+
+
+def derived_on(graph: Graph, offer: Offer) -> Derived:
+    """The form as a quantity on the graph of the other quantities."""
+    outputs, guards = offer.form.outputs, offer.form.guards
+    if all(output.constant is not None for output in outputs):
+        guards = ()  # a status is decided on what the result depends on: here on nothing
+    moved = _Moved(graph)
+    return Derived(offer.form.quantity, (len(outputs),), moved.scalars(outputs), moved.guards(guards))
+
+
+class _Moved:
+    """Guards and scalars on another graph; equal guards stay equal."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+
+    def scalars(self, given: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        return tuple(transplanted(self._graph, given))
+
+    def guards(self, given: tuple[Guard, ...]) -> tuple[Guard, ...]:
+        return tuple(map(self._guard, given))
+
+    def _guard(self, guard: Guard) -> Guard:
+        (denominator,) = self.scalars((guard.denominator,))
+        scale = None if guard.scale is None else self.scalars((guard.scale,))[0]
+        return replace(guard, denominator=denominator, scale=scale, first=self.guards(guard.first))
+
+
+def forms_of(model: Model, generic: Genericity) -> dict[str, tuple[Mechanics, Derived]]:
+    """Every form of u this system has, by name, each on a graph of its own: its mechanics and the quantity."""
+    forms = InverseDynamics(model, generic)
+    offers = {name: offer for name in FORM_NAMES if isinstance(offer := forms.offer(name), Offer)}
+    return {
+        name: (offer.system.mechanics, Derived(offer.form.quantity, (len(offer.form.outputs),), offer.form.outputs,
+                                               offer.form.guards))
+        for name, offer in offers.items()
+    }
