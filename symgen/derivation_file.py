@@ -50,7 +50,17 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
             "alpha": generic.alpha,
         },
         "actuation": structure.actuation,
-        "blocks": [{"rows": list(rows), "coordinates": list(columns)} for rows, columns in structure.blocks],
+        "blocks": [
+            {
+                "rows": list(block.rows),
+                "coordinates": list(block.coordinates),
+                "rank": block.rank,
+                "delta": block.delta,
+                "way": block.way,
+            }
+            for block in structure.blocks
+        ],
+        "free_coordinates": list(structure.free_coordinates),
         "dependent_rows": list(structure.dependent_rows),
         "skipped": [{"what": d.what, "why": d.why} for d in structure.decisions],
         "absent": [{"quantity": name, "why": why} for name, why in derivations.absent],
