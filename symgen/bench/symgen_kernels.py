@@ -8,6 +8,7 @@ from typing import Any
 
 from symgen.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
 from symgen.dynamics.catalogue import BY_NAME, derive
+from symgen.dynamics.inverse import forms_of
 from symgen.dynamics.select import derive_quantities, ways
 from symgen.emit.c import emit_c
 from symgen.emit.operations import count_operations
@@ -25,10 +26,15 @@ PORTABLE, LIBRARY = "portable", "libm"
 
 
 def programs_of(model: Model, task: Task, scalars: Sequence[Scalar]) -> dict[str, dict[Scalar, Program]]:
-    """The task's kernel alone, by way; the first is what symgen generates, the others are the ways it did not take."""
+    """The task's kernel alone, by form; the first is what symgen generates, the others are those it did not take."""
     derivations = derive_quantities(model, (task.quantity,))
     chosen = derivations.choices[0].way
     found = {chosen: schedule(derivations.mechanics, derivations.quantities, scalars)}
+    if task.quantity == "inverse_dynamics":
+        for form, (mechanics, quantity) in forms_of(model).items():
+            if form not in found:
+                found[form] = schedule(mechanics, [quantity], scalars)
+        return found
     for way, derivation in ways(derivations.mechanics, derivations.generic).items():
         if way not in found:
             quantity = derive(BY_NAME[task.quantity], derivation)

@@ -22,7 +22,7 @@ from symgen.dynamics.forms.printed import printed_form
 from symgen.dynamics.forms.range import range_form
 from symgen.dynamics.forms.system import System
 from symgen.dynamics.forms.weighted import kkt_form, weighted_form
-from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.angles import share_angles
@@ -234,12 +234,11 @@ class _Moved:
         return replace(guard, denominator=denominator, scale=scale, first=self.guards(guard.first))
 
 
-def forms_of(model: Model, generic: Genericity) -> dict[str, tuple[Mechanics, Derived]]:
-    """Every form of u this system has, by name, each on a graph of its own: its mechanics and the quantity."""
-    forms = InverseDynamics(model, generic)
+def forms_of(model: Model) -> dict[str, tuple[Mechanics, Derived]]:
+    """Every form of u this system has, by name: the mechanics it was derived on, and the quantity on their graph."""
+    forms = InverseDynamics(model, genericity(Mechanics(model)))
     offers = {name: offer for name in FORM_NAMES if isinstance(offer := forms.offer(name), Offer)}
     return {
-        name: (offer.system.mechanics, Derived(offer.form.quantity, (len(offer.form.outputs),), offer.form.outputs,
-                                               offer.form.guards))
+        name: (offer.system.mechanics, derived_on(offer.system.mechanics.graph, offer))
         for name, offer in offers.items()
     }

@@ -7,17 +7,18 @@ from math import comb
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.form import Form, form
 from symgen.dynamics.forms.system import System
-from symgen.dynamics.spaces import HouseholderSpace, MinorSpace
+from symgen.dynamics.pivoted import reflected
+from symgen.dynamics.spaces import MinorSpace
 
 # Minors are built only while their number stays small; beyond, reflections are cheaper anyway.
 MINOR_LIMIT = 300
 
 
 def minor_derivation(system: System) -> Derivation | str:
-    """The derivation along the minors of B, or why there is none: rows that depend on each other have no other."""
+    """The derivation along the minors of B, or why there is none."""
     mechanics, generic = system.mechanics, system.generic
     number = comb(generic.n, generic.rank) * comb(generic.r, generic.rank)
-    if number > MINOR_LIMIT and generic.rank == generic.r:
+    if number > MINOR_LIMIT:
         return f"B has {number} minors"
     space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
     return Derivation(mechanics, generic, space)
@@ -26,9 +27,9 @@ def minor_derivation(system: System) -> Derivation | str:
 def householder_derivation(system: System) -> Derivation | str:
     """The derivation along reflections of B^T, or why there is none."""
     mechanics, generic = system.mechanics, system.generic
-    if not mechanics.r or system.regular is not None:
-        return system.regular or "there are no constraints"
-    space = HouseholderSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n)
+    if not mechanics.r:
+        return "there are no constraints"
+    space = reflected(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
     return Derivation(mechanics, generic, space)
 
 
