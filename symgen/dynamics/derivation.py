@@ -111,16 +111,26 @@ class Derivation:
     def _solvable(self, forms: ActuationForms, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
         if forms.denominator().constant is not None:
             return ()
-        scale = None
-        if isinstance(self.space, HouseholderSpace):
-            # reflections keep lengths: the determinants are at most the products of the columns' lengths
-            squares = magnitude(self.graph, [dot(self.graph, column, column) for column in columns])
-            scale = self.graph.sum(
-                self.graph.product(squares[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
-            )
-            if forms.single:
-                scale = self.graph.function("sqrt", (scale,))
-        return (Guard(status, forms.denominator(), 1 if forms.single else 2, self.space.guards, scale),)
+        if self.mechanics.factoring.fixed(forms.denominator()):
+            return (Guard(status, forms.denominator(), 1 if forms.single else 2, self.space.guards),)
+        # Hadamard's bounds: reflections keep the columns' lengths, minors are made of the rows of B as well
+        squares = magnitude(self.graph, [dot(self.graph, column, column) for column in columns])
+        scale = self.graph.sum(
+            self.graph.product(squares[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
+        )
+        if isinstance(self.space, MinorSpace):
+            lengths = [self._square_of_row(row) for row in self.mechanics.constraint_jacobian]
+            scale = scale * elementary_symmetric(self.graph, lengths, self.generic.rank)
+        denominator = forms.denominator() * forms.denominator() if forms.single else forms.denominator()
+        return (Guard(status, denominator, 2, self.space.guards, scale),)
+
+    def _square_of_row(self, row: Vector) -> Scalar:
+        """|b|^2 where the row may become short, else a bound that needs no sine or cosine."""
+        square = dot(self.graph, row, row)
+        fixed = self.mechanics.factoring.fixed
+        if any(fixed(entry) and not entry.is_zero for entry in row):
+            (square,) = magnitude(self.graph, [square])
+        return square
 
     def _solve_inputs(self, force: Vector) -> Vector:
         forms, restriction = self._actuation
