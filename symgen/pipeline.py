@@ -22,6 +22,7 @@ from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.c_prepared import emit_c_prepared
+from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.library_trig import with_library_trig
@@ -139,6 +140,7 @@ def _code(derived: _Derived, options: Options) -> dict[str, str | bytes]:
             files |= emit_c(derived.model, derived.programs[scalar])
             files |= emit_c_batch(derived.model, derived.programs[scalar])
             files |= emit_c_prepared(derived.model, derived.programs[scalar])
+            files |= emit_c_sc(derived.model, derived.programs[scalar])
     if "python" in options.parts:
         from symgen.emit.python import emit_python
 

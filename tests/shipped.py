@@ -9,6 +9,7 @@ from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.c_prepared import emit_c_prepared
+from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.python import emit_python
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.schedule import schedule
@@ -37,6 +38,7 @@ def sources(name: str) -> dict[str, str]:
     for scalar in SCALARS:
         files |= emit_c(model(name), programs(name)[scalar])
         files |= emit_c_batch(model(name), programs(name)[scalar])
+        files |= emit_c_sc(model(name), programs(name)[scalar])
         files |= emit_c_prepared(model(name), programs(name)[scalar])
     return files
 

@@ -15,7 +15,7 @@ from symgen.emit.pairs import GROUP_NAMES, PairsView, group_lines, leading_group
 from symgen.emit.quantities import meaning
 from symgen.emit.render import render
 from symgen.emit.statements import CStatements, c_type
-from symgen.ir.kernel import Kernel, Local, Operand, Program, Statement, Status
+from symgen.ir.kernel import Kernel, Load, Local, Operand, Program, Statement, Status
 from symgen.model.model import Model
 from symgen.naming import file_stem
 
@@ -166,8 +166,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
     lines = [f"(void){name};" for name in (*(a.name for a in array_arguments(kernel)), "p") if name not in loaded]
     waiting: dict[str, str] = {}
     for load in loads:
-        place = f"p->{names.members[load.member]}" if load.argument == "p" else f"{load.argument}[{load.index}]"
-        waiting[load.local] = f"const {scalar} {names.locals[load.local]} = {place};"
+        waiting[load.local] = f"const {scalar} {names.locals[load.local]} = {_place(load, names)};"
 
     def due(operands: Iterable[Operand]) -> list[str]:
         # read where first needed: fewer values are alive across the calls of the sine and cosine
@@ -192,6 +191,13 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
     ]
     lines.append(f"return {status_name(model, Status.OK)};")
     return tuple(lines)
+
+
+def _place(load: Load, names: Names) -> str:
+    """Where a value is read."""
+    if load.argument == "p":
+        return f"p->{names.members[load.member]}"
+    return f"sc->{load.member}" if load.argument == "sc" else f"{load.argument}[{load.index}]"
 
 
 def _finite_test(model: Model, program: Program, kernel: Kernel, names: Names) -> list[str]:

@@ -74,10 +74,10 @@ Operand: TypeAlias = Local | Literal
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """`local = argument[index]`; for the parameter struct `p`, `member` names the parameter."""
+    """`local = argument[index]`; `member` is the parameter in the struct `p`, the sine or cosine in the struct `sc`."""
 
     local: str
-    argument: Choice["q", "qd", "qdd", "u", "p"]
+    argument: Choice["q", "qd", "qdd", "u", "p", "sc"]
     index: int
     member: str = ""
 

@@ -32,6 +32,7 @@ from symgen.verify.compile import (
     find_compiler,
 )
 from symgen.verify.conditions import condition_numbers
+from symgen.verify.given_trig import run_given_trig
 from symgen.verify.prepared import run_prepared
 from symgen.verify.python_module import PythonModule
 from symgen.verify.reference import Reference, ReferenceValueError
@@ -165,7 +166,7 @@ def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[d
             tuple(
                 (path.removeprefix("c/"), text)
                 for path, text in texts.items()
-                if path.startswith((f"c/{stem}_batch{suffix}.", f"c/{stem}_prepared{suffix}."))
+                if path.startswith(tuple(f"c/{stem}_{kind}{suffix}." for kind in ("batch", "prepared", "sc")))
             ),
         )
         for scalar, suffix in SUFFIXES.items()
@@ -242,6 +243,9 @@ def _run_c(
             others["batch"] = run_batch(*given)
         if (header := companions.get(f"{stem}_prepared{suffix}.h")) is not None:
             others["prepared"] = run_prepared(*given, header)
+        if (header := companions.get(f"{stem}_sc{suffix}.h")) is not None:
+            made = run_given_trig(library, model, kernels, scalar, samples[scalar], header)
+            others["sines given"] = made, []
         for kind, (made, differing) in others.items():
             failures += differing
             if made:

@@ -46,13 +46,31 @@ def good(tool: Callable[[str], str]) -> Certificate:
 def test_correct_files_pass_on_every_target(good: Certificate) -> None:
     assert good.failures == ()
     assert good.passed
-    c = tuple(f"C {scalar}{kind}" for scalar in ("float64", "float32") for kind in ("", " batch", " prepared"))
+    kinds = ("", " batch", " prepared", " sines given")
+    c = tuple(f"C {scalar}{kind}" for scalar in ("float64", "float32") for kind in kinds)
     assert good.targets == (*c, "Python float64")
     assert {record.quantity for record in good.errors} == set(QUANTITIES)
     many = [record.quantity for record in good.errors if record.target == "C float64 batch"]
     assert many == ["inverse_dynamics", "forward_dynamics"]
     assert all(record.states == STATES and 0 <= record.median <= record.largest <= 16 for record in good.errors)
     assert 0 < good.worst("C float32").largest_relative < 1e-5
+
+
+@pytest.mark.toolchain
+def test_kernels_that_are_given_sines_are_verified(tool: Callable[[str], str]) -> None:
+    tool("cc")
+    c_sources, _ = generated_sources(shipped.model(NAME), shipped.sources(NAME))
+    kernels = [kernel for kernel in shipped.programs(NAME)["float64"].kernels if kernel.name in QUANTITIES]
+    swapped = {
+        scalar: replace(
+            source,
+            companions=tuple((name, text.replace("= sc->sin_", "= -sc->sin_")) for name, text in source.companions),
+        )
+        for scalar, source in c_sources.items()
+    }
+    failures = verify(shipped.model(NAME), kernels, swapped, None, STATES).failures
+    assert failures
+    assert all("sines given" in failure for failure in failures)
 
 
 @pytest.mark.toolchain

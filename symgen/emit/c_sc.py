@@ -1,0 +1,90 @@
+"""C99 with sines and cosines from the caller: a struct of them by coordinate, and kernels that read it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from symgen.emit.c import c_names, kernel_body, status_name, uses_library
+from symgen.emit.comments import c_comment, c_comment_lines
+from symgen.emit.locals import Names, array_arguments, names_of
+from symgen.emit.pairs import PairsView, pair_names, pairs_view
+from symgen.emit.quantities import BATCHED, meaning
+from symgen.emit.render import render
+from symgen.emit.statements import c_type
+from symgen.ir.given_trig import GivenTrig, given_trig
+from symgen.ir.kernel import Kernel, Program, Status
+from symgen.model.model import Model
+from symgen.naming import file_stem
+
+
+@dataclass(frozen=True, slots=True)
+class GivenFunctionView:
+    """One kernel: comment, prototype without semicolon, body lines."""
+
+    comment: tuple[str, ...]
+    prototype: str
+    body: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GivenTrigView:
+    """Everything the templates of the files print; `members` are names with comments."""
+
+    stem: str
+    guard: str
+    plain_stem: str
+    scalar: str
+    struct: str
+    members: tuple[tuple[str, str], ...]
+    functions: tuple[GivenFunctionView, ...]
+    pairs: PairsView | None
+    includes_math: bool
+
+
+def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
+    """`c/<model>_sc.h`, `.c` (float32: `_sc_f`), or nothing where no kernel has a sine of coordinates."""
+    given = [made for kernel in program.kernels if kernel.name in BATCHED and (made := given_trig(kernel))]
+    if not given:
+        return {}
+    suffix = "" if program.scalar == "float64" else "_f"
+    plain = file_stem(model.name)
+    stem, struct = f"{plain}_sc{suffix}", f"{model.name}_trig{suffix}"
+    whole = replace(program, kernels=tuple(made.kernel for made in given))
+    own = {f"{model.name}_{kernel.name}_sc{suffix}" for kernel in whole.kernels} | {"sc", struct}
+    own |= pair_names(model.name, suffix) | {status_name(model, status) for status in Status}
+    # the members of the parameter struct are those of the other header
+    names = replace(names_of(model, whole, own), members=c_names(model, program).members)
+    view = GivenTrigView(
+        stem=stem,
+        guard=f"{stem.upper()}_H",
+        plain_stem=plain + suffix,
+        scalar=c_type(program.scalar),
+        struct=struct,
+        members=_members(model, given),
+        functions=tuple(_function(model, program, kernel, names, struct, suffix) for kernel in whole.kernels),
+        pairs=pairs_view(model.name, suffix, whole),
+        includes_math=uses_library(whole),
+    )
+    return {f"c/{stem}.h": render("c/sc.h.jinja", view), f"c/{stem}.c": render("c/sc.c.jinja", view)}
+
+
+def _members(model: Model, given: list[GivenTrig]) -> tuple[tuple[str, str], ...]:
+    """Sine and cosine of every coordinate that a kernel asks for, in the order of q."""
+    indices = sorted({load.index for made in given for load in made.coordinates})
+    return tuple(
+        (f"{half}_{model.coordinates[index].name}", c_comment(f"{half}({model.coordinates[index].name}), q[{index}]"))
+        for index in indices
+        for half in ("sin", "cos")
+    )
+
+
+def _function(
+    model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str
+) -> GivenFunctionView:
+    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    arguments = [f"const {struct} *sc"]
+    arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
+    arguments += [f"const {model.name}_params{suffix} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
+    prototype = f"{model.name}_status {model.name}_{kernel.name}_sc{suffix}({', '.join(arguments)})"
+    comment = c_comment_lines(meaning(kernel.name))
+    return GivenFunctionView(comment, prototype, kernel_body(model, program, kernel, names))

@@ -1,0 +1,56 @@
+"""The kernels of generated C that take sines and cosines from the caller, given the exact ones, rounded once."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from flint import arb, ctx
+
+from symgen.ir.kernel import Kernel, Scalar
+from symgen.model.model import Model
+from symgen.verify.compile import C_TYPES, SUFFIXES, Outcome, c_array, signature
+from symgen.verify.states import Sample
+
+BITS = 160
+
+
+def exact_trig(model: Model, header: str, q: Sequence[Any]) -> list[float]:
+    """The members of the struct that the header declares, at a configuration, rounded to double precision."""
+    places = {coordinate.name: index for index, coordinate in enumerate(model.coordinates)}
+    previous, ctx.prec = ctx.prec, BITS
+    try:
+        members = re.findall(r"^    (?:double|float) (sin|cos)_(\w+);", header, re.MULTILINE)
+        return [float(getattr(arb(float(q[places[name]])), half)()) for half, name in members]
+    finally:
+        ctx.prec = previous
+
+
+def run_given_trig(
+    library: ctypes.CDLL,
+    model: Model,
+    kernels: Sequence[Kernel],
+    scalar: Scalar,
+    samples: Sequence[Sample],
+    header: str,
+) -> dict[str, list[Outcome]]:
+    """Outcomes of the kernels that the header names."""
+    suffix = SUFFIXES[scalar]
+    named = re.findall(rf"\b{model.name}_(\w+)_sc{suffix}\(", header)
+    outcomes: dict[str, list[Outcome]] = {}
+    for kernel in (kernel for kernel in kernels if kernel.name in named):
+        function = library[f"{model.name}_{kernel.name}_sc{suffix}"]
+        function.restype = ctypes.c_int
+        kind = C_TYPES[scalar] * math.prod(kernel.shape)
+        outcomes[kernel.name] = []
+        for sample in samples:
+            state = sample.state
+            given = c_array(scalar, exact_trig(model, header, state.q))
+            arrays: list[Any] = [c_array(scalar, getattr(state, a.name)) for a in signature(kernel)]
+            result = kind(*([math.nan] * kind._length_))
+            status = function(given, *arrays, c_array(scalar, state.parameters), result)
+            outcomes[kernel.name].append(Outcome(int(status), tuple(result)))
+    return outcomes
