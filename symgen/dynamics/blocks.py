@@ -37,9 +37,9 @@ class Block:
             case 0:
                 return "locked, no velocity is left"
             case 1:
-                return "one direction, the cross product of its rows"
+                return "one direction, the cross product of the rows"
             case 2:
-                return "Φ, its minors as an antisymmetric matrix"
+                return "its minors, an antisymmetric Φ"
             case _:
                 minors = comb(len(self.coordinates), self.rank) * comb(len(self.rows), self.rank)
                 return f"{minors} minors or Householder reflections, by counted cost"

@@ -111,8 +111,9 @@ def _constraint_decisions(
         yield Decision("coupling between constraint blocks", f"the rows fall into {len(blocks)} blocks: {sizes}")
     for block in blocks:
         if block.coordinates:
-            size = f"δ = {block.delta} of {_some(block.coordinates)}"
-            yield Decision(f"(B Bᵀ)⁻¹ of {_some(block.rows)}", f"{size}: {block.way}")
+            what = "(B Bᵀ)⁻¹" if len(blocks) == 1 else f"(B Bᵀ)⁻¹ of {_some(block.rows)}"
+            size = f"δ = {block.delta} for {counted(len(block.coordinates), 'coordinate')}"
+            yield Decision(what, f"{size}: {block.way}")
     if not mechanics.constraint_residual:
         yield Decision("projection of configurations", "there are no geometric constraints")
     entries = flatten(mechanics.constraint_jacobian)
@@ -184,7 +185,7 @@ def _shared_work(mechanics: Mechanics) -> Iterator[Decision]:
     derived = [angle for angle in angles_of(parts) if angle not in evaluated]
     if derived:
         names = _some([_sum_of(mechanics, angle) for angle in derived])
-        why = "they follow from those of their parts by addition where these are needed anyway"
+        why = "by addition from those of their parts, where these are needed"
         yield Decision(f"sine and cosine of {names}", why)
     fixed = mechanics.factoring.fixed
     groups = {
@@ -195,7 +196,7 @@ def _shared_work(mechanics: Mechanics) -> Iterator[Decision]:
         if inner.op not in ("const", "symbol") and fixed(inner)
     }
     if groups:
-        why = "sums and products of parameters alone are one value each, formed once"
+        why = "sums and products of parameters alone are formed once"
         yield Decision(f"repeated work on {counted(len(groups), 'group')} of parameters", why)
 
 

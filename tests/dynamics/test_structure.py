@@ -57,7 +57,7 @@ def test_blocks_with_rank_and_freedom() -> None:
     assert [way.split(",")[0] for way in ways] == [
         "locked",
         "one direction",
-        "Φ",
+        "its minors",
         "4 minors or Householder reflections",
     ]
 
@@ -65,8 +65,8 @@ def test_blocks_with_rank_and_freedom() -> None:
 def test_every_block_has_its_reason() -> None:
     found = reasons(BLOCKS)
     assert found["coupling between constraint blocks"].startswith("the rows fall into 4 blocks: one on a; ")
-    assert found["(B Bᵀ)⁻¹ of one"] == "δ = 0 of a: locked, no velocity is left"
-    assert found["(B Bᵀ)⁻¹ of three"].startswith("δ = 2 of d, e, f: Φ")
+    assert found["(B Bᵀ)⁻¹ of one"] == "δ = 0 for 1 coordinate: locked, no velocity is left"
+    assert found["(B Bᵀ)⁻¹ of three"].startswith("δ = 2 for 3 coordinates: its minors")
 
 
 def test_zero_and_constant_parts() -> None:
