@@ -68,7 +68,7 @@ rapkm_2rrr_rr_status control_step(float t, const float measured[JOINTS], const f
             u[k] = 0.0f;
         }
         add_product(matrix, force, DRIVES, JOINTS, 1.0f, u);
-        control_limit(u);
+        control_limit(&p, u);
     }
     return status;
 }

@@ -1,4 +1,7 @@
-/* Computed torque: the inverse dynamics at a desired acceleration that is corrected by position and rate errors. */
+/*
+ * Computed torque: the inverse dynamics at a desired acceleration that is corrected by position and rate errors.
+ * Among the torques that produce it the model's `allocation` chooses: a preload, given up where limits need it.
+ */
 #include <math.h>
 
 #include "control.h"
@@ -32,7 +35,7 @@ rapkm_2rrr_rr_status control_step(float t, const float measured[JOINTS], const f
     }
     status = rapkm_2rrr_rr_inverse_dynamics_f(q, qd, qdd, &p, u);
     if (status == RAPKM_2RRR_RR_OK) {
-        control_limit(u);
+        control_limit(&p, u);
     }
     return status;
 }

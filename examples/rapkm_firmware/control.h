@@ -20,8 +20,7 @@ rapkm_2rrr_rr_status control_step(float t, const float q[JOINTS], const float qd
 /* A property of the model the controller relies on, tested at a state of the plant; prints what it finds. */
 bool control_check(const double q[JOINTS], const double qd[JOINTS]);
 
-/* u within the limits of the drives, all scaled alike so that their direction stays. */
-void control_limit(float u[DRIVES]);
-extern const float torque_limit;
+/* u within the limits of the drives (symmetric here), all scaled alike so that their direction stays. */
+void control_limit(const rapkm_2rrr_rr_params_f *p, float u[DRIVES]);
 
 #endif

@@ -12,7 +12,7 @@ from symgen.target.build import Workshop
 from symgen.target.cores import Core
 from symgen.target.tools import EMULATOR, ToolError, run
 
-QUIET = ("-display", "none", "-monitor", "none", "-serial", "none", "-nodefaults", "-nic", "none")
+QUIET = ("-display", "none", "-monitor", "none", "-serial", "none", "-nodefaults")
 SEMIHOSTING = ("-chardev", "stdio,id=console", "-semihosting-config", "enable=on,target=native,chardev=console")
 
 
