@@ -52,8 +52,10 @@ def cheapest(
     return motions[next(usable)]
 
 
-def motion(name: MotionName, mechanics: Mechanics, space: NullSpace, inertia: ConstrainedInertia) -> Motion:
-    """One form along a null space; `nullspace` takes the constrained inverse of G that belongs to it."""
+def motion(
+    name: MotionName, mechanics: Mechanics, space: NullSpace, inertia: ConstrainedInertia | None = None
+) -> Motion:
+    """One form along a null space; `nullspace` needs the constrained inverse of G that belongs to it."""
     problem = Problem(mechanics, space.guards)
     match name:
         case "minor":
@@ -63,6 +65,7 @@ def motion(name: MotionName, mechanics: Mechanics, space: NullSpace, inertia: Co
         case "schur_ldl":
             return schur_ldl(problem)
         case "nullspace":
+            assert inertia is not None
             return nullspace(problem, space, inertia)
         case "shifted":
             return shifted(problem, space)

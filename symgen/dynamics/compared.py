@@ -1,0 +1,69 @@
+"""Every form of q_ddot, lambda and N_B that a system has, each on a graph of its own: for comparisons and for users."""
+
+from __future__ import annotations
+
+from math import comb
+
+from symgen.dynamics.catalogue import Derived
+from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.forms.motions import MOTION_NAMES, MotionName, candidates, motion
+from symgen.dynamics.genericity import Genericity, genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.pivoted import reflected
+from symgen.dynamics.select import MINOR_LIMIT
+from symgen.dynamics.spaces import MinorSpace, NullSpace
+from symgen.graph.matrix import flatten
+from symgen.model.model import Model
+
+# These work with an orthonormal basis of the null space, the others with the minors of B or its rows.
+ORTHONORMAL = ("nullspace", "householder")
+
+
+def motions_of(model: Model) -> dict[str, tuple[Mechanics, tuple[Derived, ...]]]:
+    """q_ddot, lambda and N_B by form name: the mechanics a form was derived on, and the quantities on their graph.
+
+    `householder` is a form of N_B only, `minor` of all three where delta is 1 or 2.
+    """
+    generic = genericity(Mechanics(model))
+    found: dict[str, tuple[Mechanics, tuple[Derived, ...]]] = {}
+    for name in (*MOTION_NAMES, "householder"):
+        mechanics = Mechanics(model)
+        space = _space(mechanics, generic, name)
+        quantities = () if space is None else _quantities(mechanics, generic, space, name)
+        if quantities:
+            found[name] = mechanics, quantities
+    return found
+
+
+def _space(mechanics: Mechanics, generic: Genericity, name: str) -> NullSpace | None:
+    graph, rows, n = mechanics.graph, mechanics.constraint_jacobian, mechanics.n
+    few = comb(n, generic.rank) * comb(len(rows), generic.rank) <= MINOR_LIMIT
+    if rows and (name in ORTHONORMAL or (not few and name != "minor")):
+        return reflected(graph, rows, n, generic.rank)
+    return MinorSpace(graph, rows, n, generic.rank) if few and (rows or name not in ORTHONORMAL) else None
+
+
+def _quantities(mechanics: Mechanics, generic: Genericity, space: NullSpace, name: str) -> tuple[Derived, ...]:
+    n, r = generic.n, generic.r
+    found: list[Derived] = []
+    if motion_name := _motion_name(generic, space, name):
+        # equal functions are one node of a graph: what a form does not need must not be on it
+        inertia = Derivation(mechanics, generic, space).inertia if motion_name == "nullspace" else None
+        made = motion(motion_name, mechanics, space, inertia)
+        found.append(Derived("forward_dynamics", (n,), made.accelerations, made.guards))
+        if r:
+            found.append(Derived("multipliers", (r,), made.multipliers, made.guards))
+    if r and name in ("minor", "householder"):
+        found.append(Derived("nullspace_projector", (n, n), flatten(space.projector), space.guards))
+    return tuple(found)
+
+
+def _motion_name(generic: Genericity, space: NullSpace, name: str) -> MotionName | None:
+    """The form of q_ddot and lambda by that name, where the system has it."""
+    known = next((one for one in MOTION_NAMES if one == name), None)
+    if known is None or (known == "minor" and known not in candidates(generic, space)):
+        return None
+    # the others need independent rows, or any rows at all
+    if generic.rank < generic.r and known not in ("nullspace", "shifted"):
+        return None
+    return None if generic.r == 0 and known in ("nullspace", "shifted") else known
