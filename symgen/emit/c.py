@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from symgen.emit.about import STATUS_MEANING, count_lines, renaming_lines, shape_text, symbol_lines, unit_text
@@ -73,15 +73,24 @@ def status_name(model: Model, status: Status) -> str:
     return f"{model.name.upper()}_{status.name}"
 
 
+def c_members(model: Model, program: Program) -> dict[str, str]:
+    """The members of the parameter struct, by parameter: what other files that use the header call them."""
+    return names_of(model, replace(program, kernels=()), _own_names(model, program)).members
+
+
 def c_names(model: Model, program: Program) -> Names:
-    """Names of the program's C: other files that use its header and parameter struct take their members from here."""
+    """Every name of the program's C."""
+    return names_of(model, program, _own_names(model, program))
+
+
+def _own_names(model: Model, program: Program) -> set[str]:
     prefix, suffix = model.name, _suffix(program)
     stem = file_stem(model.name) + suffix
     own = {f"{prefix}_{name}{suffix}" for name in ("params", "default_params")} | pair_names(prefix, suffix)
     own |= {f"{prefix}_status", f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"}
     own |= {status_name(model, status) for status in Status}
     own |= {f"{prefix}_{kernel.name}{suffix}" for kernel in program.kernels}
-    return names_of(model, program, own)
+    return own
 
 
 def _suffix(program: Program) -> str:

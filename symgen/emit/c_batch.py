@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from symgen.emit.c import c_names, status_name
+from symgen.emit.c import c_members, status_name
 from symgen.emit.comments import c_comment_lines
 from symgen.emit.locals import Names, all_statements, array_arguments, names_of
 from symgen.emit.pairs import pair_body
@@ -94,7 +94,8 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     own |= {status_name(model, status) for status in Status}
     own |= {f"{argument.name}_one" for kernel in kernels for argument in kernel.arguments}
     # the members of the parameter struct are those of the other header
-    names = replace(names_of(model, program, own), members=c_names(model, program).members)
+    few = replace(program, kernels=kernels)
+    names = replace(names_of(model, few, own), members=c_members(model, program))
     operations = {statement.operation for kernel in kernels for statement in all_statements(kernel)}
     own_pair = program.sincos if "sincos" in operations else None
     angle, body = ("", ()) if own_pair is None else pair_body(program.scalar, own_pair, pair)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from symgen.emit.c import c_names, kernel_body, status_name, uses_library
+from symgen.emit.c import c_members, kernel_body, status_name, uses_library
 from symgen.emit.comments import c_comment_lines
 from symgen.emit.locals import Names, array_arguments, names_of
 from symgen.emit.operations import count_operations
@@ -85,7 +85,7 @@ def _names(model: Model, program: Program, whole: Program, prepared: Prepared, s
     own |= pair_names(model.name, suffix) | {status_name(model, status) for status in Status}
     members = {f"value[{k}]": f"value[{k}]" for k in range(len(prepared.values))}
     # the members of the parameter struct are those of the other header
-    return replace(names_of(model, whole, own), members=members | c_names(model, program).members)
+    return replace(names_of(model, whole, own), members=members | c_members(model, program))
 
 
 def _prepare_body(model: Model, program: Program, prepared: Prepared, names: Names, suffix: str) -> tuple[str, ...]:
