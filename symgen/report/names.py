@@ -6,6 +6,7 @@ import re
 from functools import cache
 from typing import Literal
 
+from symgen.model.mechanism import WORLD, Component, component, is_component
 from symgen.report.layout import (
     Accent,
     Layout,
@@ -36,9 +37,23 @@ def _word(text: str) -> Layout:
     return Letter(text, "italic" if len(text) == 1 else "upright")
 
 
+def _component_layout(one: Component) -> Layout:
+    """tip.x as x with index tip, tip.vx as v with index tip, x; other axes than the world's are named at the end."""
+    owner = Letter(one.owner.replace("_", " "), "upright")
+    places: list[Layout] = [owner]
+    symbol: Layout = Letter(one.what[-1] if len(one.what) == 1 else "ω" if one.what[0] == "w" else one.what[0])
+    if len(one.what) > 1:
+        places += [Punctuation(","), Letter(one.what[1:])]
+    if one.axes != WORLD:
+        places += [Punctuation(","), Letter(one.axes.replace("_", " "), "upright")]
+    return Scripts(symbol, places[0] if len(places) == 1 else Row(tuple(places)))
+
+
 @cache
 def name_layout(name: str) -> Layout:
     """A declared name as it is set: dots for rates and accelerations, parts after underscores as indices."""
+    if is_component(name):
+        return _component_layout(component(name))
     for suffix, mark in RATE_MARKS:
         if name.endswith(suffix) and len(name) > len(suffix):
             inner = name_layout(name[: -len(suffix)])

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from symgen.model.coordinates import ANGLE_RANGE
 from symgen.model.expression import Expression, Number
-from symgen.model.model import Input, Range
+from symgen.model.model import Input, Model, Range
 from symgen.report.context import Context, text_of
 from symgen.report.document import (
     Block,
@@ -50,6 +50,7 @@ from symgen.report.prose import (
     small_r,
     u,
 )
+from symgen.report.section_bodies import mechanism
 from symgen.report.setting import product
 
 SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
@@ -77,6 +78,7 @@ def system(context: Context) -> Section:
     if model.definitions:
         named = tuple(equation(name_layout(d.name), expression_layout(d.value)) for d in model.definitions)
         blocks += [paragraph("These expressions have names of their own:"), displayed(tuple(packed(named)))]
+    blocks += mechanism(context)
     blocks += [*_energies(context), *_constraints(context), *_inputs(context), *_applied_forces(context)]
     return Section(say("The system"), tuple(blocks))
 
@@ -140,16 +142,29 @@ def _default(value: Expression) -> Text:
 
 
 def _energies(context: Context) -> list[Block]:
-    potential = expression_layout(context.model.potential_energy)
+    model = context.model
+    if model.mechanism.has_mass:
+        return _energies_of_bodies(model)
+    potential = expression_layout(model.potential_energy)
     blocks: list[Block] = [
         paragraph("The kinetic energy is quadratic in the rates:"),
-        displayed((equation(T, expression_layout(context.model.kinetic_energy)),), "T"),
+        displayed((equation(T, expression_layout(model.kinetic_energy)),), "T"),
     ]
     if potential == ZERO:
         blocks.append(paragraph("There is no potential energy, {}.", equals(U, ZERO)))
     else:
         blocks += [paragraph("The potential energy is"), displayed((equation(U, potential),), "U")]
     return blocks
+
+
+def _energies_of_bodies(model: Model) -> list[Block]:
+    kinetic, potential = expression_layout(model.kinetic_energy), expression_layout(model.potential_energy)
+    sums = "The energies are sums over the bodies; the recursion that the kernels come from never writes them out:"
+    equations = []
+    for symbol, written in ((T, kinetic), (U, potential)):
+        bodies = Scripts(symbol, Letter("bodies", "upright"))
+        equations.append(equation(symbol, bodies if written == ZERO else Sum((("+", bodies), ("+", written)))))
+    return [paragraph(sums), displayed(tuple(equations), "T")]
 
 
 def _constraints(context: Context) -> list[Block]:
@@ -213,6 +228,8 @@ def _inputs(context: Context) -> list[Block]:
 
 
 def _virtual_power(control: Input) -> Layout:
+    if control.velocity is not None:
+        return expression_layout(control.velocity)
     terms = []
     for coordinate, coefficient in control.acts_on:
         sign, factor = signed(expression_layout(coefficient))
