@@ -119,6 +119,7 @@ def _generate(arguments: list[str]) -> int:
         states=given.states,
         form=given.form,
         trig=given.trig,
+        measured=given.out,
     )
     finish = _check_files if given.check else _write_files
     return _each_model(given.models, options, given.quiet, lambda result: finish(result, given.out, given.quiet))

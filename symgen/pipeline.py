@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from symgen.background import Background, Receive
     from symgen.report.facts import Facts
     from symgen.report.files import ReportFiles
+    from symgen.report.targets import TargetCore
     from symgen.verify.certificate import Certificate
 
 Progress = Callable[[str], None]
@@ -79,6 +80,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
             return result
         progress("closed forms and report")
         reporting.send(certificate)
+        reporting.send(_targets(derived.model, files, options))
         report = reporting.answer()
     if report.mistakes:
         raise ModelError(str(path), path.read_text(encoding="utf-8"), report.mistakes)
@@ -185,6 +187,13 @@ def _forms(derivations: Derivations) -> tuple[tuple[str, str], ...]:
     if not form.verdict.admitted:
         return (("validity of u at every regular state", f"form {form.way}: {form.verdict.explanation}"),)
     return tuple((f"form {name} of u", why) for name, why in form.failed)
+
+
+def _targets(model: Model, files: dict[str, str | bytes], options: Options) -> tuple[TargetCore, ...]:
+    """What was measured on targets with these very files."""
+    from symgen.report.targets import read_targets
+
+    return () if options.measured is None else read_targets(options.measured / model.name / "target.json", files)
 
 
 def _report(model: Model, receive: Receive) -> ReportFiles:

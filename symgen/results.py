@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 from symgen.diagnostics import Notice
@@ -26,6 +27,7 @@ class WrongUseError(Exception):
 class Options:
     """What to generate; `outputs` None takes the model's own list, `states` is the number of states to verify.
 
+    `measured` is where an earlier run may have left measurements (`<model>/target.json`), for the PDF.
     `trig` says whose sine and cosine the code calls: its own, with the same bits everywhere, or the library's.
     """
 
@@ -35,6 +37,7 @@ class Options:
     verify: bool = True
     trig: Trig = "portable"
     states: int = DEFAULT_STATES
+    measured: Path | None = None
     form: str = "auto"  # of the inverse dynamics, one of FORMS
 
 

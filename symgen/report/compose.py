@@ -14,6 +14,7 @@ from symgen.report.section_projection import projection
 from symgen.report.section_published import published
 from symgen.report.section_singular import singular
 from symgen.report.section_system import system
+from symgen.report.section_targets import targets
 from symgen.report.section_verification import charts, verification
 
 
@@ -31,7 +32,7 @@ def compose(report_input: ReportInput) -> Document:
     ]
     if report_input.operation_counts:
         sections.append(operations(context))
-    sections += [*published(context), *verification(context), *charts(context)]
+    sections += [*published(context), *verification(context), *targets(context), *charts(context)]
     model = report_input.model
     return Document(
         title=text_of(model.description) or model.name,

@@ -9,6 +9,7 @@ from symgen.closedform.forms import ClosedForm
 from symgen.closedform.singular import SingularSet
 from symgen.closedform.structure import Integrability, Structure
 from symgen.model.model import Model
+from symgen.report.targets import TargetCore
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +51,7 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class ReportInput:
-    """Everything the report says; without `verification` and `charts` it is a function of model and symgen alone.
+    """Everything the report says; without `verification`, `charts`, `targets` a function of model and symgen alone.
 
     `operation_counts`: quantity -> kind of operation (add, mul, div, sqrt, sincos, other) -> number.
     `skipped`: decisions with their reasons, and quantities that do not exist with theirs.
@@ -68,3 +69,4 @@ class ReportInput:
     notices: tuple[str, ...] = ()
     verification: Verification | None = None
     charts: tuple[Chart, ...] = ()
+    targets: tuple[TargetCore, ...] = ()

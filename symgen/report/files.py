@@ -17,6 +17,7 @@ from symgen.report.gather import gather, path_charts, with_measurements
 from symgen.report.html import render_html
 from symgen.report.latex import render_latex
 from symgen.report.pdf import render_pdf
+from symgen.report.targets import TargetCore
 from symgen.verify.certificate import Certificate
 
 
@@ -30,7 +31,9 @@ class ReportFiles:
 
 
 def report_files(model: Model, receive: Callable[[], Any]) -> ReportFiles:
-    """The files; receives the `Facts` of the derivation, then the certificate or None where nothing was measured."""
+    """The files; receives the `Facts` of the derivation, then the certificate or None where nothing was measured,
+    then what was measured on targets.
+    """
     facts: Facts = receive()
     try:
         report = gather(model, facts)
@@ -47,11 +50,12 @@ def report_files(model: Model, receive: Callable[[], Any]) -> ReportFiles:
         f"report/{stem}.tex": render_latex(document),
     }
     certificate: Certificate | None = receive()
+    targets: tuple[TargetCore, ...] = receive()
     if certificate is None:
         return ReportFiles(files, notices)
     try:
         charts = path_charts(model)
     except PathError as error:
         return ReportFiles(files, notices, (error.mistake,))
-    pdf = render_pdf(compose(with_measurements(report, certificate, charts)))
+    pdf = render_pdf(compose(with_measurements(report, certificate, charts, targets)))
     return ReportFiles({**files, f"report/{stem}.pdf": pdf}, notices)

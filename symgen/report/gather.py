@@ -11,6 +11,7 @@ from symgen.closedform.published import decide_published
 from symgen.model.model import Model
 from symgen.report.content import Chart, ErrorRow, ReportInput, Verdict, Verification
 from symgen.report.facts import Facts
+from symgen.report.targets import TargetCore
 from symgen.verify.certificate import Certificate
 
 
@@ -32,8 +33,10 @@ def gather(model: Model, facts: Facts) -> ReportInput:
     )
 
 
-def with_measurements(report: ReportInput, certificate: Certificate, charts: Sequence[Chart]) -> ReportInput:
-    """The same report with what this run measured."""
+def with_measurements(
+    report: ReportInput, certificate: Certificate, charts: Sequence[Chart], targets: Sequence[TargetCore] = ()
+) -> ReportInput:
+    """The same report with what this run measured, and what was measured on targets before."""
     errors = tuple(
         ErrorRow(
             quantity=record.quantity,
@@ -45,7 +48,7 @@ def with_measurements(report: ReportInput, certificate: Certificate, charts: Seq
     )
     invariants = tuple((law.target, law.name, f"{law.largest:.2g}") for law in certificate.invariants)
     verification = Verification(certificate.states, errors, invariants, (*certificate.versions, *_notes(certificate)))
-    return replace(report, verification=verification, charts=tuple(charts))
+    return replace(report, verification=verification, charts=tuple(charts), targets=tuple(targets))
 
 
 def _notes(certificate: Certificate) -> Sequence[tuple[str, str]]:

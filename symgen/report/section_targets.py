@@ -1,0 +1,42 @@
+"""The section of the PDF about microcontrollers: what `symgen target` measured."""
+
+from __future__ import annotations
+
+from symgen.report.context import Context
+from symgen.report.document import Block, InlineCode, Section, Table
+from symgen.report.prose import paragraph, say
+from symgen.report.targets import TargetCore, TargetRow
+
+INTRO = (
+    "The generated C was compiled for microcontrollers and run under emulation at regular and singular states. "
+    "Instructions are those of one call with status 0 at -O2, from its first to its return (fewest to most); "
+    "they are no cycles. Bytes are those at -Os: the code of the kernel, the growth of an image that links it, the "
+    "deepest stack. No kernel has static data."
+)
+
+
+def targets(context: Context) -> tuple[Section, ...]:
+    """A table for each core, or nothing where nothing was measured."""
+    if not context.input.targets:
+        return ()
+    blocks: list[Block] = [paragraph("{}", INTRO)]
+    for core in context.input.targets:
+        told = f"{core.name}: {core.same_bits} builds (compiler, level, scalar type) gave the same bits as the host."
+        blocks += [paragraph("{}", told), _table(core)]
+    return (Section(say("Microcontrollers"), tuple(blocks)),)
+
+
+def _table(core: TargetCore) -> Table:
+    headings = ("Kernel", "Type", "Instructions", "Code", "Linked", "Stack")
+    rows = tuple(
+        (
+            (InlineCode(row.kernel),),
+            *(say("{}", text) for text in (row.scalar, _range(row), str(row.code), str(row.linked), str(row.stack))),
+        )
+        for row in core.rows
+    )
+    return Table(tuple(say("{}", heading) for heading in headings), rows, (1, 0, 0, 0, 0, 0))
+
+
+def _range(row: TargetRow) -> str:
+    return str(row.most) if row.fewest == row.most else f"{row.fewest}–{row.most}"

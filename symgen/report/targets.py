@@ -1,0 +1,68 @@
+"""What `symgen target` measured, read back for the report, and only if it was measured on the same C."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+FAST, SMALL = "-O2", "-Os"
+
+
+@dataclass(frozen=True, slots=True)
+class TargetRow:
+    """One kernel in one scalar type: instructions per call at -O2 (fewest, most), bytes at -Os."""
+
+    kernel: str
+    scalar: str
+    fewest: int
+    most: int
+    code: int
+    linked: int
+    stack: int
+
+
+@dataclass(frozen=True, slots=True)
+class TargetCore:
+    """One core, how many builds for it gave the same bits as the host, and what the kernels cost there."""
+
+    name: str
+    same_bits: int
+    rows: tuple[TargetRow, ...]
+
+
+def read_targets(file: Path, sources: Mapping[str, str | bytes]) -> tuple[TargetCore, ...]:
+    """The cores in a target.json that passed; none where it is missing, failed, damaged or of other C.
+
+    `sources` are the generated files by path (`c/<model>.c`, ...).
+    """
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+        measured: Mapping[str, str] = found["sources"]
+        same = all(_digest(sources.get(f"c/{name}")) == digest for name, digest in measured.items())
+        if not (found["passed"] and measured and same):
+            return ()
+        return tuple(_core(core, found["cells"]) for core in found["cores"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return ()
+
+
+def _core(core: Mapping[str, Any], cells: list[Mapping[str, Any]]) -> TargetCore:
+    same = sum(c["where"] == core["name"] and c["trig"] == "portable" and c["different"] == 0 for c in cells)
+    small = {(c["kernel"], c["scalar"]): c for c in core["costs"] if c["level"] == SMALL}
+    rows = []
+    for cost in core["costs"]:
+        if cost["level"] == FAST and cost["calls"]:
+            size = small[cost["kernel"], cost["scalar"]]
+            numbers = (cost["fewest"], cost["most"], size["code"], size["linked"], size["stack"])
+            rows.append(TargetRow(cost["kernel"], cost["scalar"], *map(int, numbers)))
+    return TargetCore(str(core["name"]), same, tuple(rows))
+
+
+def _digest(content: str | bytes | None) -> str:
+    if content is None:
+        return ""
+    return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
