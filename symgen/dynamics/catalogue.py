@@ -206,6 +206,11 @@ def missing(entry: Entry, model: Model, generic: Genericity) -> str | None:
     return None
 
 
+def by_blocks(entry: Entry) -> bool:
+    """Whether a quantity depends on the null space through N_B and B^+ alone, which blocks of B do not couple."""
+    return entry.guards is _constraint
+
+
 def derive(entry: Entry, derivation: Derivation) -> Derived:
     """A quantity along one null space."""
     shape = entry.shape(sizes(derivation.mechanics.model, derivation.generic))

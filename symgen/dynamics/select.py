@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb
 
-from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, derive, missing, scalars
+from symgen.dynamics.block_space import BlockSpace
+from symgen.dynamics.blocks import components
+from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, by_blocks, derive, missing, scalars
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.inverse import FormChoice, InverseDynamics, derived_on
@@ -62,6 +64,14 @@ def ways(mechanics: Mechanics, generic: Genericity) -> dict[str, Derivation]:
     return found
 
 
+def block_way(mechanics: Mechanics, generic: Genericity) -> Derivation | None:
+    """The derivation along blocks of B that share no coordinate; None where there is one block or rows depend."""
+    rows = mechanics.constraint_jacobian
+    if generic.rank < len(rows) or len(list(components(rows))) < 2:
+        return None
+    return Derivation(mechanics, generic, BlockSpace(mechanics.graph, rows, mechanics.n))
+
+
 def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
     """The names to derive, in catalogue order, and what was asked for that this system does not have."""
     everything = "all" in outputs
@@ -82,7 +92,7 @@ def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") 
     mechanics = Mechanics(model)
     generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
-    derivations = ways(mechanics, generic)
+    derivations, blocks = ways(mechanics, generic), block_way(mechanics, generic)
     quantities: list[Derived] = []
     choices: list[Choice] = []
     chosen_form: FormChoice | None = None
@@ -95,7 +105,10 @@ def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") 
             quantities.append(derived_on(mechanics.graph, offer))
             choices.append(Choice(name, chosen_form.way, chosen_form.costs))
             continue
-        candidates = {way: derive(BY_NAME[name], derivation) for way, derivation in derivations.items()}
+        entry = BY_NAME[name]
+        candidates = {way: derive(entry, derivation) for way, derivation in derivations.items()}
+        if blocks is not None and by_blocks(entry):
+            candidates["blocks"] = derive(entry, blocks)
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
         best = min(costs, key=lambda way: costs[way])
         # minors of rows that depend on each other become small together: multiplied out, their squares would cancel
