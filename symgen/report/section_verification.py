@@ -25,6 +25,8 @@ def verification(context: Context) -> tuple[Section, ...]:
         "not exceed 16. Each target shows the median and the largest of its errors; the certificate has more."
     )
     blocks: list[Block] = [paragraph("{}", intro), _errors(measured)]
+    if twins := [target for target in _targets(measured) if _is_twin(target)]:
+        blocks.append(paragraph("The same bits came from: {}.", ", ".join(twins)))
     if measured.invariants:
         blocks += [
             paragraph("Laws that hold at every state, with the largest violation found:"),
@@ -44,9 +46,18 @@ def charts(context: Context) -> tuple[Section, ...]:
     return (Section(say("Charts"), figures),)
 
 
+def _targets(measured: Verification) -> list[str]:
+    return list(dict.fromkeys(row.target for row in measured.errors))
+
+
+def _is_twin(target: str) -> bool:
+    """Whether a target has to return the bits of another, such as `C float64 batch`: a column would say it again."""
+    return target.endswith((" batch", " prepared"))
+
+
 def _errors(measured: Verification) -> Table:
     """One line for each kernel, one column for each target."""
-    targets = list(dict.fromkeys(row.target for row in measured.errors))
+    targets = [target for target in _targets(measured) if not _is_twin(target)]
     found = {(row.quantity, row.target): row for row in measured.errors}
     rows = tuple(
         (
