@@ -86,10 +86,12 @@ def batched(program: Program) -> Program:
 
 
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
-@pytest.mark.parametrize("name", ["toy", *MODELS])
+@pytest.mark.parametrize("name", ["toy", "toy with libm", *MODELS])
 def test_same_bits_and_statuses(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar) -> None:
-    model = handmade.model() if name == "toy" else shipped.model(name)
-    program = batched(handmade.program(scalar) if name == "toy" else shipped.programs(name)[scalar])
+    if name in MODELS:
+        model, program = shipped.model(name), batched(shipped.programs(name)[scalar])
+    else:
+        model, program = handmade.model(), batched(handmade.program(scalar, own_sincos=name == "toy"))
     library = Library(tmp_path, model, program, [tool("gcc"), *NATIVE])
     for kernel in program.kernels:
         count = 3 * BLOCK + 5
