@@ -11,6 +11,7 @@ because a force of B^T alone would then be in balance.  The form is valid at eve
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, unit, wedge_all
@@ -68,6 +69,7 @@ class _Core:
     def inputs(self, internal: int) -> tuple[Vector, tuple[Guard, ...]]:
         """The u of least norm, and the guards of the core and of the internal forces."""
         guards: list[Guard] = []
+        measure: Scalar | None
         if self._size == 0:
             particular: Vector = (self._graph.zero,) * len(self._names)
             null = [tuple(self._graph.one if i == j else self._graph.zero for j in self._names) for i in self._names]
@@ -77,16 +79,17 @@ class _Core:
             guards.append(guard)
         else:
             particular, null, guard = self._by_reflections()
-            measure = self._graph.one
+            measure = None
             guards.append(guard)
         u = self._inputs_of(particular, homogeneous=False)
         z = [self._inputs_of(vector, homogeneous=True) for vector in null]
         if internal == 1:
             u, guard = self._without_direction(u, z[0], measure)
-            guards.append(guard)
         elif internal > 1:
             u, guard = self._without_directions(u, tuple(z))
-            guards.append(guard)
+        if internal:
+            # at an input singularity the internal forces vanish with the core's minors: the core is asked first
+            guards.append(replace(guard, first=tuple(guards)))
         return u, tuple(guards)
 
     def _inputs_of(self, values: Vector, homogeneous: bool) -> Vector:
@@ -145,14 +148,20 @@ class _Core:
         lengths = [graph.sum(x * x for x in magnitude(graph, column)) for column in whole]
         return Guard(Status.CONSTRAINT_RANK, denominator, 2, scale=graph.product(lengths))
 
-    def _without_direction(self, u: Vector, z: Vector, measure: Scalar) -> tuple[Vector, Guard]:
-        """u - z (z . u) / (z . z); |z|^2 is measured by its terms, which are small where the core's minors are."""
+    def _without_direction(self, u: Vector, z: Vector, measure: Scalar | None) -> tuple[Vector, Guard]:
+        """u - z (z . u) / (z . z); |z|^2 is measured by its terms, which are small where the core's minors are.
+
+        Without a `measure` z is what a null vector of length 1 does: at most what all unknowns together do.
+        """
         graph = self._graph
-        content = self._elimination.content(z)
-        z = tuple(graph.products.quotient(x, content) for x in z)
+        if measure is None:
+            scale = graph.sum(x * x for column in self._unit_columns() for x in column)
+        else:
+            content = self._elimination.content(z)
+            z = tuple(graph.products.quotient(x, content) for x in z)
+            scale = graph.sum(x * x for x in magnitude(graph, z)) * measure
         length = graph.sum(x * x for x in z)
         share = dot(graph, z, u) / length
-        scale = graph.sum(x * x for x in magnitude(graph, z)) * measure
         u = tuple(a - b * share for a, b in zip(u, z, strict=True))
         return u, Guard(Status.CONSTRAINT_RANK, length, 2, scale=scale)
 
