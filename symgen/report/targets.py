@@ -56,8 +56,9 @@ def _core(core: Mapping[str, Any], cells: list[Mapping[str, Any]]) -> TargetCore
     rows = []
     for cost in core["costs"]:
         if cost["level"] == FAST and cost["calls"]:
-            size = small[cost["kernel"], cost["scalar"]]
-            numbers = (cost["fewest"], cost["most"], size["code"], size["linked"], size["stack"])
+            other = small[cost["kernel"], cost["scalar"]]
+            size = other["footprint"]
+            numbers = (cost["fewest"], cost["most"], size["code"], size["linked"], other["stack"])
             rows.append(TargetRow(cost["kernel"], cost["scalar"], *map(int, numbers)))
     return TargetCore(str(core["name"]), same, tuple(rows))
 

@@ -61,7 +61,8 @@ class Workshop:
         for source, name in ((driver, f"{Path(driver).stem}_{watched}.o"), (board, f"{Path(board).stem}.o")):
             target = self.folder / name
             flags = [*BOARD_FLAGS, f"-DPAINTED={watched}u"]
-            run([*self._command("gcc"), *flags, "-c", "-o", str(target), source], self.folder)
+            if not target.exists():
+                run([*self._command("gcc"), *flags, "-c", "-o", str(target), source], self.folder)
             objects.append(target)
         return tuple(objects)
 

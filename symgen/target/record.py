@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from symgen.ir.kernel import Scalar
+from symgen.target.footprint import Footprint
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +32,7 @@ class Cell:
 @dataclass(frozen=True, slots=True)
 class KernelCost:
     """One kernel on one core at one level: instructions per call over `calls` vectors with status 0 (from its first
-    to its return), bytes of code, of linked growth, of RAM and of stack (by -fstack-usage, and painted).
+    to its return), bytes of painted stack, and the footprint (at -Os; None elsewhere).
     """
 
     kernel: str
@@ -40,12 +41,8 @@ class KernelCost:
     calls: int
     fewest: int
     most: int
-    code: int
-    linked: int
-    ram: int
-    frame: int
     stack: int
-    undefined: tuple[str, ...]
+    footprint: Footprint | None
 
 
 @dataclass(frozen=True, slots=True)

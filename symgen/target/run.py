@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from threading import Lock
 
 from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
@@ -40,7 +41,7 @@ from symgen.verify.reference import Reference, State
 
 Progress = Callable[[str], None]
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
-COSTED = ("-O2", "-Os")  # the levels at which instructions, footprint and stack are measured
+FAST, SMALL = "-O2", "-Os"  # the levels at which instructions and stack are measured; the footprint at the second
 BASE: tuple[Compiler, str] = ("gcc", "-O2")
 # With these every kernel is built; elsewhere those of more operations are left out, for the time that compilers take.
 WHOLE: tuple[tuple[Compiler, str], ...] = (BASE, ("gcc", "-Os"), ("clang", "-O2"))
@@ -88,6 +89,7 @@ class _Bench:
         self.states = {scalar: vectors.rounded(scalar) for scalar in SCALARS}
         self.inputs = self._written("states", self.states)
         self.counter = build_counter(folder)
+        self.harnesses = Lock()  # builds run side by side and share drivers and boards
         base = {trig: _Build(None, *BASE, trig) for trig in (PORTABLE, LIBM)}
         images = {trig: self.image(build, 0)[1] for trig, build in base.items()}
         self.expected = {trig: self._run(build, images[trig]) for trig, build in base.items()}
@@ -99,8 +101,9 @@ class _Bench:
 
     def image(self, build: _Build, watched: int) -> tuple[Workshop, Path]:
         """An image with its input files beside it."""
-        shop = self.workshop(build)
-        harness = shop.harness("driver.c", watched)
+        with self.harnesses:
+            shop = self.workshop(build)
+            harness = shop.harness("driver.c", watched)
         stem = file_stem(self.model.name)
         objects = [shop.compile(f"{stem}{SUFFIXES[scalar]}.c", build.level, build.compiler) for scalar in SCALARS]
         image = shop.link(f"{build.compiler}{build.level}-{watched}", [*harness, *objects])
@@ -108,10 +111,11 @@ class _Bench:
         return shop, image
 
     def workshop(self, build: _Build) -> Workshop:
-        """A folder for one compiler and level: builds run side by side."""
-        name = f"{build.where}-{build.trig}-{build.compiler}{build.level}"
+        """A folder for one core and one set of kernels."""
+        name = f"{build.where} {build.kernels}".replace(" ", "-")
         shop = Workshop(self.folder / name, build.core)
-        shop.write(self.sources[build.kernels])
+        if not shop.folder.exists():
+            shop.write(self.sources[build.kernels])
         return shop
 
     def read(
@@ -159,7 +163,7 @@ class _Bench:
 
 
 def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: None) -> TargetReport:
-    """Conformance of every build, and cost and footprint at -O2 and -Os.
+    """Conformance of every build, cost at -O2 and -Os, footprint at -Os.
 
     Raises ToolError when a compiler or an emulator fails, and VerificationError or ReferenceValueError where no
     states are found.
@@ -225,7 +229,7 @@ def _builds(cores: Sequence[Core]) -> list[_Build]:
 
 def _measured(bench: _Bench, build: _Build) -> tuple[list[Cell], list[KernelCost], list[str]]:
     """One build beside the host's, and its cost where that is asked for."""
-    if build.core is not None and build.compiler == "gcc" and build.level in COSTED and build.trig == PORTABLE:
+    if build.core is not None and build.compiler == "gcc" and build.level in (FAST, SMALL) and build.trig == PORTABLE:
         results, costs = _costed(bench, build, build.core)
     else:
         results, costs = bench.results(build), []
@@ -255,14 +259,13 @@ def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Resu
     for scalar in programs:
         functions = {kernel: name for (s, kernel), name in names.items() if s == scalar}
         target = shop.folder / f"{file_stem(bench.model.name)}{SUFFIXES[scalar]}_{build.compiler}{build.level}.o"
-        sizes = footprints(shop, target, list(functions.values()))
+        sizes = footprints(shop, target, list(functions.values())) if build.level == SMALL else {}
         for kernel, name in functions.items():
             records = results[scalar].records[kernel]
             counted = [c for c, record in zip(counts[name], records, strict=True) if record.status == 0]
-            size = sizes[name]
             costs.append(KernelCost(
                 kernel, scalar, build.level, len(counted), min(counted, default=0), max(counted, default=0),
-                size.code, size.linked, size.ram, size.frame, results[scalar].stack[kernel], size.undefined,
+                results[scalar].stack[kernel], sizes.get(name),
             ))
     return results, costs
 
@@ -276,16 +279,17 @@ def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
     kernel = next(k for k in bench.programs[build.kernels][cost.scalar].kernels if k.name == cost.kernel)
     where = f"{build.label}, {cost.scalar}: {cost.kernel}"
     wrong = []
-    if cost.ram:
-        wrong.append(f"{where} has {cost.ram} bytes of static data")
+    size = cost.footprint
+    if size is not None and size.ram:
+        wrong.append(f"{where} has {size.ram} bytes of static data")
     if cost.stack >= STACK_WATCHED:
         wrong.append(f"{where} takes more than {STACK_WATCHED} bytes of stack")
     if cost.scalar in build.core.native and not uses_library(kernel, portable=True):
         chooses = any(statement.operation in CHOICES for statement in kernel.statements)
         if cost.fewest != cost.most and not chooses:
             wrong.append(f"{where} takes {cost.fewest} to {cost.most} instructions")
-        if cost.undefined:
-            wrong.append(f"{where} needs {', '.join(cost.undefined)}")
+        if size is not None and size.undefined:
+            wrong.append(f"{where} needs {', '.join(size.undefined)}")
     return wrong
 
 

@@ -48,10 +48,9 @@ def _costs(core: CoreReport) -> str:
 
 
 def _row(fast: KernelCost, small: KernelCost) -> tuple[str, ...]:
-    return (
-        fast.kernel, fast.scalar, _range(fast), _range(small), str(small.code), str(small.linked), str(small.frame),
-        str(small.stack),
-    )
+    size = small.footprint
+    bytes_ = ("", "", "") if size is None else (str(size.code), str(size.linked), str(size.frame))
+    return (fast.kernel, fast.scalar, _range(fast), _range(small), *bytes_, str(small.stack))
 
 
 def _range(cost: KernelCost) -> str:

@@ -13,6 +13,7 @@ from symgen.report.compose import compose
 from symgen.report.html import render_html
 from symgen.report.pdf import render_pdf, render_typst
 from symgen.report.targets import read_targets
+from symgen.target.footprint import Footprint
 from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
 
 SOURCES = {"c/skate.c": "int x;\n", "c/skate_f.c": "int y;\n"}
@@ -24,10 +25,9 @@ def _written(folder: Path, failures: tuple[str, ...] = ()) -> Path:
         Cell("cortex-m4f", "gcc", "-O2", "float32", "libm", 1, 300, 7, 2.0),
         Cell("host", "gcc", "-O1", "float32", "portable", 1, 300, 0),
     )
-    sizes = {"-O2": (84, 84, 388), "-Os": (73, 73, 344)}
-    costs = tuple(
-        KernelCost("inverse_dynamics", "float32", level, 256, fewest, most, code, code, 0, 16, 12, ())
-        for level, (fewest, most, code) in sizes.items()
+    costs = (
+        KernelCost("inverse_dynamics", "float32", "-O2", 256, 84, 84, 16, None),
+        KernelCost("inverse_dynamics", "float32", "-Os", 256, 73, 73, 12, Footprint(344, 344, 0, 16, ())),
     )
     digests = {Path(path).name: hashlib.sha256(text.encode()).hexdigest() for path, text in SOURCES.items()}
     report = TargetReport(
