@@ -29,6 +29,10 @@ class Opaque:
     """(argument, partial derivative of the atom with respect to that argument) as expressions."""
 
 
+# Looking for squares of so many sines is included in the cost of a product; every further one costs as much again.
+FREE_ANGLES = 6
+
+
 class TrigRing:
     """The polynomial ring with one (s, c) pair per atom of `basis`, variables by name and opaque atoms."""
 
@@ -76,6 +80,7 @@ class TrigRing:
 
     def normal(self, p: PolyElement) -> PolyElement:
         """The canonical form: every s_i to the power 0 or 1."""
+        self.work.spend(len(p) * max(0, len(self.sine) - FREE_ANGLES))
         for s, c in zip(self.sine, self.cosine, strict=True):
             if all(monomial[s] < 2 for monomial in p):
                 continue

@@ -19,6 +19,9 @@ from symgen.closedform.quotient import Quotient, polynomial
 from symgen.closedform.ring import TrigRing
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 
+# A Fourier sum of more waves is not worth making: it is never the shortest form.
+MOST_WAVES = 20_000
+
 
 def spell_expression(expression: Expression, values: Mapping[str, Expr] | None = None) -> Expr:
     """A model expression as SymPy builds it; names become symbols or what `values` gives for them."""
@@ -144,7 +147,8 @@ class Speller:
             normal = self.ring.normal(p)
             if normal != p:
                 forms.append(self._plain(normal))
-            forms.append(self.fourier(p))
+            if sum(2 ** sum(monomial[i] for i in self.ring.angle_positions) for monomial in p) <= MOST_WAVES:
+                forms.append(self.fourier(p))
             collected = self._collected(normal)
             if collected is not None:
                 forms.append((Integer(1), collected))

@@ -14,7 +14,7 @@ from symgen.model.components import components_in, definitions_before_frames, pr
 from symgen.model.expression import Expression, Name, Number, Power
 from symgen.model.formulas import Form, Formula, Formulas, coefficients, rate_of
 from symgen.model.kinematics import Kinematics
-from symgen.model.mechanism import NO_MECHANISM, ZERO, component, is_component
+from symgen.model.mechanism import NO_MECHANISM, WORLD, ZERO, component, is_component
 from symgen.model.model import AppliedForce, Definition, Input, Model
 from symgen.model.triples import Rates, Triple, applied, inner
 from symgen.model.walk import exact_value, names_in
@@ -63,7 +63,13 @@ class _Writer:
         space = self.kinematics.space
         for body in self.model.mechanism.bodies:
             twist = self.kinematics.twist(body.frame)
-            linear = space.summed(twist.linear, space.crossed(twist.angular, space.values(body.com)))
+            arm = space.values(body.com)
+            linear = space.summed(twist.linear, space.crossed(twist.angular, arm))
+            if self.kinematics.plane(WORLD, body.frame) is not None:
+                # in the plane, velocities in world axes have one sine or cosine a link, of absolute angles
+                still = self.kinematics.twist(body.frame, WORLD)
+                arm = applied(self.kinematics.axes(body.frame), arm)
+                linear = space.summed(still.linear, space.crossed(still.angular, arm))
             speed = self._named_rates(f"{body.name}.v", linear)
             spin = self._named_rates(f"{body.name}.w", twist.angular)
             squares = inner(speed, speed).expression

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Generic
 
+from symgen.model import combine
 from symgen.model.expression import Expression
-from symgen.model.mechanism import Frame, Quaternion, Turn, Vector3
+from symgen.model.mechanism import ZERO, Frame, Quaternion, Turn, Vector3
 from symgen.model.triples import P, Rates, Rows, Space, Triple, V, product, transposed
 from symgen.model.walk import exact_value
 
@@ -36,11 +37,27 @@ def joint_of(space: Space[P, V], frame: Frame) -> Joint[P, V]:
     return Joint(axes, space.values(frame.translation), space.rates(frame.translation), turning, before)
 
 
+def plane_turn(frame: Frame) -> tuple[Vector3 | None, Expression] | None:
+    """Axis and angle of a frame whose turns share one main axis; no axis where it is not turned; else None."""
+    if isinstance(frame.rotation, Quaternion):
+        return None
+    shared: Vector3 | None = None
+    angle: Expression = ZERO
+    for turn in frame.rotation:
+        exact = [exact_value(entry) for entry in turn.axis]
+        if sorted(abs(value) if value is not None else 2 for value in exact) != [0, 0, 1]:
+            return None
+        if shared is not None and exact != [exact_value(entry) for entry in shared]:
+            return None
+        shared, angle = turn.axis, combine.plus(angle, turn.angle)
+    return shared, angle
+
+
 def _turns(space: Space[P, V], turns: tuple[Turn, ...]) -> tuple[Rows[P], Rates[V], Rates[V]]:
     axes, turning, before = space.identity, space.still, space.still
     for turn in turns:
         axis = unit_axis(space, turn.axis)
-        matrix = _turn_matrix(space, turn, axis)
+        matrix = turn_matrix(space, turn.angle, axis)
         spin = space.scaled(axis, space.arithmetic.rate(turn.angle))
         turning = space.summed(space.turned(transposed(matrix), turning), spin)
         before = space.summed(before, space.turned(axes, spin))
@@ -48,9 +65,9 @@ def _turns(space: Space[P, V], turns: tuple[Turn, ...]) -> tuple[Rows[P], Rates[
     return axes, turning, before
 
 
-def _turn_matrix(space: Space[P, V], turn: Turn, axis: Triple[P]) -> Rows[P]:
+def turn_matrix(space: Space[P, V], turn: Expression, axis: Triple[P]) -> Rows[P]:
     """Rodrigues' formula 1 + s K + (1 - c) K^2 with K = axis x."""
-    angle = space.arithmetic.value(turn.angle)
+    angle = space.arithmetic.value(turn)
     sine, cosine = space.arithmetic.function("sin", angle), space.arithmetic.function("cos", angle)
     x, y, z = axis
     versed = space.one - cosine

@@ -10,8 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Generic
 
-from symgen.model.joints import Joint, joint_of
-from symgen.model.mechanism import WORLD, Component, Mechanism
+from symgen.model import combine
+from symgen.model.expression import Expression
+from symgen.model.joints import Joint, joint_of, plane_turn, turn_matrix, unit_axis
+from symgen.model.mechanism import WORLD, ZERO, Component, Mechanism, Vector3
 from symgen.model.triples import (
     Arithmetic,
     P,
@@ -26,6 +28,7 @@ from symgen.model.triples import (
     product,
     transposed,
 )
+from symgen.model.walk import exact_value
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,7 @@ class Kinematics(Generic[P, V]):
         self._joints: dict[str, Joint[P, V]] = {}
         self._axes: dict[tuple[str, str], Rows[P]] = {}
         self._places: dict[tuple[str, str], Triple[P]] = {}
+        self._planes: dict[tuple[str, str], tuple[Vector3 | None, Expression] | None] = {}
         self._twists: dict[tuple[str, str], Twist[V]] = {(WORLD, WORLD): Twist(self.space.still, self.space.still)}
 
     # frames -----------------------------------------------------------------------------------------------------------
@@ -56,6 +60,25 @@ class Kinematics(Generic[P, V]):
         while line[-1] != WORLD:
             line.append(self.frames[line[-1]].parent)
         return line
+
+    def plane(self, ancestor: str, frame: str) -> tuple[Vector3 | None, Expression] | None:
+        """Axis and angle of a frame against an ancestor, where all turns between share one main axis."""
+        line = self.lineage(frame)
+        for name in reversed(line[: line.index(ancestor) + 1]):
+            if (ancestor, name) not in self._planes:
+                self._planes[ancestor, name] = self._turn_below(ancestor, name)
+        return self._planes[ancestor, frame]
+
+    def _turn_below(self, ancestor: str, name: str) -> tuple[Vector3 | None, Expression] | None:
+        if name == ancestor:
+            return None, ZERO
+        above, own = self._planes[ancestor, self.frames[name].parent], plane_turn(self.frames[name])
+        if above is None or own is None:
+            return None
+        if above[0] is None or own[0] is None:
+            return above[0] or own[0], combine.plus(above[1], own[1])
+        same = [exact_value(a) for a in above[0]] == [exact_value(b) for b in own[0]]
+        return (above[0], combine.plus(above[1], own[1])) if same else None
 
     def joint(self, name: str) -> Joint[P, V]:
         """The frame against its parent."""
@@ -182,6 +205,10 @@ class Kinematics(Generic[P, V]):
         place = plus(place, applied(axes, joint.place))
         if joint.axes is self.space.identity:
             return axes, place
+        plane = self.plane(ancestor, name)
+        if plane is not None and plane[0] is not None:
+            turned = turn_matrix(self.space, plane[1], unit_axis(self.space, plane[0]))
+            return self.space.named(f"{name}.axes_{ancestor}", turned), place
         return self.space.named(f"{name}.axes_{ancestor}", product(axes, joint.axes)), place
 
     def _own_twist(self, name: str) -> Twist[V]:

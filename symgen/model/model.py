@@ -225,6 +225,7 @@ class Model:
     mechanism: Mechanism = NO_MECHANISM
     forces: tuple[Force, ...] = ()
     allocation: Allocation | None = None
+    trig_range: Literal["normal", "wide"] = "normal"
 
     @property
     def n(self) -> int:

@@ -87,6 +87,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         notices=(),
         text_hash=hashlib.sha256(text.encode()).hexdigest(),
         mechanism=mechanism,
+        trig_range="wide" if text_of(tree.get("trig_range")) == "wide" else "normal",
     )
     scope.mistakes.extend(check_units(tree, model))
     check_mechanics(scope, tree, model, kinetic_read, whole)

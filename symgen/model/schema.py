@@ -248,13 +248,14 @@ MODEL = Record(
             ),
             "thresholds on denominators",
         ),
+        Field("trig_range", Word(("normal", "wide")), "how far angles may go before status 4"),
         Field("published", Listing(_PUBLISHED), "formulas as printed somewhere, to be decided for this model"),
         Field("paths", Table(_PATH), "trajectories as functions of t, for charts and tests"),
         Field("report", Word(("full", "short")), "length of the report"),
     ),
     later=(
         "joints", "loops", "springs", "rolling", "friction",
-        "urdf", "trig_range",
+        "urdf",
     ),
 )  # fmt: skip
 
