@@ -14,7 +14,14 @@ CAPTIONS = {
     "long_run": "Constraint drift, tracking error and energy balance over the long run.",
 }
 ORDER = tuple(CAPTIONS)
-FORMS = ("(9) fixed partition", "(27)+(28) fixed", "(27)+(28) switching", "symgen")
+FORM_NAMES = (
+    *("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"),  # of u; some also of q̈, λ and N_B
+    *("schur_qr", "schur_ldl", "shifted"),
+)
+FORMS = (
+    *("(9) fixed partition", "(27)+(28) fixed", "(27)+(28) switching", "symgen"),
+    *(f"form {name}" for name in FORM_NAMES),
+)
 HEAD = """# Numerical stability
 
 Written by `make stress`. Every family of trouble was found by `symgen stress` itself: the zeros of the factored

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any, TypeAlias
@@ -12,73 +12,22 @@ import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
 from symgen.stress.families import Family
+from symgen.stress.form_kernels import FormKernels
 from symgen.stress.forms import Data, partitioned, projected, switched
 from symgen.stress.kernels import PIECES, STRESSED, Kernels, rounded_state
+from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Error, Series
 from symgen.verify.compile import Outcome
 from symgen.verify.reference import Reference, ReferenceValueError, State
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
 
 DEEPEST: dict[Scalar, int] = {"float64": 24, "float32": 12}  # half decades below 1
 BELOW = (1e-14, 1e-16, 1e-18, 1e-24, 0.0)  # where statuses are tested as well
-SYMGEN = "symgen"
-PARTITION = "(9) fixed partition"
-FIXED = "(27)+(28) fixed"
-SWITCHING = "(27)+(28) switching"
-FORMS = (PARTITION, FIXED, SWITCHING, SYMGEN)
 PAPER_KINDS = ("parameter", "input", "constraint", "large angles", "mass ratios")
 ANGLE_LIMITS: dict[Scalar, float] = {"float64": 1e5, "float32": 100.0}
 MEASURE_BITS = 256
 GRADED = 1e-2
+MASSIVE = ("forward_dynamics", "multipliers")  # what the condition of G matters for
 RANKS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)  # what the measures of singularity speak of
-
-
-@dataclass(frozen=True, slots=True)
-class Error:
-    """|y − y*| of one form at one distance: relative to |y*|, and in units of d + eps |y*|; the largest of a family.
-
-    `relative` is infinite where the form has no finite result.  `floor` is eps κ, with κ estimated from the measures of
-    singularity: what a normwise stable algorithm may lose although the data determine the result better.
-    """
-
-    distance: float
-    relative: float
-    units: float
-    floor: float
-
-    @property
-    def normwise(self) -> bool:
-        """Whether the error is no more than a normwise stable algorithm may make."""
-        return self.relative <= FACTOR * self.floor
-
-    def worse(self, other: Error) -> Error:
-        """The larger of both, entry by entry."""
-        return Error(
-            self.distance,
-            max(self.relative, other.relative),
-            max(self.units, other.units),
-            max(self.floor, other.floor),
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class Series:
-    """Errors of one form of one quantity along a family, from d = 1 downwards."""
-
-    family: int
-    scalar: Scalar
-    quantity: str
-    form: str
-    errors: tuple[Error, ...]
-
-    @property
-    def breaks(self) -> float | None:
-        """The largest d at which the error exceeds the tolerance; None where it never does."""
-        return max((e.distance for e in self.errors if not e.units <= FACTOR), default=None)
-
-    @property
-    def largest(self) -> Error:
-        """The worst in units of the tolerance."""
-        return max(self.errors, key=lambda e: e.units)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +70,7 @@ class Sweeper:
         self._kernels = kernels
         self._families = families
         self._names = tuple(name for name in STRESSED if name in kernels.names)
+        self._forms = FormKernels(kernels.model, tuple(DEEPEST), self._names)
         self._found: Found = {}
         self._counts: dict[tuple[str, Scalar], list[int]] = {}
         self._failures: list[str] = []
@@ -157,10 +107,10 @@ class Sweeper:
 
     def _reason(self, family: Family, one: Series) -> str:
         """Why errors beyond the tolerance are to be expected, or nothing."""
-        if family.kind == "mass ratios" and one.quantity in ("forward_dynamics", "multipliers"):
-            return "loses with the condition of G"
         if all(e.normwise for e in one.errors if not e.units <= FACTOR):
-            return "within eps times the condition of B and FᵀM"
+            return "within eps times the condition of B" + (
+                " and FᵀM" if one.quantity == "inverse_dynamics" else " and G" if one.quantity in MASSIVE else ""
+            )
         if family.kind == "constraint" and self._reference.ranks.constraints < self._reference.system.r:
             return "where rows depend on each other, what a result is beside V is a matter of definition"
         return ""
@@ -214,10 +164,15 @@ class Sweeper:
         if truth is not state:
             moved = math.dist(truth.q, state.q)
             expected = {name: replace(e, unit=e.unit + moved * e.size) for name, e in expected.items()}
-        floors = {name: self._floor(name, scalar, measures) for name in self._names}
+        masses = self._condition_of_masses(state)
+        floors = {name: self._floor(name, scalar, measures, masses) for name in self._names}
         for name, outcome in outcomes.items():
             if outcome.status == Status.OK:
                 self._record(index, scalar, name, SYMGEN, d, expected[name], outcome.entries, floors[name])
+        for form, name, entries in self._forms.run(state, scalar):
+            # where the generated kernel refuses the state, no form needs an answer
+            if outcomes[name].status == Status.OK:
+                self._record(index, scalar, name, form, d, expected[name], entries, floors[name])
         for form, values in self._paper(scalar, state, choice):
             for name in self._names:
                 if name in values or values == {}:
@@ -244,13 +199,22 @@ class Sweeper:
         errors = self._found.setdefault((index, scalar, name, form), {})
         errors[d] = errors[d].worse(error) if d in errors else error
 
-    def _floor(self, name: str, scalar: Scalar, measures: tuple[float, float] | None) -> float:
-        """eps κ(B) κ(F'M), by 1/κ² ≈ measure; F'M counts for inputs only."""
+    def _floor(self, name: str, scalar: Scalar, measures: tuple[float, float] | None, masses: float) -> float:
+        """eps κ(B) κ(F'M), by 1/κ² ≈ measure; F'M counts for inputs only, κ(G) for accelerations and multipliers."""
         eps = float(UNIT_ROUNDOFF[scalar])
         if measures is None:
             return math.inf
         product = measures[0] * (measures[1] if name == "inverse_dynamics" else 1.0)
-        return eps / math.sqrt(product) if product > 0 else math.inf
+        if product <= 0:
+            return math.inf
+        return eps / math.sqrt(product) * (masses if name in MASSIVE else 1.0)
+
+    def _condition_of_masses(self, state: State) -> float:
+        """κ(G), to which the loss of q̈ and λ under extreme mass ratios is compared."""
+        name = "mass_matrix"
+        values = np.linalg.eigvalsh(_floats(self._reference.matrices(state, (name,), MEASURE_BITS)[name]))
+        smallest, largest = float(values[0]), float(values[-1])
+        return largest / smallest if smallest > 0 else math.inf
 
     def _paper(
         self, scalar: Scalar, state: State, choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None]
@@ -373,18 +337,3 @@ def _texts(values: Sequence[float]) -> str:
 
 def _floats(matrix: Any) -> Any:
     return np.array([float(x) for x in matrix.entries()]).reshape(matrix.nrows(), matrix.ncols())
-
-
-def by_form(series: Sequence[Series], quantity: str, scalar: Scalar, families: Sequence[int]) -> Mapping[str, Series]:
-    """The worst over some families for each form, distance by distance."""
-    found: dict[str, dict[float, Error]] = {}
-    for one in series:
-        if one.quantity == quantity and one.scalar == scalar and one.family in families:
-            errors = found.setdefault(one.form, {})
-            for e in one.errors:
-                errors[e.distance] = e.worse(errors.get(e.distance, e))
-    return {
-        form: Series(-1, scalar, quantity, form, tuple(found[form][d] for d in sorted(found[form], reverse=True)))
-        for form in FORMS
-        if form in found
-    }
