@@ -1,0 +1,189 @@
+"""What each thing that a scene does not need is worth: operations of u with one of them kept at a time.
+
+Measured on the minor form, which every model has; "kept" means that a number the structure analysis knows is treated
+as if it came at run time.  The weight of operations is that of the choice of forms (`symgen.graph.traverse.Cost`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.exterior import ActuationForms
+from symgen.dynamics.genericity import Genericity, genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.select import derive_quantities
+from symgen.dynamics.spaces import MinorSpace
+from symgen.graph.angles import share_angles
+from symgen.graph.matrix import Matrix, Vector, matvec
+from symgen.graph.scalar import Scalar
+from symgen.graph.traverse import cost, topological
+from symgen.model.model import Model
+
+
+@dataclass(frozen=True, slots=True)
+class Skipped:
+    """Weighted operations of u: as generated, by the minor form, and by it with one thing kept."""
+
+    model: str
+    generated: int
+    minor: int
+    kept: tuple[tuple[str, int | None], ...]
+
+
+class _Kept(Mechanics):
+    """A system some of whose known numbers hide behind symbols."""
+
+    def __init__(self, model: Model, hide: Callable[[Scalar], bool], columns: Sequence[bool], forces: bool) -> None:
+        super().__init__(model)
+        self._hide, self._columns, self._forces = hide, columns, forces
+        self._hidden = 0
+
+    def _behind(self) -> Scalar:
+        self._hidden += 1
+        return self.graph.symbol(f"hidden {self._hidden}")
+
+    def _matrix(self, matrix: Matrix, columns: Sequence[bool]) -> Matrix:
+        return tuple(
+            tuple(
+                self._behind() if kept and self._hide(x) else x for x, kept in zip(row, columns, strict=True)
+            )
+            for row in matrix
+        )
+
+    @cached_property
+    def constraint_jacobian(self) -> Matrix:
+        """B with what is kept as symbols."""
+        return self._matrix(super().constraint_jacobian, self._columns)
+
+    @cached_property
+    def control_matrix(self) -> Matrix:
+        """M with what is kept as symbols, where all coordinates are looked at."""
+        plain = super().control_matrix
+        return self._matrix(plain, [True] * self.m) if all(self._columns) else plain
+
+    @cached_property
+    def potential_force(self) -> Vector:
+        """Q with vanishing entries as symbols, where forces are kept."""
+        plain = super().potential_force
+        return tuple(self._behind() if self._forces and x.is_zero else x for x in plain)
+
+
+class _SummedForms(ActuationForms):
+    """The sum over choices of inputs even where there is one choice only."""
+
+    @property
+    def single(self) -> bool:
+        """Never a plain quotient."""
+        return False
+
+
+def skipped(model: Model) -> Skipped:
+    """The counts of one model with inputs."""
+    plain = Mechanics(model)
+    generic = genericity(plain)
+    (chosen,) = derive_quantities(model, ("inverse_dynamics",)).quantities
+    outputs = _minor(plain, generic)
+    kept = tuple(_variants(plain, generic, outputs))
+    return Skipped(model.name, _weight(chosen.outputs), _weight(outputs), kept)
+
+
+def _variants(plain: Mechanics, generic: Genericity, outputs: Vector) -> Iterator[tuple[str, int | None]]:
+    """Each thing by name with the weight when it is kept; None where the model has nothing of the kind."""
+    model, b = plain.model, plain.constraint_jacobian
+    free = [bool(b) and all(row[j].is_zero for row in b) for j in range(model.n)]
+    everywhere, nowhere = [True] * model.n, [False] * model.n
+
+    def weight(mechanics: Mechanics) -> int:
+        return _weight(_minor(mechanics, generic))
+
+    touched = weight(_Kept(model, lambda x: x.is_zero, free, False)) if any(free) else None
+    yield "coordinates no constraint touches", touched
+    yield "zeros of B and M", weight(_Kept(model, lambda x: x.is_zero, everywhere, False))
+    yield "constants of B and M", weight(_Kept(model, lambda x: bool(x.constant), everywhere, False))
+    vanishing = any(x.is_zero for x in plain.potential_force)
+    yield "forces that vanish", weight(_Kept(model, lambda _: False, nowhere, True)) if vanishing else None
+    yield "τ without G and C", _weight(_by_matrices(model, generic))
+    square = generic.m == generic.delta == generic.alpha and generic.rank == generic.r
+    yield "m = δ", _weight(_summed(model, generic)) if square else None
+    yield "groups of parameters", _each_time(plain, outputs)
+    unshared = cost(outputs).weight
+    yield "sines by addition", unshared if unshared != _weight(outputs) else None
+
+
+def _minor(mechanics: Mechanics, generic: Genericity) -> Vector:
+    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
+    return Derivation(mechanics, generic, space).inverse_dynamics
+
+
+def _by_matrices(model: Model, generic: Genericity) -> Vector:
+    """u from G q_ddot + C q_dot + Q - Q_a with the matrices G and C."""
+    mechanics = Mechanics(model)
+    graph, qd = mechanics.graph, mechanics.qd
+    inertial = matvec(graph, mechanics.mass_matrix, mechanics.qdd)
+    coriolis = matvec(graph, mechanics.coriolis_matrix(qd), qd)
+    forces = zip(inertial, coriolis, mechanics.potential_force, mechanics.applied_force, strict=True)
+    space = MinorSpace(graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
+    forms, restriction = space.actuation(mechanics.inputs, generic.alpha)
+    return forms.solve(restriction(tuple(g + c + q - a for g, c, q, a in forces)))
+
+
+def _summed(model: Model, generic: Genericity) -> Vector:
+    mechanics = Mechanics(model)
+    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
+    forms, restriction = space.actuation(mechanics.inputs, generic.alpha)
+    return _SummedForms(forms.rows, forms.inputs, forms.degree).solve(restriction(mechanics.balance))
+
+
+def _each_time(mechanics: Mechanics, outputs: Vector) -> int | None:
+    """The weight with every group of parameters formed again wherever it is used; None without groups."""
+    fixed = mechanics.factoring.fixed
+    nodes = topological(share_angles(mechanics.graph, outputs))
+    uses = [a for node in nodes if not fixed(node) for a in node.args if fixed(a) and a.op not in ("const", "symbol")]
+    shared = cost(uses).weight
+    again = sum(cost([group]).weight for group in uses)
+    return None if not uses else _weight(outputs) + again - shared
+
+
+def _weight(outputs: Sequence[Scalar]) -> int:
+    return cost(share_angles(outputs[0].graph, outputs)).weight
+
+
+def page(rows: Sequence[Skipped]) -> str:
+    """The page docs/skipping.md."""
+    names = [name for name, _ in rows[0].kept]
+    head = ["model", "u as generated", "minor form", *names]
+    lines = [_line(head), _line(["---"] * len(head))]
+    for row in rows:
+        kept = ("–" if weight is None else f"{weight} ({weight - row.minor:+d})" for _, weight in row.kept)
+        lines.append(_line([row.model, row.generated, row.minor, *kept]))
+    return _PAGE.replace("TABLE", "\n".join(lines))
+
+
+def _line(cells: Sequence[object]) -> str:
+    return "| " + " | ".join(str(cell) for cell in cells) + " |"
+
+
+_PAGE = """\
+# What a scene does not need, in operations
+
+The structure analysis finds what a system does not need, and says why (`symgen MODEL.yaml`, the report,
+`derivation.json`). This table says what each finding is worth for the inverse dynamics: weighted operations with one of
+them kept, that is, treated as if its number came at run time or its work were done each time. A sum or product weighs
+1, a quotient or root 6, a sine and cosine 30. Rank tests are not counted. Made by `make skipping`.
+
+TABLE
+
+- *u as generated* against *minor form* is what the choice of the form is worth, for one thing that M selects rows.
+- *coordinates no constraint touches*, *zeros of B and M*: their zero entries as numbers at run time. *constants*: the
+  entries that are numbers other than 0. *forces that vanish*: the zero entries of Q.
+- *τ without G and C*: G q̈ + C q̇ with the matrices G and C instead of the vector by itself, which is the cheaper of
+  two derivations; a product that happens to be shared can make the matrices cheaper by one or two.
+- *m = δ*: the sum over choices of inputs where there is one choice.
+- *groups of parameters*: sums and products of parameters alone formed wherever they are used.
+- *sines by addition*: a sine and cosine of its own for each angle.
+- No shipped model has several blocks of B. For two skates and a rod on one plane (`tests/dynamics/test_blocks.py`)
+  B⁺ weighs 87 block by block and 158 taken together.
+"""

@@ -1,0 +1,41 @@
+"""The worth of what a scene does not need: counted, never negative where a finding is certain, told in a table."""
+
+from __future__ import annotations
+
+import pytest
+import shipped
+
+from symgen.bench.skipping import page, skipped
+
+# Vectors and matrices are derived along different ways; one may share a product that the other does not.
+CERTAIN = (
+    "coordinates no constraint touches",
+    "zeros of B and M",
+    "constants of B and M",
+    "forces that vanish",
+    "m = δ",
+)
+
+
+@pytest.mark.parametrize("name", ["skate", "front_car", "slider_crank"])
+def test_keeping_something_never_costs_less(name: str) -> None:
+    found = skipped(shipped.model(name))
+    assert found.generated <= found.minor
+    kept = dict(found.kept)
+    for what in CERTAIN:
+        assert kept[what] is None or kept[what] >= found.minor, what
+    assert kept["zeros of B and M"] > found.minor
+
+
+def test_what_a_model_does_not_have_is_left_out() -> None:
+    kept = dict(skipped(shipped.model("slider_crank")).kept)
+    assert kept["coordinates no constraint touches"] is None
+    assert dict(skipped(shipped.model("skate")).kept)["sines by addition"] is None
+
+
+def test_the_page_has_a_row_for_each_model() -> None:
+    rows = [skipped(shipped.model(name)) for name in ("skate", "slider_crank")]
+    lines = page(rows).split("\n")
+    table = [line for line in lines if line.startswith("| ")]
+    assert [line.split(" | ")[0] for line in table] == ["| model", "| ---", "| skate", "| slider_crank"]
+    assert {line.count("|") for line in table} == {3 + len(rows[0].kept) + 1}
