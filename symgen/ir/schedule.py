@@ -32,7 +32,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
-from symgen.ir.sincos import ANGLE_LIMIT, sincos
+from symgen.ir.sincos import angle_limit, sincos
 from symgen.model.quantities import QUANTITIES
 
 # The order in which statuses are reported (interface, section 4).
@@ -52,7 +52,8 @@ def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalars: Seque
     programs: dict[Scalar, Program] = {}
     for scalar in scalars:
         filler = _Filler(limits.values(scalar))
-        programs[scalar] = Program(scalar, sincos(scalar), tuple(filler.kernel(kernel) for kernel in kernels))
+        filled = tuple(filler.kernel(kernel) for kernel in kernels)
+        programs[scalar] = Program(scalar, sincos(scalar, limits.wide), filled)
     return programs
 
 
@@ -70,6 +71,7 @@ class _Limits:
     """The tests of guards, each made once, with named thresholds in place of numbers."""
 
     def __init__(self, mechanics: Mechanics) -> None:
+        self.wide = mechanics.model.trig_range == "wide"
         self._mechanics = mechanics
         self._known: dict[Guard, _Test] = {}
         self._thresholds: dict[str, tuple[Guard, Fraction]] = {}
@@ -80,7 +82,7 @@ class _Limits:
             name: Literal(_threshold(self._mechanics, guard, scalar) * factor)
             for name, (guard, factor) in self._thresholds.items()
         }
-        return {ANGLE: Literal(ANGLE_LIMIT[scalar]), **found}
+        return {ANGLE: Literal(angle_limit(scalar, self.wide)), **found}
 
     def tests(self, guards: Sequence[Guard]) -> list[_Test]:
         """The tests in the order in which statuses are reported."""

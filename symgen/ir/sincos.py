@@ -1,6 +1,6 @@
 """The portable sine/cosine pair as a straight-line function of + - * only.
 
-The argument is reduced by multiples of pi/2 in three parts (Cody and Waite, Software Manual for the Elementary
+The argument is reduced by multiples of pi/2 in three or four parts (Cody and Waite, Software Manual for the Elementary
 Functions, ch. 8), whose leading parts are short enough that their products with the multiple are exact; minimax
 polynomials on |r| <= pi/4 give both values; the quadrant acts through products with 0 and +-1, so that there is no
 branch, no table, no integer and no library call, and every IEEE machine returns the same bits.
@@ -13,8 +13,10 @@ from fractions import Fraction
 from symgen.graph.scalar import PI
 from symgen.ir.kernel import Function, Literal, Local, Operand, OperationName, Scalar, Statement
 
-# Beyond these the reduction is no longer accurate, and kernels answer ANGLE_RANGE.
+# Beyond these the reduction is no longer accurate, and kernels answer ANGLE_RANGE; the second ones cost two operations
+# more and serve wheels that turn for hours.
 ANGLE_LIMIT: dict[Scalar, Fraction] = {"float64": Fraction(100_000), "float32": Fraction(100)}
+WIDE_ANGLE_LIMIT: dict[Scalar, Fraction] = {"float64": Fraction(10_000_000), "float32": Fraction(40_000)}
 
 # Coefficients of sin r = r + r z S(z) and cos r = 1 - z/2 + z^2 C(z), z = r^2: minimax on [0, (pi/4 + 2^-8)^2] among
 # polynomials with coefficients of the scalar type.
@@ -50,21 +52,27 @@ COSINE: dict[Scalar, tuple[float, ...]] = {
 }
 # 1.5 * 2^(p-1): adding and subtracting it rounds to the nearest integer.
 ROUNDER: dict[Scalar, Fraction] = {"float64": Fraction(3 * 2**51), "float32": Fraction(3 * 2**22)}
-# Bits of the two leading parts of pi/2: their products with every multiple in range fit into the significand, and the
-# third part is so short a tail that subtracting it rounds hardly ever.
-LEADING_BITS: dict[Scalar, tuple[int, int]] = {"float64": (36, 36), "float32": (17, 18)}
+# Bits of the leading parts of pi/2: their products with every multiple in range fit into the significand. In the wide
+# range the second one ends where the last bit of 1 does, so that what is left is exact before the third is taken away.
+LEADING_BITS: dict[Scalar, tuple[int, ...]] = {"float64": (36, 36), "float32": (17, 18)}
+WIDE_LEADING_BITS: dict[Scalar, tuple[int, ...]] = {"float64": (30, 24, 30), "float32": (9, 9, 9)}
 
 
-def half_pi_parts(scalar: Scalar) -> tuple[Fraction, Fraction, Fraction]:
-    """pi/2 as a sum of two short parts and a rest."""
+def angle_limit(scalar: Scalar, wide: bool) -> Fraction:
+    """The largest magnitude of an argument whose sine and cosine are accurate."""
+    return (WIDE_ANGLE_LIMIT if wide else ANGLE_LIMIT)[scalar]
+
+
+def half_pi_parts(scalar: Scalar, wide: bool = False) -> tuple[Fraction, ...]:
+    """pi/2 as a sum of short parts and a rest."""
     rest = PI / 2
     parts = []
-    for bits in LEADING_BITS[scalar]:
+    for bits in (WIDE_LEADING_BITS if wide else LEADING_BITS)[scalar]:
         shift = bits - 1 - _exponent(rest)
         part = Fraction(int(rest * 2**shift), 1) / 2**shift
         parts.append(part)
         rest -= part
-    return parts[0], parts[1], rest
+    return (*parts, rest)
 
 
 def _exponent(value: Fraction) -> int:
@@ -84,18 +92,19 @@ class _Writer:
         return Local(target)
 
 
-def sincos(scalar: Scalar) -> Function:
-    """The function (sine, cosine) = sincos(x) for one scalar type."""
+def sincos(scalar: Scalar, wide: bool = False) -> Function:
+    """The function (sine, cosine) = sincos(x) for one scalar type and range."""
     emit = _Writer()
     x = Local("x")
     rounder = Literal(ROUNDER[scalar])
-    first, second, third = half_pi_parts(scalar)
     turns = emit("turns", "mul", x, Literal(2 / PI))
     shifted = emit("shifted", "add", turns, rounder)
     k = emit("k", "sub", shifted, rounder)
-    r1 = emit("r1", "sub", x, emit("k1", "mul", k, Literal(first)))
-    r2 = emit("r2", "sub", r1, emit("k2", "mul", k, Literal(second)))
-    r = emit("r", "sub", r2, emit("k3", "mul", k, Literal(third)))
+    r = x
+    parts = half_pi_parts(scalar, wide)
+    for place, part in enumerate(parts, start=1):
+        product = emit(f"k{place}", "mul", k, Literal(part))
+        r = emit(f"r{place}" if place < len(parts) else "r", "sub", r, product)
     z = emit("z", "mul", r, r)
     s = _horner(emit, "s", SINE[scalar], z)
     rz = emit("rz", "mul", r, z)

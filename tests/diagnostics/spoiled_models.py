@@ -80,11 +80,12 @@ SHAPE = {
     "mapping_for_an_expression": GOOD + "potential_energy: {a: 1}\n",
     "scalar_for_a_coordinate": GOOD.replace("x: {unit: m}", "x: m"),
     "bodies_form": GOOD
-    + "gravity: [0, 0, -9.81]\nbodies: {b: {mass: 1}}\ntrig_range: wide\n",
+    + "gravity: [0, 0, -9.81]\nbodies: {b: {mass: 1}}\nurdf: robot.urdf\n",
     "comma_in_flow": GOOD + "inputs: {T: {acts_on: {a: atan2(x, l)}}}\n",
     "comma_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, from the vertical"),
     "comma_and_one_word_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, absolute"),
     "report": GOOD + "report: long\n",
+    "trig_range": GOOD + "trig_range: far\n",
     "model_name_is_a_path": GOOD.replace("carriage", "../../x"),
     "model_name_reserved": GOOD.replace("carriage", "while"),
     "long_name": GOOD.replace("carriage", "a" * 60),

@@ -15,6 +15,8 @@ import pytest
 import shipped
 
 from symgen.emit.c import emit_c
+from symgen.ir.kernel import Scalar
+from symgen.ir.sincos import angle_limit, sincos
 
 pytestmark = pytest.mark.toolchain
 HERE = Path(__file__).resolve().parent
@@ -27,18 +29,19 @@ def run(*command: str | Path) -> str:
     return subprocess.run([str(part) for part in command], check=True, capture_output=True, text=True).stdout
 
 
-def written(folder: Path, suffix: str) -> Path:
+def written(folder: Path, suffix: str, wide: bool = False) -> Path:
     """The source of one kernel with several angles; beside it its header."""
-    program = shipped.programs(MODEL)["float32" if suffix else "float64"]
+    scalar: Scalar = "float32" if suffix else "float64"
+    program = replace(shipped.programs(MODEL)[scalar], sincos=sincos(scalar, wide))
     kernels = tuple(kernel for kernel in program.kernels if kernel.name == "inverse_dynamics")
     for path, text in emit_c(shipped.model(MODEL), replace(program, kernels=kernels)).items():
         (folder / Path(path).name).write_text(text)
     return folder / f"{MODEL}{suffix}.c"
 
 
-def compiled(folder: Path, compiler: str, flags: list[str], driver: str, suffix: str) -> Path:
+def compiled(folder: Path, compiler: str, flags: list[str], driver: str, suffix: str, wide: bool = False) -> Path:
     """A driver around the generated source, whose private functions it calls."""
-    source = written(folder, suffix)
+    source = written(folder, suffix, wide)
     names = [f"-DPAIR={MODEL}_pair{suffix}", f"-DGROUP={MODEL}_sincos_group{suffix}", f'-DSOURCE="{source}"']
     program = folder / "driver"
     kind = f"-DREAL={'float' if suffix else 'double'}"
@@ -46,12 +49,16 @@ def compiled(folder: Path, compiler: str, flags: list[str], driver: str, suffix:
     return program
 
 
-def test_single_precision_everywhere(tool: Callable[[str], str], tmp_path: Path) -> None:
-    program = compiled(tmp_path, tool("gcc"), [*EXACT, "-O2"], "sweep_pair.c", "_f")
-    sine, cosine, error, asymmetric = run(program).split()
+@pytest.mark.parametrize("wide", [False, True], ids=["normal", "wide"])
+def test_single_precision_everywhere(tool: Callable[[str], str], tmp_path: Path, wide: bool) -> None:
+    flags = [*EXACT, "-O2", f"-DLIMIT={int(angle_limit('float32', wide))}.0f"]
+    sine, cosine, near, far, asymmetric = run(
+        compiled(tmp_path, tool("gcc"), flags, "sweep_pair.c", "_f", wide)
+    ).split()
     assert float(sine) <= 1.6
     assert float(cosine) <= 1.6
-    assert float(error) <= 7e-8
+    assert float(near) <= 7e-8
+    assert float(far) <= (9e-8 if wide else 0.0)
     assert int(asymmetric) == 0
 
 
