@@ -74,8 +74,9 @@ class _Shared:
         return replace(kernel, loads=tuple(loads), blocks=parts.blocks)
 
     def _add(self, statement: Statement, local: dict[str, str], parameters: dict[str, Load]) -> None:
-        for name in names_in(statement.operands) & parameters.keys():
-            self.loads[name] = parameters[name]
+        for operand in statement.operands:
+            if isinstance(operand, Local) and operand.name in parameters:
+                self.loads[operand.name] = parameters[operand.name]
         operands = tuple(o if isinstance(o, Literal) else Local(local[o.name]) for o in statement.operands)
         meaning = statement.operation, operands
         if meaning not in self._known:

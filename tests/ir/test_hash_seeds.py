@@ -13,6 +13,8 @@ import hashlib, sys
 from pathlib import Path
 from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
+from symgen.emit.c_batch import emit_c_batch
+from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.python import emit_python
 from symgen.ir.schedule import schedule
 from symgen.model.load import load_model
@@ -22,8 +24,9 @@ for name in ("slider_crank", "front_car"):
     derivations = derive_quantities(model, ("all",))
     programs = schedule(derivations.mechanics, derivations.quantities, ("float64", "float32"))
     for program in programs.values():
-        for path, text in sorted(emit_c(model, program).items()):
-            digest.update(path.encode() + text.encode())
+        for emit in (emit_c, emit_c_batch, emit_c_prepared):
+            for path, text in sorted(emit(model, program).items()):
+                digest.update(path.encode() + text.encode())
     for path, text in sorted(emit_python(model, programs["float64"]).items()):
         digest.update(path.encode() + text.encode())
 print(digest.hexdigest())
