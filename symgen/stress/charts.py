@@ -11,7 +11,7 @@ from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.paths.charts import COLOURS, svg
 from symgen.stress.kernels import SCALARS
 from symgen.stress.run import Stress
-from symgen.stress.sweep import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by_form
+from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by_form
 from symgen.verify.tolerance import FACTOR
 
 SYMBOLS = {

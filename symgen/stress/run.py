@@ -12,11 +12,13 @@ from typing import Any
 
 from symgen.model.model import Model
 from symgen.stress.families import Family, Search, search
+from symgen.stress.form_kernels import FormKernels
 from symgen.stress.kernels import STRESSED, Kernels
 from symgen.stress.long_run import Run, complaints, long_runs
 from symgen.stress.odd_numbers import OddNumbers, odd_numbers
 from symgen.stress.scaling import Scaled, scaling
-from symgen.stress.sweep import Series, StatusCount, Sweeper
+from symgen.stress.series import Series
+from symgen.stress.sweep import DEEPEST, StatusCount, Sweeper
 from symgen.verify.reference import Reference
 from symgen.verify.states import FEWEST_STATES, sample_states
 from symgen.verify.tolerance import FACTOR
@@ -92,7 +94,8 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
         kernels = Kernels(model, folder)
         progress("looking for singularities")
         searched = search(reference)
-        sweeper = Sweeper(reference, kernels, searched.families)
+        forms = FormKernels(model, tuple(DEEPEST), kernels.names)
+        sweeper = Sweeper(reference, kernels, searched.families, forms)
         for index, family in enumerate(searched.families):
             progress(f"{family.kind}, {family.label}")
             sweeper.family(index)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from symgen.stress.run import Stress
-from symgen.stress.sweep import FORMS, SYMGEN, by_form
+from symgen.stress.series import FORMS, SYMGEN, by_form
 from symgen.terminal import columns
 
 SHORTEST = {

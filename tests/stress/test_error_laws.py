@@ -12,7 +12,8 @@ from test_families import found, known, reference
 
 from symgen.stress.families import Family, _family
 from symgen.stress.kernels import PIECES, Kernels
-from symgen.stress.sweep import FIXED, PARTITION, SWITCHING, SYMGEN, Series, Sweeper
+from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series
+from symgen.stress.sweep import Sweeper
 from symgen.stress.zeros import places
 
 
