@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PAPER := skate front_car front_car_wheelset rear_car rapkm_2rrr_rr rapkm_two_drives
 
-.PHONY: run test generated bench stress skipping trig docs lock
+.PHONY: run test generated firmware bench stress skipping trig docs lock
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -32,6 +32,11 @@ trig: $(VENV)/installed
 stress: $(VENV)/installed
 	$(BIN)/symgen stress models/*.yaml --quiet; status=$$?; \
 	    $(BIN)/python tools/stress_pages.py generated models/*.yaml && exit $$status
+
+# Every model on every emulated core, the goals of cost, the example firmware; about 20 minutes.
+firmware: $(VENV)/installed
+	$(BIN)/pytest -m firmware
+	$(BIN)/symgen target models/*.yaml --cpu all --quiet
 
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed
