@@ -133,14 +133,23 @@ def _batches(
         function = _library(folder, model, program)[f"{model.name}_{kernel.name}_batch{SUFFIXES[scalar]}"]
         rows = [np.ascontiguousarray(part.T, dtype=scalar) for part in _arguments(kernel, parts)]
         result = np.empty((len(kernel.outputs), STREAMED), dtype=scalar)
-        given = [*rows, np.array([*parameters, 0.0], dtype=scalar), result]
-
-        def run(count: int, function: Any = function, given: Sequence[Any] = given) -> None:
-            pointers = [ctypes.c_void_p(array.ctypes.data) for array in given]
-            function(ctypes.c_size_t(count), ctypes.c_size_t(STREAMED), *pointers, None)
+        run = _call(function, [*rows, np.array([*parameters, 0.0], dtype=scalar), result], (STREAMED,), (None,))
 
         ways.append(_Way("symgen", "batch", "C", scalar, run))
     return ways
+
+
+def _call(
+    function: Any, arrays: Sequence[Any], sizes: Sequence[int] = (), last: Sequence[None] = ()
+) -> Callable[[int], None]:
+    """The function of a count of states; the arrays are kept, their addresses are looked up once."""
+    kept = [ctypes.c_size_t(size) for size in sizes]
+    pointers = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
+
+    def run(count: int, _arrays: Sequence[Any] = arrays) -> None:
+        function(ctypes.c_size_t(count), *kept, *pointers, *last)
+
+    return run
 
 
 def _numpy(
@@ -188,11 +197,7 @@ def _loops(
     library = ctypes.CDLL(str(target))
     result = np.empty((STREAMED, task.size))
     given = [*parts, np.array([*parameters, 0.0]), result]
-    ways = []
-    for candidate in loops:
-
-        def run(count: int, function: Any = library[f"{candidate.entry}_loop"]) -> None:
-            function(ctypes.c_size_t(count), *(ctypes.c_void_p(array.ctypes.data) for array in given))
-
-        ways.append(_Way(candidate.generator, f"{candidate.form}, in a loop", "C", "float64", run))
-    return ways
+    return [
+        _Way(c.generator, f"{c.form}, in a loop", "C", "float64", _call(library[f"{c.entry}_loop"], given))
+        for c in loops
+    ]
