@@ -69,6 +69,7 @@ def test_generates_into_generated(asked: list[Options], tmp_path: Path, capsys: 
     [
         (["--outputs", "energy, mass_matrix"], Options(outputs=("energy", "mass_matrix"))),
         (["--scalar", "float32"], Options(scalars=("float32",))),
+        (["--trig", "libm"], Options(trig="libm")),
         (["--only", "python,c"], Options(parts=("c", "python"))),
         (["--no-verify", "--states", "200"], Options(verify=False, states=200)),
     ],
@@ -212,7 +213,9 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
 def test_the_real_pipeline_to_c(tmp_path: Path, scalar: Scalar) -> None:
     assert code(SKATE, "--out", str(tmp_path), "--only", "c", "--no-verify", "--quiet", "--scalar", scalar) == 0
     suffix = "" if scalar == "float64" else "_f"
-    assert {path.name for path in (tmp_path / "skate/c").iterdir()} == {f"skate{suffix}.h", f"skate{suffix}.c"}
+    kinds = ("", "_batch", "_prepared", "_sc")
+    files = {f"skate{kind}{suffix}.{ending}" for kind in kinds for ending in "hc"}
+    assert {path.name for path in (tmp_path / "skate/c").iterdir()} == files
 
 
 def test_out_is_a_file(asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
