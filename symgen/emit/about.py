@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from symgen.emit.locals import Names
 from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Kernel, Program, Status
-from symgen.model.model import Model
+from symgen.model.model import Allocation, Model
 
 STATUS_MEANING: dict[Status, str] = {
     Status.OK: "the result is valid",
@@ -28,6 +28,19 @@ def symbol_lines(model: Model) -> Iterator[str]:
         yield "Inputs u:"
         for index, control in enumerate(model.inputs):
             yield _symbol(f"u[{index}]", control.name, control.unit, control.description)
+    if model.allocation is not None:
+        yield "How inverse_dynamics shares the work among the inputs:"
+        yield from _allocation_lines(model.allocation)
+
+
+def _allocation_lines(allocation: Allocation) -> Iterator[str]:
+    yield f"  of all u that produce the motion {'the nearest to preload_*' if allocation.preferred else 'the least'}"
+    if allocation.weights:
+        yield "  in the norm with the factors weight_* (1 where there is none), which must be positive"
+    if allocation.preload is not None:
+        yield "  and preload times the internal force of norm 1"
+    if allocation.limits:
+        yield "  within limit_*, as far as the internal force alone can keep u there: compare u with its limits"
 
 
 def renaming_lines(names: Names) -> Iterator[str]:

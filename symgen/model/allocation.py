@@ -21,6 +21,8 @@ from symgen.model.walk import evaluate
 PRELOAD = "preload"
 ONE_NAME_EACH = "rename that one; settings are called as the generated struct's members"
 
+_DESCRIBED = {"weight": " in the norm of the inputs", "preload": "", "limit": "", "direction": ", internal force"}
+
 
 @dataclass(frozen=True, slots=True)
 class _Setting:
@@ -79,7 +81,8 @@ def read_allocation(
         chosen = ranges.get(setting.name)
         if setting.role == "weight":
             _check_weight(scope, setting, value, chosen)
-        made.append(Parameter(setting.name, unit, setting.about, expression, chosen, setting.node.span))
+        description = setting.about.replace("`", "") + _DESCRIBED[setting.role]
+        made.append(Parameter(setting.name, unit, description, expression, chosen, setting.node.span))
     complete = {parameter.name for parameter in made}
     limits: list[Limit] = []
     for key, node in entries(member(block, "limits")):
@@ -124,7 +127,7 @@ def _settings(tree: MappingNode) -> Iterator[_Setting]:
         yield _Setting(weight_name(key.value), key.value, f"weight of `{key.value}`", node, key.span, "weight")
     preload = member(block, PRELOAD)
     if isinstance(preload, ScalarNode):
-        yield _Setting(PRELOAD, "", "preload", preload, preload.span, "preload")
+        yield _Setting(PRELOAD, "", "preload", preload, preload.span, "direction")
     for key, node in entries(preload):
         about = f"preload of `{key.value}`"
         yield _Setting(preferred_name(key.value), key.value, about, node, key.span, "preload")
