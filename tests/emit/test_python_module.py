@@ -6,7 +6,7 @@ import importlib.util
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import handmade
 import numpy as np
@@ -150,6 +150,10 @@ def test_compiled_functions_are_those_of_the_module(toy: ModuleType, tool: Calla
     swept = toy.Parameters(L=np.linspace(1.0, 2.0, len(many[0])))
     wanted = toy.inverse_dynamics(many, many, many, swept)
     assert compiled.inverse_dynamics(many, many, many, p=swept).tobytes() == wanted.tobytes()
+    other = SimpleNamespace(**vars(toy.PARAMETERS))
+    for other.L in (1.5, 1.25):  # the same object with other contents
+        wanted = toy.inverse_dynamics(many, many, many, other)
+        assert compiled.inverse_dynamics(many, many, many, other).tobytes() == wanted.tobytes()
     assert compiled.mass_matrix(many).tobytes() == toy.mass_matrix(many).tobytes()
     assert compiled.mass_matrix([0.1, 0.2]).tobytes() == toy.mass_matrix([0.1, 0.2]).tobytes()
     assert compiled.mass_matrix.__doc__ == toy.mass_matrix.__doc__
