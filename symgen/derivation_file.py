@@ -14,6 +14,7 @@ from symgen.dynamics.select import Derivations
 from symgen.dynamics.structure import Structure
 from symgen.emit.operations import count_operations
 from symgen.emit.quantities import BATCHED
+from symgen.ir.given_trig import given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
 from symgen.model.model import Model
@@ -36,6 +37,9 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
     prepared = prepare(program, BATCHED)
     for kernel in () if prepared is None else prepared.kernels:
         kernels[kernel.name]["operations_prepared"] = _operations(kernel)
+    for kernel in program.kernels:
+        if kernel.name in BATCHED and (given := given_trig(kernel)) is not None:
+            kernels[kernel.name]["operations_sines_given"] = _operations(given.kernel)
     content = {
         "symgen": __version__,
         "model": model.name,
