@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import textwrap
 
+from symgen.dynamics.inverse import FormChoice
 from symgen.report.content import ReportInput
 from symgen.report.terminal import render_text_math
 
@@ -53,6 +54,12 @@ def quantity_text(report: ReportInput, quantity: str) -> str:
         parts = ", ".join(f"{number} {kind}" for kind, number in counts.items() if number)
         lines += ["", f"kernel: {parts or 'no operations'}"]
     return "\n".join(lines)
+
+
+def forms_text(form: FormChoice) -> str:
+    """The forms of u: which is taken, what each costs by count, and why it is valid or where it is not."""
+    entries = [f"{name} ({weight}){', taken' * (name == form.way)}: {remark}" for name, weight, remark in form.others]
+    return "\n".join(_section("forms of inverse_dynamics (counted cost; choose one with --form)", entries))
 
 
 def _singular(report: ReportInput) -> list[str]:

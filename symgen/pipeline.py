@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.dynamics.catalogue import BY_NAME
+from symgen.dynamics.inverse import InverseDynamics
 from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities
 from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
@@ -93,7 +94,7 @@ def explain(path: Path, quantity: str | None, progress: Progress, form: str = "a
     `form` is the form of u whose validity is told.
     """
     from symgen.closedform.limits import TooLargeError
-    from symgen.explain import overview, quantity_text
+    from symgen.explain import forms_text, overview, quantity_text
     from symgen.report.gather import gather
 
     if quantity is not None and quantity not in BY_NAME:
@@ -107,7 +108,11 @@ def explain(path: Path, quantity: str | None, progress: Progress, form: str = "a
         report = gather(model, _facts(derived))
     except TooLargeError as large:
         return f"closed forms are left out: {large}"
-    return overview(report) if quantity is None else quantity_text(report, quantity)
+    text = overview(report) if quantity is None else quantity_text(report, quantity)
+    chosen = derived.derivations.form
+    if chosen is None or quantity not in (None, "inverse_dynamics"):
+        return text
+    return f"{text}\n{forms_text(chosen)}"
 
 
 def _outputs(model: Model, options: Options) -> tuple[str, ...]:
@@ -170,7 +175,18 @@ def _facts(derived: _Derived) -> Facts:
 
     operations = {kernel.name: count_operations(kernel.statements) for kernel in derived.program.kernels}
     decisions = tuple((decision.what, decision.why) for decision in derived.structure.decisions)
-    return Facts(operations, (*decisions, *derived.derivations.absent, *_forms(derived.derivations)))
+    return Facts(operations, (*decisions, *derived.derivations.absent, *_failing_forms(derived)))
+
+
+def _failing_forms(derived: _Derived) -> tuple[tuple[str, str], ...]:
+    """Where u is not valid if a form was asked for, and which forms are left to be asked for and where they fail."""
+    form = derived.derivations.form
+    if form is None:
+        return ()
+    if not form.verdict.admitted:
+        return _forms(derived.derivations)
+    others = InverseDynamics(derived.model, derived.derivations.generic).failing()
+    return tuple((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
 
 
 def _reporting(model: Model) -> Background[ReportFiles]:

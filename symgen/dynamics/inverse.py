@@ -101,6 +101,12 @@ class InverseDynamics:
             return offer, FormChoice(offer.way, found, ((offer.way, offer.form.weight, found.explanation),))
         return self._cheapest()
 
+    def failing(self) -> tuple[tuple[str, str], ...]:
+        """The forms among those that are chosen by themselves that fail at regular states, and where each does."""
+        offers = [offer for name in AUTOMATIC if isinstance(offer := self.offer(name), Offer)]
+        verdicts = [(offer.way, self.verdict(offer)) for offer in offers]
+        return tuple((way, found.explanation) for way, found in verdicts if not found.admitted)
+
     def _cheapest(self) -> tuple[Offer, FormChoice] | str:
         offers = {name: offer for name in AUTOMATIC[:-1] if isinstance(offer := self.offer(name), Offer)}
         weights = {name: offer.form.weight for name, offer in offers.items()}

@@ -7,7 +7,7 @@ squares forces each of its terms to 0: if a measure becomes 0 with them, it vani
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import combinations
 
 from symgen.dynamics.admission.residues import Residues
@@ -41,6 +41,11 @@ class Proof:
                 return tuple(rest)
             self._known.clear()
             left = rest
+
+    def add(self, measures: Iterable[Scalar]) -> None:
+        """More scalars whose zeros are known."""
+        self._measures += measures
+        self._known.clear()
 
     def shown(self, node: Scalar) -> bool:
         """Whether the scalar is proved to vanish only where a measure does."""

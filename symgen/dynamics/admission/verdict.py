@@ -11,6 +11,7 @@ from symgen.dynamics.admission.search import STARTS, Search
 from symgen.dynamics.forms.form import Form
 from symgen.dynamics.forms.system import System
 from symgen.graph.scalar import Scalar
+from symgen.graph.transplant import transplanted
 
 DECIMALS = 6  # of a state in a message
 FAILS = "this form is singular where"
@@ -58,15 +59,25 @@ def proof_for(system: System, measures: Sequence[Scalar]) -> Proof:
 
 def verdict(system: System, form: Form, measures: Sequence[Scalar], first_only: bool = False) -> Verdict:
     """The verdict on a form of `system`; with `first_only` one singular denominator is enough."""
-    left = proof_for(system, measures).unproved(form.divisors)
+    proof = proof_for(system, measures)
+    left = sorted(proof.unproved(form.divisors), key=lambda divisor: divisor.size)
+    proved = len(form.divisors) - len(left)
     singular: list[Singular] = []
+    searched = 0
     if left:
         search = Search(system.mechanics, system.generic)
+        here = transplanted(system.mechanics.graph, measures)
         for divisor in left:
+            if proof.shown(divisor):
+                proved += 1  # a rank measure times a pivot that has been named already
+                continue
             found = search.zero_of(divisor)
             if found is not None:
                 state = tuple((name, round(float(value), DECIMALS)) for name, value in found.point)
                 singular.append(Singular(formula(divisor), state))
+                proof.add(factor * measure for measure in here for factor in (divisor, divisor * divisor))
                 if first_only:
                     break
-    return Verdict(len(form.divisors) - len(left), len(left) - len(singular), tuple(singular))
+            else:
+                searched += 1
+    return Verdict(proved, searched, tuple(singular))
