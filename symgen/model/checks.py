@@ -80,7 +80,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         start = {name: float(value) for name, value in model.configuration}
         _add(scope, check_motion(mechanics, start, model.independent_velocities, _block_spans(tree)))
         if model.allocation is not None and len(scope.mistakes) == before:
-            _add(scope, check_redundancy(mechanics, start, model.inputs, model.definitions, model.allocation))
+            _add(scope, check_redundancy(mechanics, start, model.inputs, model.allocation))
 
 
 def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:

@@ -8,9 +8,8 @@ from collections.abc import Iterator
 from symgen.diagnostics import Mistake, Notice
 from symgen.model.dense import Rows, rank
 from symgen.model.feasibility import SAMPLES, THRESHOLDS
-from symgen.model.gradient import Gradients
 from symgen.model.mechanics import Mechanics
-from symgen.model.model import Allocation, Definition, Input
+from symgen.model.model import Allocation, Input
 from symgen.model.names import counted
 
 
@@ -18,7 +17,6 @@ def check_redundancy(
     mechanics: Mechanics,
     start: dict[str, float],
     inputs: tuple[Input, ...],
-    definitions: tuple[Definition, ...],
     allocation: Allocation,
 ) -> Iterator[Mistake | Notice]:
     """What the block `allocation` asks for and these inputs cannot do.
@@ -26,7 +24,7 @@ def check_redundancy(
     Needed are more inputs than the rank of the projected control matrix, for a preload along one direction and for
     limits exactly one more than δ, and independent constraints (else that direction has no sign of its own).
     """
-    samples = list(_samples(mechanics, start, inputs, definitions))
+    samples = list(_samples(mechanics, start, inputs))
     if not samples:
         return
     (constraints, together), _ = Counter(ranks for ranks, _ in samples).most_common(1)[0]
@@ -73,21 +71,22 @@ def _check_direction(
 
 
 def _samples(
-    mechanics: Mechanics, start: dict[str, float], inputs: tuple[Input, ...], definitions: tuple[Definition, ...]
+    mechanics: Mechanics, start: dict[str, float], inputs: tuple[Input, ...]
 ) -> Iterator[tuple[tuple[int, int], tuple[Rows, Rows]]]:
     """(rank B, rank [B; Mᵀ]) with B and the columns of M, where they are clear-cut."""
     index = {c.name: i for i, c in enumerate(mechanics.coordinates)}
-    named = {definition.name: definition.value for definition in definitions}
     for q in mechanics.admissible(start, SAMPLES):
-        at = {**mechanics.defaults, **{c.name: x for c, x in zip(mechanics.coordinates, q, strict=True)}}
-        gradients = Gradients(at, index, named)
+        expansion = mechanics.expansion(q, mechanics.defaults)
         try:
             b = mechanics.jacobian(q)
             columns = []
             for item in inputs:
                 column = [0.0] * len(q)
                 for name, coefficient in item.acts_on:
-                    column[index[name]] = gradients.of(coefficient)[0]
+                    column[index[name]] = expansion.of(coefficient).get((), (0.0, 0.0))[0]
+                if item.velocity is not None:
+                    worked_on = expansion.of(item.velocity)
+                    column = [worked_on.get((c.rate,), (0.0, 0.0))[0] for c in mechanics.coordinates]
                 columns.append(column)
         except (ArithmeticError, ValueError):
             continue
