@@ -16,8 +16,9 @@ TEXT = f"""## Many states
 u of many states with one set of parameters, one core, float64 unless said otherwise; medians of passes in turns, in
 million states a second. **batch** is the C over arrays of components, **compile()** the same from Python over arrays
 of states; NumPy runs the same closed form on the same arrays of states. All C, the peers' too, is compiled with
-`{" ".join(FLAGS)}`. The first number is for {STREAMED} states, which come from memory, the second for {CACHED}, which
-stay in the cache. The last columns are the ratios of times at {STREAMED} states; in brackets the goal, bold if missed.
+`{" ".join(FLAGS)}`.
+The first number is for {STREAMED} states, which come from memory, the one in brackets for {CACHED}, which stay in the
+cache. The last columns are the ratios of times at {STREAMED} states; in brackets the goal, bold if missed.
 
 """
 
