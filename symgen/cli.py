@@ -34,6 +34,8 @@ _EPILOG = """commands:
   symgen bench MODEL.yaml...        run time against error, beside other tools
   symgen stress MODEL.yaml...       errors near singularities, extreme values, a long run
   symgen target MODEL.yaml --cpu C  instructions, bytes and bits on emulated microcontrollers
+  symgen simulate MODEL.yaml        integrates: CSV, chart, animation of frames and points
+  symgen new NAME                   a commented model to start from
   symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
   symgen schema                     JSON Schema of model files, for editors
 
@@ -101,7 +103,7 @@ def _generate(arguments: list[str]) -> int:
     parser.add_argument(
         "--scalar", choices=tuple(_SCALARS), default="both", help="scalar types of the C (default: both)"
     )
-    parser.add_argument("--only", metavar="PARTS", type=_parts, default=PARTS, help="of c,python,report (default: all)")
+    parser.add_argument("--only", metavar="PARTS", type=_parts, default=PARTS, help="of c,python,report,package,proof")
     _add_form(parser)
     parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
     parser.add_argument(
@@ -244,11 +246,60 @@ def _target(arguments: list[str]) -> int:
     return _each_file(given.models, given.quiet, one)
 
 
+def _simulate(arguments: list[str]) -> int:
+    parser = _parser("symgen simulate", "Integrates a model from a consistent start: CSV, chart and animation.")
+    parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
+    parser.add_argument("--duration", metavar="S", type=_positive, default=5.0, help="seconds (default: 5)")
+    parser.add_argument("--frames", metavar="N", type=int, default=50, help="frames a second (default: 50)")
+    parser.add_argument(
+        "--start", metavar="x=1,x_dot=2", type=_values, default={}, help="coordinates and rates at the start"
+    )
+    parser.add_argument("--inputs", metavar="u=1", type=_values, default={}, help="constant inputs (default: 0)")
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, default=Path("generated"), help="writes DIR/<model>/ (default: generated)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
+    given = parser.parse_args(arguments)
+
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.simulate.command import Request, run_simulate
+
+        request = Request(given.duration, max(1, given.frames), given.start, given.inputs)
+        return run_simulate(path, given.out, request, given.quiet, progress)
+
+    return _each_file(given.models, given.quiet, one)
+
+
+def _positive(text: str) -> float:
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise ValueError(text)
+    return value
+
+
+def _values(text: str) -> dict[str, float]:
+    """`a=1,b=2` as a mapping."""
+    pairs = (entry.partition("=") for entry in text.split(",") if entry.strip())
+    return {name.strip(): float(value) for name, _, value in pairs}
+
+
+def _new(arguments: list[str]) -> int:
+    parser = _parser("symgen new", "Writes NAME.yaml, a commented model to start from.")
+    parser.add_argument("name", metavar="NAME", help="the model's name, a C identifier")
+    given = parser.parse_args(arguments)
+    from symgen.starting_model import write_starting_model
+
+    print(f"written: {write_starting_model(given.name, Path())}")
+    return 0
+
+
 _COMMANDS: dict[str, Callable[[list[str]], int]] = {
     "verify": _verify,
     "bench": _bench,
     "stress": _stress,
     "target": _target,
+    "simulate": _simulate,
+    "new": _new,
     "explain": _explain,
     "schema": _schema,
 }

@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 
 from symgen.diagnostics import SymgenBug
 
-MEASURED = ("certificate.json", "*.pdf", "bench.*", "stress.*", "target.*")
+MEASURED = ("certificate.json", "*.pdf", "bench.*", "stress.*", "target.*", "simulation.*")
 _HELD_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 

@@ -1,0 +1,110 @@
+"""`symgen simulate` for one model: start, integrate, write CSV, chart and animation."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from symgen.dynamics.genericity import configurations, parameter_values
+from symgen.dynamics.mechanics import Mechanics
+from symgen.model.load import load_model
+from symgen.model.model import Model
+from symgen.model.names import did_you_mean
+from symgen.results import WrongUseError
+from symgen.simulate.animation import animation
+from symgen.simulate.integrate import Motion, consistent_start, integrate
+from symgen.simulate.plant import Plant, PlantError
+from symgen.simulate.scene import scene
+from symgen.simulate.tables import motion_chart, motion_csv
+from symgen.write import write_files
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What to simulate: seconds, frames a second, values at the start and constant inputs by name."""
+
+    duration: float
+    frames: int
+    start: Mapping[str, float]
+    inputs: Mapping[str, float]
+
+
+def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress: Progress) -> int:
+    """Writes simulation.csv, .svg and, for a model with frames, .html into OUT/<model>/; 0, or 1 where it stopped.
+
+    Raises ModelError for mistakes in the file and WrongUseError for names that the model does not have.
+    """
+    model = load_model(path)
+    coordinates = {c.name: i for i, c in enumerate(model.coordinates)}
+    rates = {c.rate: i for i, c in enumerate(model.coordinates)}
+    given = {i.name: k for k, i in enumerate(model.inputs)}
+    _known(path, "start", request.start, [*coordinates, *rates])
+    _known(path, "inputs", request.inputs, [*given])
+    declared = {name: float(value) for name, value in model.configuration}
+    q = [request.start.get(c.name, declared.get(c.name, float(sum(c.range)) / 2)) for c in model.coordinates]
+    qd = [request.start.get(c.rate, 0.0) for c in model.coordinates]
+    u = [request.inputs.get(i.name, 0.0) for i in model.inputs]
+    count = max(1, round(request.duration * request.frames))
+    times = [request.duration * k / count for k in range(count + 1)]
+    mechanics = Mechanics(model)
+    parameters = parameter_values(mechanics)
+    progress("deriving")
+    with tempfile.TemporaryDirectory(prefix="symgen-simulate-") as folder:
+        plant = Plant(model, tuple(parameters[p.name] for p in model.parameters), Path(folder))
+        try:
+            start = _start(plant, mechanics, q, qd, chosen=bool(request.start or declared))
+        except PlantError as fault:
+            print(f"{path}: no consistent start: {fault}", file=sys.stderr)
+            return 1
+        motion = integrate(plant, start, u, times, lambda t: progress(f"integrating, {t:.2f} of {times[-1]:g} s"))
+    progress("drawing")
+    files = {"simulation.csv": motion_csv(model, motion), "simulation.svg": motion_chart(model, motion)}
+    shown = scene(model, parameters, motion.q)
+    if shown is not None:
+        files["simulation.html"] = animation(model.description or model.name, motion.times, shown)
+    written = write_files(out / model.name, files)
+    if not quiet:
+        print(*_summary(model, motion), "written:", *(f"  {file}" for file in written), "", sep="\n")
+    if motion.stopped is not None:
+        print(f"{path}: stopped {motion.stopped}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _start(
+    plant: Plant, mechanics: Mechanics, q: list[float], qd: list[float], chosen: bool
+) -> tuple[list[float], list[float]]:
+    """The start on the constraints; where nobody chose one, any configuration that satisfies them serves."""
+    try:
+        return consistent_start(plant, q, qd)
+    except PlantError:
+        found = [] if chosen else configurations(mechanics, 1)
+        if not found:
+            raise
+        return consistent_start(plant, [found[0][c.name] for c in plant.model.coordinates], qd)
+
+
+def _known(path: Path, option: str, values: Mapping[str, float], names: list[str]) -> None:
+    for name in values:
+        if name not in names:
+            remedy = did_you_mean(name, names, f"the model has {', '.join(names) or 'none'}")
+            raise WrongUseError(f"{path}: --{option}: unknown name {name!r}; {remedy}")
+
+
+def _summary(model: Model, motion: Motion) -> list[str]:
+    totals = [t + u for t, u in motion.energy]
+    scale = max(max(abs(t), abs(u)) for t, u in motion.energy) or 1.0
+    gained = totals[-1] - totals[0]
+    lines = [
+        f"{model.name}: {motion.times[-1]:g} s in {len(motion.times)} frames",
+        f"  energy gained           {gained: .3e}, {abs(gained) / scale:.1e} of the largest",
+        f"  constraints violated by {max(motion.residual): .1e} at most",
+    ]
+    if not model.mechanism.frames:
+        lines.append("  no animation: the model has no frames")
+    return lines

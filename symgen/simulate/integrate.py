@@ -1,0 +1,86 @@
+"""Motion of a plant under constant inputs: an explicit Runge-Kutta method of order 8, drift projected at each frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from symgen.simulate.plant import Plant, PlantError
+
+RELATIVE, ABSOLUTE = 1e-10, 1e-12
+NEWTON_ROUNDS = 25
+CLOSED = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """Frames of a motion: times (s), q, q_dot, (T, U), largest constraint violation; why it stopped early, if so."""
+
+    times: tuple[float, ...]
+    q: tuple[tuple[float, ...], ...]
+    qd: tuple[tuple[float, ...], ...]
+    energy: tuple[tuple[float, float], ...]
+    residual: tuple[float, ...]
+    stopped: str | None
+
+
+def consistent_start(plant: Plant, q: Sequence[float], qd: Sequence[float]) -> tuple[list[float], list[float]]:
+    """The start brought onto the constraints; raises PlantError where Newton's method does not arrive."""
+    here = list(q)
+    for _ in range(NEWTON_ROUNDS):
+        if plant.residual(here) <= CLOSED:
+            return here, list(plant.admissible(here, qd))
+        here = list(plant.projected(here))
+    raise PlantError(
+        f"the constraints are violated by {plant.residual(here):.3g} after {2 * NEWTON_ROUNDS} Newton steps; "
+        "give a `configuration:` near one that closes them"
+    )
+
+
+def integrate(
+    plant: Plant,
+    start: tuple[Sequence[float], Sequence[float]],
+    u: Sequence[float],
+    times: Sequence[float],
+    progress: Callable[[float], None],
+) -> Motion:
+    """The motion at `times`; where a kernel has no result any more it ends there."""
+    n = plant.model.n
+
+    def derivative(_: float, state: np.ndarray) -> np.ndarray:
+        q, qd = state[:n].tolist(), state[n:].tolist()
+        return np.array([*qd, *plant.accelerations(q, qd, u)])
+
+    q, qd = list(start[0]), list(start[1])
+    frames = [(times[0], tuple(q), tuple(qd))]
+    stopped = None
+    step: float | None = None
+    for begin, end in pairwise(times):
+        first = None if step is None else min(step, end - begin)
+        try:
+            solved = solve_ivp(
+                derivative, (begin, end), [*q, *qd], "DOP853", rtol=RELATIVE, atol=ABSOLUTE, first_step=first
+            )
+            if not solved.success:
+                raise PlantError(str(solved.message))
+            q = list(plant.projected(solved.y[:n, -1].tolist()))
+            qd = list(plant.admissible(q, solved.y[n:, -1].tolist()))
+        except PlantError as fault:
+            stopped = f"at t = {begin:.6g} s: {fault}"
+            break
+        # the next frame begins with the longest step of this one
+        step = float(max(np.diff(solved.t)))
+        frames.append((end, tuple(q), tuple(qd)))
+        progress(end)
+    return Motion(
+        times=tuple(frame[0] for frame in frames),
+        q=tuple(frame[1] for frame in frames),
+        qd=tuple(frame[2] for frame in frames),
+        energy=tuple(plant.energy(q, qd) for _, q, qd in frames),
+        residual=tuple(plant.residual(q) for _, q, _ in frames),
+        stopped=stopped,
+    )

@@ -1,0 +1,68 @@
+"""The model as a plant: its generated kernels at the default parameters, run as C or by the interpreter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from symgen.ir.kernel import Status
+from symgen.model.model import Model
+from symgen.stress.kernels import Kernels
+from symgen.verify.reference import State
+
+QUANTITIES = ("forward_dynamics", "admissible_velocity", "projected_configuration", "constraint_residual", "energy")
+MEANING = {
+    Status.NOT_FINITE: "a result is not finite",
+    Status.CONSTRAINT_RANK: "the rank of the constraints drops",
+    Status.ACTUATION_RANK: "the rank of the projected control matrix drops",
+    Status.ANGLE_RANGE: "an angle has left the range of the sine and cosine",
+    Status.MASS_RANK: "the accelerations are not determined",
+}
+
+
+class PlantError(Exception):
+    """A kernel has no result at a state; says where and why."""
+
+
+class Plant:
+    """Accelerations, projections and energies of a model at q, q_dot under inputs u."""
+
+    def __init__(self, model: Model, parameters: Sequence[float], folder: Path) -> None:
+        self._kernels = Kernels(model, folder, QUANTITIES)
+        self._parameters = tuple(parameters)
+        self.model = model
+
+    def accelerations(self, q: Sequence[float], qd: Sequence[float], u: Sequence[float]) -> tuple[float, ...]:
+        """q_ddot (n)."""
+        return self._run("forward_dynamics", q, qd, u)
+
+    def admissible(self, q: Sequence[float], qd: Sequence[float]) -> tuple[float, ...]:
+        """The nearest rates that the constraints allow, N q_dot (n)."""
+        return self._run("admissible_velocity", q, qd) if self.model.r else tuple(qd)
+
+    def projected(self, q: Sequence[float]) -> tuple[float, ...]:
+        """Two Newton steps towards the constraints (n)."""
+        return self._run("projected_configuration", q) if self._has_geometric else tuple(q)
+
+    def residual(self, q: Sequence[float]) -> float:
+        """The largest violation of a geometric constraint."""
+        return max(map(abs, self._run("constraint_residual", q))) if self._has_geometric else 0.0
+
+    def energy(self, q: Sequence[float], qd: Sequence[float]) -> tuple[float, float]:
+        """(T, U)."""
+        kinetic, potential = self._run("energy", q, qd)
+        return kinetic, potential
+
+    @property
+    def _has_geometric(self) -> bool:
+        return any(row.kind == "geometric" for row in self.model.constraints)
+
+    def _run(
+        self, name: str, q: Sequence[float], qd: Sequence[float] = (), u: Sequence[float] = ()
+    ) -> tuple[float, ...]:
+        zeros = (0.0,) * self.model.n
+        state = State(tuple(q), tuple(qd) or zeros, zeros, tuple(u) or (0.0,) * self.model.m, self._parameters)
+        outcome = self._kernels.run(name, state, "float64")
+        if outcome.status:
+            raise PlantError(f"{name}: {MEANING[Status(outcome.status)]}")
+        return tuple(map(float, outcome.entries))

@@ -1,0 +1,117 @@
+"""`symgen simulate` and `symgen new`: energy, constraints, starts, names, pages that cannot be broken out of."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from shipped import ROOT
+
+from symgen.cli import main
+
+MODELS = ROOT / "models"
+
+
+def run(*arguments: str) -> int:
+    return main(["simulate", *arguments, "--quiet"])
+
+
+def rows(folder: Path, name: str) -> list[dict[str, float]]:
+    with (folder / name / "simulation.csv").open(encoding="utf-8") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+@pytest.fixture
+def out(tmp_path: Path, tool: Callable[[str], str]) -> Path:
+    tool("gcc")
+    return tmp_path
+
+
+def test_a_free_motion_keeps_its_energy(out: Path) -> None:
+    text = (MODELS / "double_pendulum.yaml").read_text(encoding="utf-8")
+    (out / "free.yaml").write_text(re.sub(r"applied_forces:\n(  .*\n)+", "", text), encoding="utf-8")
+    options = ("--duration", "2", "--start", "q_1=1,q_2=0.4,q_1_dot=0.5", "--out", str(out))
+    assert run(str(out / "free.yaml"), *options) == 0
+    motion = rows(out, "double_pendulum")
+    assert len(motion) == 101
+    assert math.isclose(motion[-1]["t"], 2)
+    assert (motion[0]["q_1"], motion[0]["q_2"], motion[0]["q_1_dot"]) == (1, 0.4, 0.5)
+    totals = [row["kinetic_energy"] + row["potential_energy"] for row in motion]
+    assert max(totals) - min(totals) < 1e-8 * max(map(abs, totals))
+    assert abs(motion[-1]["q_1"] - 1) > 0.05
+
+
+def test_constraints_hold_and_rates_are_projected(out: Path) -> None:
+    options = ("--duration", "0.5", "--start", "a_1_dot=1", "--out", str(out))
+    assert run(str(MODELS / "rapkm_2rrr_rr.yaml"), *options) == 0
+    motion = rows(out, "rapkm_2rrr_rr")
+    assert max(row["constraint_violation"] for row in motion) < 1e-12
+    # one rate alone does not close the loops: the projection moves the other arms too
+    assert motion[0]["a_1_dot"] != 1
+    assert abs(motion[0]["a_2_dot"]) > 1e-3
+    energy = [row["kinetic_energy"] for row in motion]
+    assert max(energy) - min(energy) < 1e-9 * max(energy)
+
+
+def test_a_start_at_a_singularity_is_refused(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (MODELS / "slider_crank.yaml").read_text(encoding="utf-8")
+    (out / "locked.yaml").write_text(text.replace("model: slider_crank", "model: locked"), encoding="utf-8")
+    # a crank as long as its rod: the slider at the crank's centre is a singularity of the constraints
+    changed = (out / "locked.yaml").read_text(encoding="utf-8")
+    for name in "rl":
+        length = f"\n  {name}: {{value: 0.3, unit: m, range: [0.2, 0.4]}}"
+        changed = re.sub(rf"\n  {name}: +\{{value: .*\}}", length, changed)
+    (out / "locked.yaml").write_text(changed, encoding="utf-8")
+    start = "alpha=1.5707963267948966,beta=-1.5707963267948966,s=0"
+    code = run(str(out / "locked.yaml"), "--start", start, "--out", str(out))
+    assert code == 1
+    assert "no consistent start" in capsys.readouterr().err
+    assert not (out / "locked").exists()
+
+
+def test_unknown_names_have_a_remedy(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(str(MODELS / "double_pendulum.yaml"), "--start", "q1=1", "--out", str(out)) == 2
+    assert "unknown name 'q1'; did you mean `q_1`?" in capsys.readouterr().err
+    assert run(str(MODELS / "double_pendulum.yaml"), "--inputs", "motor=1", "--out", str(out)) == 2
+    assert "--inputs: unknown name 'motor'" in capsys.readouterr().err
+    assert list(out.iterdir()) == []
+
+
+def test_a_new_model_works_and_is_animated(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(out)
+    assert main(["new", "my_cart"]) == 0
+    description = (out / "my_cart.yaml").read_text(encoding="utf-8")
+    changed = description.replace("Cart on a rail with", "</script><b>Cart with")
+    (out / "my_cart.yaml").write_text(changed, encoding="utf-8")
+    assert run("my_cart.yaml", "--duration", "1", "--inputs", "drive=2", "--out", str(out)) == 0
+    page = (out / "my_cart" / "simulation.html").read_text(encoding="utf-8")
+    assert "<b>" not in page
+    found = re.search(r'<script type="application/json" id="motion">(.*?)</script>', page)
+    assert found is not None
+    data = json.loads(found.group(1))
+    assert data["names"] == ["cart", "rod", "tip"]
+    assert data["planar"]
+    # the tip hangs on the rod at its length, and the cart has moved
+    cart, _, tip = data["places"][-1]
+    assert math.isclose(math.dist(cart, tip), 0.6, abs_tol=1e-4)
+    assert cart[0] > 0.1
+    assert main(["my_cart.yaml", "--out", str(out / "made"), "--only", "c", "--no-verify", "--quiet"]) == 0
+
+
+@pytest.mark.parametrize("name", ["../x", "1a", "for", "x_dot", ""])
+def test_names_that_are_no_models(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", name]) == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_new_leaves_a_file_as_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "kept.yaml").write_text("mine", encoding="utf-8")
+    assert main(["new", "kept"]) == 2
+    assert (tmp_path / "kept.yaml").read_text(encoding="utf-8") == "mine"
