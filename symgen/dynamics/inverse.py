@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 from symgen.dynamics.admission.verdict import FAILS, Verdict, proof_for, verdict
 from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.coordinates import absolute_angles
 from symgen.dynamics.derivation import Derivation
-from symgen.dynamics.forms.by_space import householder_derivation, householder_form, minor_derivation, minor_form
+from symgen.dynamics.forms.by_space import form_along, householder_derivation, minor_derivation
 from symgen.dynamics.forms.form import FORM_NAMES, Form, form
 from symgen.dynamics.forms.nullspace import nullspace_form
 from symgen.dynamics.forms.printed import printed_form
@@ -77,12 +78,20 @@ class InverseDynamics:
         self._model = model
         self._generic = generic
         self._offers: dict[str, Offer | str] = {}
-        self._minor: Derivation | str | None = None
+
+    @cached_property
+    def minor(self) -> Derivation | str:
+        """The derivation along minors, which also tells where ranks drop."""
+        return minor_derivation(System.fresh(self._model, self._generic))
 
     def offer(self, name: str) -> Offer | str:
         """A form by name, or why this system does not have it."""
         if name not in self._offers:
-            system = System.fresh(self._model, self._generic)
+            derivation = self.minor if name == "minor" else None
+            if isinstance(derivation, Derivation):
+                system = System(derivation.mechanics, self._generic)
+            else:
+                system = System.fresh(self._model, self._generic)
             made = _BUILDERS[name](self, system)
             self._offers[name] = made if isinstance(made, str) else Offer(name, system, made)
         return self._offers[name]
@@ -115,12 +124,13 @@ class InverseDynamics:
             if isinstance(householder, Offer):
                 offers[householder.way], weights[householder.way] = householder, householder.form.weight
         remarks: dict[str, str] = {}
+        verdicts: dict[str, Verdict] = {}
         chosen: str | None = None
         for name in sorted(offers, key=lambda name: (weights[name], AUTOMATIC.index(name))):
             if chosen is not None:
                 remarks[name] = "not examined, because it is not cheaper"
                 continue
-            found = self.verdict(offers[name], first_only=True)
+            found = verdicts[name] = self.verdict(offers[name], first_only=True)
             remarks[name] = found.explanation
             if found.admitted:
                 chosen = name
@@ -130,13 +140,13 @@ class InverseDynamics:
         for shorter in self._factored(best):
             weights[shorter.way] = weight = shorter.form.weight
             offers[shorter.way] = shorter
-            found = self.verdict(shorter, first_only=True)
+            found = verdicts[shorter.way] = self.verdict(shorter, first_only=True)
             remarks[shorter.way] = found.explanation
             worth = weights[chosen] * (1 + CANCELLATION_WORTH)
             if found.admitted and (weight <= worth if shorter.form.name == chosen == "minor" else weight < least):
                 best, least = shorter, weight
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
-        return best, FormChoice(best.way, self.verdict(best, first_only=True), others)
+        return best, FormChoice(best.way, verdicts[best.way], others)
 
     def _factored(self, best: Offer) -> list[Offer]:
         """The best form and the minor form multiplied out and factored, where they are short enough.
@@ -153,8 +163,7 @@ class InverseDynamics:
                 continue
             kept: frozenset[Scalar] = frozenset()
             if offer.way == "minor":
-                derivation = minor_derivation(offer.system)
-                kept = frozenset() if isinstance(derivation, str) else derivation.common_speeds
+                kept = frozenset() if isinstance(self.minor, str) else self.minor.common_speeds
             system = offer.system
             outputs = system.mechanics.factoring.shorten(offer.form.outputs, kept)
             made = form(offer.form.name, offer.form.quantity, outputs, offer.form.guards, system.given)
@@ -163,16 +172,20 @@ class InverseDynamics:
 
     def _least_householder(self) -> int:
         """A cost that the Householder form exceeds: its data, and a root and a division for each reflection."""
-        mechanics = System.fresh(self._model, self._generic).mechanics
+        offer = next((offer for offer in self._offers.values() if isinstance(offer, Offer)), None)
+        mechanics = Mechanics(self._model) if offer is None else offer.system.mechanics
         data = [*mechanics.balance, *flatten(mechanics.constraint_jacobian), *flatten(mechanics.control_matrix)]
         return cost(share_angles(mechanics.graph, data)).weight + REFLECTION * mechanics.r
+
+    @property
+    def minor_measures(self) -> list[Scalar]:
+        """Determinants that vanish only where a rank drops."""
+        return [] if isinstance(self.minor, str) else _denominators(self.minor)
 
     def _measures(self, offer: Offer) -> list[Scalar]:
         """Denominators that vanish only where a rank drops, by theorem: minors, pivots of reflections, or else the
         rest that the range form's invertible steps leave."""
-        if self._minor is None:
-            self._minor = minor_derivation(System.fresh(self._model, self._generic))
-        found = [] if isinstance(self._minor, str) else _denominators(self._minor)
+        found = self.minor_measures
         if offer.form.name == "householder":
             derivation = householder_derivation(offer.system)
             return [*found, *([] if isinstance(derivation, str) else _denominators(derivation))]
@@ -185,10 +198,8 @@ def _denominators(derivation: Derivation) -> list[Scalar]:
     return [guard.denominator for guard in (*derivation.actuation_guards, *derivation.space.guards)]
 
 
-def _nullspace(_: InverseDynamics, system: System) -> Form | str:
-    minor = minor_derivation(System.fresh(system.mechanics.model, system.generic))
-    proof = proof_for(system, [] if isinstance(minor, str) else _denominators(minor))
-    return nullspace_form(system, proof.shown)
+def _nullspace(forms: InverseDynamics, system: System) -> Form | str:
+    return nullspace_form(system, proof_for(system, forms.minor_measures).shown)
 
 
 def _range(_: InverseDynamics, system: System) -> Form | str:
@@ -202,10 +213,10 @@ def _range(_: InverseDynamics, system: System) -> Form | str:
 
 
 _BUILDERS: dict[str, Callable[[InverseDynamics, System], Form | str]] = {
-    "minor": lambda _, system: minor_form(system),
+    "minor": lambda forms, system: form_along(system, "minor", forms.minor),
     "nullspace": _nullspace,
     "range": _range,
-    "householder": lambda _, system: householder_form(system),
+    "householder": lambda _, system: form_along(system, "householder", householder_derivation(system)),
     "printed": lambda _, system: printed_form(system),
     "weighted": lambda _, system: weighted_form(system),
     "kkt": lambda _, system: kkt_form(system),

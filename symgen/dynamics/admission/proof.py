@@ -28,6 +28,7 @@ class Proof:
         self._residues = Residues(parameters)
         self._measures = list(measures)
         self._known: dict[Scalar, bool] = {}
+        self._inside: dict[Scalar, frozenset[int]] = {}
 
     def unproved(self, divisors: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """Those of the scalars for which no rule was found.
@@ -58,15 +59,17 @@ class Proof:
             return not node.is_zero
         if self._definite.holds(node):
             return True
+        if self._with_measure(node):
+            return True
         match node.op:
-            case "neg" | "abs" | "sqrt" | "copysign" | "div" if self.shown(node.args[0]):
-                return True
-            case "mul" if all(map(self.shown, node.args)):
-                return True
-            case "add" if self._nonnegative(node) and any(map(self.shown, node.args)):
-                return True
+            case "neg" | "abs" | "sqrt" | "copysign" | "div":
+                return self.shown(node.args[0])
+            case "mul":
+                return all(map(self.shown, node.args))
+            case "add" if self._nonnegative(node):
+                return any(map(self.shown, node.args))
             case _:
-                return self._with_measure(node)
+                return False
 
     def _with_measure(self, node: Scalar) -> bool:
         for measure in self._measures:
@@ -74,7 +77,16 @@ class Proof:
                 self._measures.append(node)
                 return True
         zeros = self._forced(node)
-        return any(_becomes_zero(measure, zeros) for measure in self._measures)
+        return any(self._vanishes_with(measure, zeros) for measure in self._measures)
+
+    def _vanishes_with(self, measure: Scalar, zeros: Sequence[Scalar]) -> bool:
+        if measure not in self._inside:
+            self._inside[measure] = frozenset(node.value for node in topological([measure]))
+        inside = self._inside[measure]
+        met = any(zero.value in inside or -zero.value % PRIME in inside for zero in zeros)
+        # the sine of a sum may stand in the measure without those of its parts
+        sines = sum(zero.op == "sin" for zero in zeros)
+        return (met or sines > 1) and _becomes_zero(measure, zeros)
 
     def _never_zero(self, parameter: str) -> bool:
         return self._definite.holds(self._definite.parameter(parameter))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import comb
 
 from symgen.dynamics.derivation import Derivation
-from symgen.dynamics.forms.form import Form, form
+from symgen.dynamics.forms.form import Form, FormName, form
 from symgen.dynamics.forms.system import System
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import MinorSpace
@@ -33,17 +33,12 @@ def householder_derivation(system: System) -> Derivation | str:
     return Derivation(mechanics, generic, space)
 
 
-def minor_form(system: System) -> Form | str:
-    """u = sum_J Delta_J^2 u_J / sum_J Delta_J^2 over the input subsets, from the minors of B."""
-    return _form(system, "minor", minor_derivation(system))
+def form_along(system: System, name: FormName, derivation: Derivation | str) -> Form | str:
+    """u along a derivation, or why there is none.
 
-
-def householder_form(system: System) -> Form | str:
-    """B^T = Q R by reflections, applied to M and tau, then determinants of the last rows of Q^T M."""
-    return _form(system, "householder", householder_derivation(system))
-
-
-def _form(system: System, name: str, derivation: Derivation | str) -> Form | str:
+    Minor: sum_J Delta_J^2 u_J / sum_J Delta_J^2 over the input subsets.  Householder: B^T = Q R, applied to M and tau,
+    then determinants of the last rows of Q^T M.
+    """
     if isinstance(derivation, str):
         return derivation
     return form(name, "inverse_dynamics", derivation.inverse_dynamics, derivation.inverse_dynamics_guards, system.given)

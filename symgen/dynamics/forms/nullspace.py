@@ -17,6 +17,7 @@ from symgen.dynamics.forms.form import Form, form
 from symgen.dynamics.forms.rates import Rates, reduced_rates
 from symgen.dynamics.forms.system import System
 from symgen.dynamics.guards import Guard
+from symgen.dynamics.spaces import MinorSpace
 from symgen.graph.matrix import Matrix, Vector, identity, matmul, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost
@@ -33,6 +34,7 @@ class _Basis:
 
     columns: Matrix
     pivots: Vector
+    parts: tuple[Matrix, ...]  # of the rest, each with the rank of its rows where B has full rank
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +60,8 @@ def nullspace_form(system: System, allowed: Callable[[Scalar], bool]) -> Form | 
     inputs = transpose(matmul(graph, w, mechanics.control_matrix, generic.m), generic.m)
     forms = ActuationForms(free, inputs, generic.alpha)
     force = tuple(row[0] for row in matmul(graph, w, tuple((f,) for f in mechanics.balance), 1))
-    guard = Guard(Status.ACTUATION_RANK, forms.denominator(), 1 if forms.single else 2)
+    regular = tuple(guard for part in basis.parts for guard in MinorSpace(graph, part, len(part[0]), len(part)).guards)
+    guard = Guard(Status.ACTUATION_RANK, forms.denominator(), 1 if forms.single else 2, regular)
     made = form("nullspace", "inverse_dynamics", forms.solve(force), (guard,), system.given)
     pivots = tuple(pivot for pivot in basis.pivots if pivot not in made.divisors and pivot.constant is None)
     return replace(made, divisors=(*made.divisors, *pivots))
@@ -67,12 +70,14 @@ def nullspace_form(system: System, allowed: Callable[[Scalar], bool]) -> Form | 
 def _bases(system: System) -> Iterator[_Basis]:
     graph, mechanics, delta = system.mechanics.graph, system.mechanics, system.generic.delta
     rest = reduced_rates(graph, system.definite, mechanics.constraint_jacobian, mechanics.n)
-    families = [_kernels(graph, rest, rows, rates) for rows, rates in _parts(rest)]
+    parts = _parts(rest)
+    families = [_kernels(graph, rest, rows, rates) for rows, rates in parts]
+    blocks = tuple(tuple(tuple(rest.core[i][j] for j in rates) for i in rows) for rows, rates in parts if rows)
     for choice in product(*families):
         vectors = [vector for kernel in choice for vector in kernel.vectors]
         if len(vectors) == delta:
             columns = matmul(graph, rest.motion, transpose(tuple(vectors), rest.width), delta)
-            yield _Basis(columns, tuple(pivot for kernel in choice for pivot in kernel.pivots))
+            yield _Basis(columns, tuple(pivot for kernel in choice for pivot in kernel.pivots), blocks)
 
 
 def _parts(rest: Rates) -> list[tuple[list[int], list[int]]]:
