@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -43,42 +43,27 @@ class _Way:
     name: str
 
 
-class Kernels:
-    """Kernels by quantity name and scalar type, and the C they are made of (`files`, by path)."""
+class Runner:
+    """Programs ready to run: compiled C (`files`, by path), or the interpreter where there is no compiler."""
 
-    def __init__(self, model: Model, folder: Path, quantities: Sequence[str] = (*PIECES, *STRESSED, *DRIVEN)) -> None:
-        self.model = model
-        known = {entry.name for entry in CATALOGUE}
-        derivations = derive_quantities(model, tuple(name for name in quantities if name in known))
-        self.programs: dict[Scalar, Program] = dict(
-            schedule(derivations.mechanics, derivations.quantities, SCALARS).items()
-        )
-        self._ways = tuple(_Way(choice.quantity, choice.way) for choice in derivations.choices)
+    def __init__(self, model: Model, programs: Mapping[Scalar, Program], folder: Path) -> None:
+        self._programs = programs
         self.files: dict[str, str] = {}
-        for scalar in SCALARS:
-            self.files |= emit_c(model, self.programs[scalar])
-        self.names = tuple(kernel.name for kernel in self.programs["float64"].kernels)
+        for program in programs.values():
+            self.files |= emit_c(model, program)
+        self.names = tuple(kernel.name for kernel in programs["float64"].kernels)
         self.compiler = find_compiler()
-        self._kernels = {(s, k.name): k for s in SCALARS for k in self.programs[s].kernels}
+        self._kernels = {(s, k.name): k for s in SCALARS for k in self._programs[s].kernels}
         self._functions: dict[tuple[Scalar, str], CFunction] = {}
         if self.compiler is None:
-            self._interpreters = {s: Interpreter(self.programs[s].sincos, s) for s in SCALARS}
+            self._interpreters = {s: Interpreter(self._programs[s].sincos, s) for s in SCALARS}
             return
         sources, _ = generated_sources(model, dict(self.files))
         compilations = {s: Compilation(self.compiler, source, folder) for s, source in sources.items()}
         for scalar, compilation in compilations.items():
             library = compilation.library()
-            for kernel in self.programs[scalar].kernels:
+            for kernel in self._programs[scalar].kernels:
                 self._functions[scalar, kernel.name] = CFunction(library, model.name, kernel, scalar)
-
-    @property
-    def engine(self) -> str:
-        """What runs the kernels."""
-        return "interpreter" if self.compiler is None else "C"
-
-    def way(self, quantity: str) -> str:
-        """The way to the null space by which a quantity is computed; empty for one the model does not have."""
-        return next((way.name for way in self._ways if way.quantity == quantity), "")
 
     def kernel(self, name: str, scalar: Scalar) -> Kernel:
         """The straight-line kernel of a quantity."""
@@ -93,6 +78,38 @@ class Kernels:
         kernel = self._kernels[scalar, name]
         status, outputs = self._interpreters[scalar].run(kernel, parts, tuple(map(float, state.parameters)))
         return Outcome(int(status), tuple(outputs) or (math.nan,) * max(1, math.prod(kernel.shape)))
+
+
+class Kernels:
+    """Kernels by quantity name and scalar type, and the C they are made of (`files`, by path)."""
+
+    def __init__(self, model: Model, folder: Path, quantities: Sequence[str] = (*PIECES, *STRESSED, *DRIVEN)) -> None:
+        self.model = model
+        known = {entry.name for entry in CATALOGUE}
+        derivations = derive_quantities(model, tuple(name for name in quantities if name in known))
+        self.programs: dict[Scalar, Program] = dict(
+            schedule(derivations.mechanics, derivations.quantities, SCALARS).items()
+        )
+        self._ways = tuple(_Way(choice.quantity, choice.way) for choice in derivations.choices)
+        self.runner = Runner(model, self.programs, folder)
+        self.files, self.names, self.compiler = self.runner.files, self.runner.names, self.runner.compiler
+
+    @property
+    def engine(self) -> str:
+        """What runs the kernels."""
+        return "interpreter" if self.compiler is None else "C"
+
+    def way(self, quantity: str) -> str:
+        """The way to the null space by which a quantity is computed; empty for one the model does not have."""
+        return next((way.name for way in self._ways if way.quantity == quantity), "")
+
+    def kernel(self, name: str, scalar: Scalar) -> Kernel:
+        """The straight-line kernel of a quantity."""
+        return self.runner.kernel(name, scalar)
+
+    def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
+        """One kernel at one state, whose numbers are of the scalar type already."""
+        return self.runner.run(name, state, scalar)
 
 
 def rounded_state(state: State, scalar: Scalar) -> State:

@@ -18,7 +18,7 @@ from symgen.stress.long_run import Run, complaints, long_runs
 from symgen.stress.odd_numbers import OddNumbers, odd_numbers
 from symgen.stress.scaling import Scaled, scaling
 from symgen.stress.series import Series
-from symgen.stress.sweep import DEEPEST, StatusCount, Sweeper
+from symgen.stress.sweep import StatusCount, Sweeper
 from symgen.verify.reference import Reference
 from symgen.verify.states import FEWEST_STATES, sample_states
 from symgen.verify.tolerance import FACTOR
@@ -94,7 +94,7 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
         kernels = Kernels(model, folder)
         progress("looking for singularities")
         searched = search(reference)
-        forms = FormKernels(model, tuple(DEEPEST), kernels.names)
+        forms = FormKernels(model, folder, kernels.names)
         sweeper = Sweeper(reference, kernels, searched.families, forms)
         for index, family in enumerate(searched.families):
             progress(f"{family.kind}, {family.label}")
