@@ -104,7 +104,6 @@ def _generate(arguments: list[str]) -> int:
         "--scalar", choices=tuple(_SCALARS), default="both", help="scalar types of the C (default: both)"
     )
     parser.add_argument("--only", metavar="PARTS", type=_parts, default=PARTS, help="of c,python,report,package,proof")
-    _add_form(parser)
     parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
     parser.add_argument(
         "--check",
@@ -138,7 +137,7 @@ def _verify(arguments: list[str]) -> int:
 
     if find_compiler() is None:
         raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")
-    options = Options(parts=("c", "python"), states=given.states, trig=given.trig)
+    options = Options(parts=("c", "python"), states=given.states, form=given.form, trig=given.trig)
     return _each_model(
         given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)
     )
@@ -426,6 +425,7 @@ def _add_generation_options(parser: argparse.ArgumentParser) -> None:
         default=DEFAULT_STATES,
         help=f"states to verify (default: {DEFAULT_STATES})",
     )
+    _add_form(parser)
     parser.add_argument(
         "--trig",
         choices=TRIG,
