@@ -146,7 +146,7 @@ def _force_decisions(mechanics: Mechanics) -> Iterator[Decision]:
         yield Decision("potential forces", "the potential energy is constant, so Q = 0")
     else:
         yield from _zeros("potential forces", mechanics.potential_force)
-    if not mechanics.model.applied_forces:
+    if not mechanics.model.has_applied_forces:
         yield Decision("applied forces", "the model declares none")
 
 

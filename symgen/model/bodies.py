@@ -11,6 +11,7 @@ from symgen.model.mechanism import (
     WORLD,
     ZERO,
     Body,
+    Frame,
     Inertia,
     Mechanism,
     RotorInertia,
@@ -23,9 +24,9 @@ from symgen.model.source import MappingNode, Node, ScalarNode
 from symgen.model.walk import exact_value
 
 
-def read_mechanism(scope: Scope, tree: MappingNode) -> Mechanism:
-    """Frames, bodies, points, rotor inertias and gravity."""
-    frames = read_frames(scope, tree)
+def read_mechanism(scope: Scope, tree: MappingNode, joints: tuple[Frame, ...]) -> Mechanism:
+    """Frames (those of `joints` among them), bodies, points, rotor inertias and gravity."""
+    frames = read_frames(scope, tree, joints)
     bodies = _bodies(scope, tree)
     gravity = _gravity(scope, tree, bodies)
     return Mechanism(gravity, frames, bodies, read_points(scope, tree), _rotor_inertias(scope, tree))

@@ -68,6 +68,8 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
             _add(scope, check_domain(mechanics, coefficient, f"the coefficient of `{column.name}` on `{coordinate}`"))
         if column.velocity is not None:
             _add(scope, check_domain(mechanics, column.velocity, f"the direction of `{column.name}`"))
+    for force in model.forces:
+        _add(scope, check_domain(mechanics, force.velocity, f"the direction of `{force.name}`"))
     if len(scope.mistakes) > before:
         return
     if kinetic is not None and not (model.mechanism.has_mass and exact_value(kinetic) == 0):
@@ -115,4 +117,6 @@ def _block_spans(tree: MappingNode) -> dict[str, Span | None]:
     spans["kinetic_energy"] = spans["kinetic_energy"] or key_span(tree, "bodies")
     constraints = member(tree, "constraints")
     geometric = key_span(constraints, "geometric") if isinstance(constraints, MappingNode) else None
-    return {**spans, "geometric": geometric or spans["constraints"]}
+    made = [key_span(tree, key) for key in ("loops", "rolling", "joints")]
+    rows = next((span for span in (spans["constraints"], *made) if span is not None), None)
+    return {**spans, "constraints": rows, "geometric": geometric or rows}

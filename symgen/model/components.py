@@ -59,10 +59,13 @@ def components_in(model: Model) -> tuple[str, ...]:
 
 def definitions_before_frames(model: Model) -> tuple[Definition, ...]:
     """The definitions that use no component, directly or through others: those that may place frames."""
-    if not model.mechanism.frames:
-        return ()
+    return without_components(model.definitions) if model.mechanism.frames else ()
+
+
+def without_components(definitions: tuple[Definition, ...]) -> tuple[Definition, ...]:
+    """The definitions that use no component of a point or frame, directly or through others."""
     later: set[str] = set()
-    for definition in model.definitions:
+    for definition in definitions:
         if any(is_component(name.name) or name.name in later for name in names_in(definition.value)):
             later.add(definition.name)
-    return tuple(definition for definition in model.definitions if definition.name not in later)
+    return tuple(definition for definition in definitions if definition.name not in later)

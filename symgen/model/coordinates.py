@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from symgen.model.declarations import DeclaredRanges
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Power
+from symgen.model.joint_forms import JointCoordinate
 from symgen.model.model import Coordinate, Definition, Range
 from symgen.model.reading import description_of, entries, member, text_of
 from symgen.model.source import MappingNode
@@ -17,9 +18,13 @@ UNIT_RANGE: Range = (Fraction(-1), Fraction(1))
 
 
 def read_coordinates(
-    tree: MappingNode, ranges: DeclaredRanges, definitions: tuple[Definition, ...], expressions: Iterable[Expression]
+    tree: MappingNode,
+    ranges: DeclaredRanges,
+    definitions: tuple[Definition, ...],
+    expressions: Iterable[Expression],
+    joints: tuple[JointCoordinate, ...],
 ) -> tuple[Coordinate, ...]:
-    """The coordinates in the order of the file.
+    """The coordinates in the order of the file, those that joints bring along after the others.
 
     An angle is what has the unit rad or, without a unit, is used inside sines, cosines and tangents only.
     """
@@ -39,6 +44,14 @@ def read_coordinates(
                 ranges.get(f"{name}_ddot", UNIT_RANGE),
                 key.span,
             )
+        )
+    for joint in joints:
+        is_angle = joint.unit == "rad"
+        usual = ANGLE_RANGE if is_angle else UNIT_RANGE
+        name = joint.name
+        rates = ranges.get(f"{name}_dot", UNIT_RANGE), ranges.get(f"{name}_ddot", UNIT_RANGE)
+        coordinates.append(
+            Coordinate(name, joint.unit, joint.description, is_angle, ranges.get(name, usual), *rates, joint.span)
         )
     return tuple(coordinates)
 

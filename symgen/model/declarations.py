@@ -8,6 +8,7 @@ from fractions import Fraction
 from symgen.diagnostics import Mistake
 from symgen.model.constants import range_of
 from symgen.model.expression import Expression, Number
+from symgen.model.joint_forms import JointCoordinate, declare_joints
 from symgen.model.mechanism import component, is_component
 from symgen.model.model import AppliedForce, ConstraintRow, Definition, Parameter, Range
 from symgen.model.names import QUOTING, did_you_mean, is_name
@@ -20,8 +21,11 @@ from symgen.model.walk import evaluate, names_in
 DeclaredRanges = dict[str, Range]
 
 
-def declare_names(scope: Scope, tree: MappingNode) -> None:
-    """Enters every name of the file, so that each expression can be checked against all of them."""
+def declare_names(scope: Scope, tree: MappingNode) -> tuple[JointCoordinate, ...]:
+    """Enters every name of the file, so that each expression can be checked against all of them.
+
+    Returns the coordinates that joints bring along.
+    """
     blocks: tuple[tuple[str, Kind], ...] = (
         ("coordinates", "coordinate"), ("parameters", "parameter"), ("definitions", "definition"), ("inputs", "input"),
         ("frames", "frame"), ("points", "point"),
@@ -29,6 +33,7 @@ def declare_names(scope: Scope, tree: MappingNode) -> None:
     for block, kind in blocks:
         for key, _ in entries(tree.get(block)):
             scope.declare(key, kind)
+    joints = declare_joints(scope, tree)
     for key, _ in entries(tree.get("bodies")):
         # most bodies are named like their frames
         if scope.kinds.get(key.value) != "frame":
@@ -37,6 +42,7 @@ def declare_names(scope: Scope, tree: MappingNode) -> None:
         for key, _ in entries(member(tree.get("constraints"), block)):
             if scope.declare(key, "constraint row"):
                 scope.kinds.setdefault(f"multiplier_{key.value}", "multiplier")
+    return joints
 
 
 def read_ranges(scope: Scope, tree: MappingNode) -> DeclaredRanges:

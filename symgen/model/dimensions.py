@@ -12,12 +12,13 @@ from typing import TypeAlias
 
 from symgen.diagnostics import Mistake, Span
 from symgen.model.body_units import BodyUnits, body_units
+from symgen.model.elements import Fit
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.mechanism import is_component
 from symgen.model.model import Allocation, Model
 from symgen.model.reading import entries, member
 from symgen.model.source import MappingNode, ScalarNode
-from symgen.model.units import NUMBER, SECOND, Unit, parse_unit
+from symgen.model.units import METRE, NUMBER, SECOND, Unit, parse_unit
 from symgen.model.walk import names_in
 
 Dimension: TypeAlias = Unit | None
@@ -28,12 +29,19 @@ _SAME_UNIT = "use one unit for each kind of quantity, such as m throughout; noth
 _CHECK_TERMS = "check the terms, and the units declared for their names"
 
 
-def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
-    """Units that are not read, and contradictions between those that are."""
+# coordinates that joints bring along have units without being declared
+JOINT_UNITS = {"m": METRE, "rad": NUMBER}
+
+
+def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> list[Mistake]:
+    """Units that are not read, and contradictions between those that are; `fits` come from springs and friction."""
     mistakes: list[Mistake] = []
     units = _declared(tree, mistakes)
     if not units and not mistakes:
         return []
+    for own in model.coordinates:
+        if own.name not in units and own.unit in JOINT_UNITS:
+            units[own.name] = JOINT_UNITS[own.unit]
     bodies = body_units(model, units)
     inference = _Inference(model, units, mistakes, bodies)
     for parameter in model.parameters:
@@ -79,6 +87,20 @@ def check_units(tree: MappingNode, model: Model) -> list[Mistake]:
                 due = energy.times(SECOND, -1).times(pace, -1)
                 clash = _clash(f"`{column.name}`", declared, "what acts there", due, column.velocity)
                 mistakes.append(replace(clash, span=column.span))
+    for element in model.forces:
+        pace, size = inference.of(element.velocity), inference.of(element.magnitude)
+        if energy and pace and size and size.times(pace) != energy.times(SECOND, -1):
+            due = energy.times(SECOND, -1).times(pace, -1)
+            clash = _clash(f"the force `{element.name}`", size, "what acts there", due, element.magnitude)
+            mistakes.append(replace(clash, span=element.span))
+    for fit in fits:
+        measure = inference.of(fit.measure)
+        if measure is not None and fit.power < 0:
+            inference.agrees(fit.coefficient, measure, fit.what, "what it is compared with")
+        elif measure is not None and energy is not None:
+            work = energy.times(SECOND, -1) if fit.per_second else energy
+            due = work.times(measure.to_power(Fraction(fit.power)), -1)
+            inference.agrees(fit.coefficient, due, fit.what, "what fits there")
     if model.allocation is not None:
         _check_allocation(model, model.allocation, units, inference)
     return mistakes

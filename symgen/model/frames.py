@@ -12,9 +12,9 @@ from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
 ONE = Number(ZERO.value + 1)
 
 
-def read_frames(scope: Scope, tree: MappingNode) -> tuple[Frame, ...]:
-    """The frames, parents first; faulty ones are left out."""
-    found: dict[str, Frame] = {}
+def read_frames(scope: Scope, tree: MappingNode, joints: tuple[Frame, ...]) -> tuple[Frame, ...]:
+    """The frames, those of joints among them, parents first; faulty ones are left out."""
+    found: dict[str, Frame] = {frame.name: frame for frame in joints}
     for key, node in entries(tree.get("frames")):
         frame = _frame(scope, key, node)
         if frame is not None and scope.owns(key):

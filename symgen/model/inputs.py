@@ -16,7 +16,8 @@ from symgen.model.reading import description_of, entries, items, key_span, membe
 from symgen.model.scope import CONFIGURATION, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 
-ACTIONS = ("acts_on", "joint", "point", "torque_on", "cable")
+FORCES = ("point", "torque_on", "cable")
+ACTIONS = ("acts_on", "joint", *FORCES)
 ONE = Number(ZERO.value + 1)
 
 
@@ -25,7 +26,7 @@ def read_inputs(scope: Scope, tree: MappingNode) -> tuple[Input, ...]:
     inputs: list[Input] = []
     for key, node in entries(tree.get("inputs")):
         unit = text_of(member(node, "unit"))
-        action = _action(scope, key, node, ACTIONS)
+        action = chosen_action(scope, key, node, ACTIONS)
         column: tuple[tuple[str, Expression], ...] = ()
         velocity = None
         if action == "acts_on":
@@ -110,7 +111,7 @@ def difference(one: str, other: str, what: str) -> Expression:
     return Binary("-", Name(f"{other}.{what}"), Name(f"{one}.{what}"))
 
 
-def _action(scope: Scope, key: ScalarNode, node: Node, actions: Sequence[str]) -> str | None:
+def chosen_action(scope: Scope, key: ScalarNode, node: Node, actions: Sequence[str]) -> str | None:
     """The one key that says what the input acts on."""
     given = [action for action in actions if member(node, action) is not None]
     listed = ", ".join(f"`{action}`" for action in actions[:-1])

@@ -238,6 +238,11 @@ class Model:
         return len(self.constraints)
 
     @property
+    def has_applied_forces(self) -> bool:
+        """Whether the file gives forces besides weight, springs and inputs."""
+        return bool(self.applied_forces or self.forces)
+
+    @property
     def m(self) -> int:
         """Number of inputs."""
         return len(self.inputs)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
@@ -11,6 +12,8 @@ from symgen.diagnostics import Notice, Span
 from symgen.model.allocation import declare_settings, read_allocation
 from symgen.model.bodies import read_mechanism
 from symgen.model.checks import check_mechanics, notice_empty_outputs
+from symgen.model.combine import plus
+from symgen.model.components import without_components
 from symgen.model.constants import constant
 from symgen.model.coordinates import read_coordinates
 from symgen.model.declarations import (
@@ -22,8 +25,11 @@ from symgen.model.declarations import (
     read_ranges,
 )
 from symgen.model.dimensions import check_units
+from symgen.model.elements import read_forces, read_friction, read_springs
 from symgen.model.expression import Call, Expression, Number
 from symgen.model.inputs import read_inputs
+from symgen.model.joint_forms import JointCoordinate, read_joints
+from symgen.model.loops import Rows
 from symgen.model.mechanism import Mechanism, Quaternion
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean, name_mistake
@@ -39,25 +45,31 @@ ZERO = Number(Fraction(0))
 
 def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     """The model as far as it can be understood; what cannot is a mistake in `scope`."""
-    declare_names(scope, tree)
+    joint_coordinates = declare_names(scope, tree)
     declare_settings(scope, tree)
     ranges = read_ranges(scope, tree)
     parameters = read_parameters(scope, tree, ranges)
     definitions = read_definitions(scope, tree)
-    mechanism = read_mechanism(scope, tree)
+    joints = read_joints(scope, tree, joint_coordinates)
+    mechanism = read_mechanism(scope, tree, joints.frames)
     _check_mass(scope, tree)
     kinetic_read = scope.expression(tree.get("kinetic_energy"), "the kinetic energy", STATE)
     kinetic = kinetic_read or ZERO
     potential = scope.expression(tree.get("potential_energy"), "the potential energy", CONFIGURATION) or ZERO
-    constraints = read_constraints(scope, tree)
+    written = read_constraints(scope, tree)
     inputs = read_inputs(scope, tree)
     allocation, settings = read_allocation(scope, tree, inputs, parameters, ranges)
     forces = read_applied_forces(scope, tree)
+    springs, dampers, fits = read_springs(scope, tree)
+    friction, fits_of_friction = read_friction(scope, tree)
+    elements = read_forces(scope, tree)
     used = [
-        kinetic, potential, *(row.expression for row in constraints), *(force.expression for force in forces),
+        kinetic, potential, *(row.expression for row in written), *(force.expression for force in forces),
         *(coefficient for column in inputs for _, coefficient in column.acts_on), *_placing(mechanism),
     ]  # fmt: skip
-    coordinates = read_coordinates(tree, ranges, definitions, used)
+    coordinates = read_coordinates(tree, ranges, definitions, used, joint_coordinates)
+    made = Rows(scope, mechanism, coordinates, without_components(definitions))
+    constraints = (*written, *made.of_loops(tree), *joints.rows, *made.of_wheels(tree))
     names = tuple(coordinate.name for coordinate in coordinates)
     whole = not scope.mistakes
     tolerances = tree.get("tolerances")
@@ -71,14 +83,14 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         parameters=(*parameters, *settings),
         definitions=definitions,
         kinetic_energy=kinetic,
-        potential_energy=potential,
-        constraints=constraints,
+        potential_energy=plus(potential, springs),
+        constraints=tuple(sorted(constraints, key=lambda row: row.kind == "nonholonomic")),
         inputs=inputs,
         allocation=allocation,
         applied_forces=forces,
         outputs=_outputs(scope, tree.get("outputs"), bool(inputs)),
         independent_velocities=_coordinate_list(scope, tree.get("independent_velocities"), names),
-        configuration=_configuration(scope, tree.get("configuration"), names),
+        configuration=_configuration(scope, tree.get("configuration"), names, joint_coordinates),
         constraint_rank_tolerance=_tolerance(scope, tolerances, "constraint_rank"),
         actuation_rank_tolerance=_tolerance(scope, tolerances, "actuation_rank"),
         published=published,
@@ -87,9 +99,11 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         notices=(),
         text_hash=hashlib.sha256(text.encode()).hexdigest(),
         mechanism=mechanism,
+        forces=(*dampers, *friction, *elements),
         trig_range="wide" if text_of(tree.get("trig_range")) == "wide" else "normal",
     )
-    scope.mistakes.extend(check_units(tree, model))
+    as_written = replace(model, potential_energy=potential, forces=elements)
+    scope.mistakes.extend(check_units(tree, as_written, (*fits, *fits_of_friction)))
     check_mechanics(scope, tree, model, kinetic_read, whole)
     notice_empty_outputs(scope, tree, model)
     _notice_unused(scope, tree)
@@ -97,7 +111,11 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
 
 
 def _check_mass(scope: Scope, tree: MappingNode) -> None:
-    """Something must have mass."""
+    """Something must move, and have mass."""
+    if tree.get("coordinates") is None and tree.get("joints") is None:
+        span = Span(tree.span.line, tree.span.column, tree.span.column + 1)
+        remedy = "add `coordinates`: the generalized coordinates, in the order of q; the rate of x is x_dot"
+        scope.wrong("the model has no `coordinates`", remedy, span)
     if tree.get("kinetic_energy") is None and tree.get("bodies") is None:
         span = Span(tree.span.line, tree.span.column, tree.span.column + 1)
         remedy = "add `kinetic_energy`: T, quadratic in the rates; or `frames` and `bodies`"
@@ -159,7 +177,9 @@ def _coordinate_list(scope: Scope, node: Node | None, names: tuple[str, ...]) ->
     return tuple(chosen) if len(chosen) == len(items(node)) else ()
 
 
-def _configuration(scope: Scope, node: Node | None, names: tuple[str, ...]) -> tuple[tuple[str, Fraction], ...]:
+def _configuration(
+    scope: Scope, node: Node | None, names: tuple[str, ...], joints: tuple[JointCoordinate, ...]
+) -> tuple[tuple[str, Fraction], ...]:
     start: list[tuple[str, Fraction]] = []
     for key, value in entries(node):
         if key.value not in names:
@@ -169,7 +189,9 @@ def _configuration(scope: Scope, node: Node | None, names: tuple[str, ...]) -> t
         number = constant(scope, value, f"the start value of `{key.value}`")
         if number is not None:
             start.append((key.value, number))
-    return tuple(start)
+    given = {name for name, _ in start}
+    usual = [(joint.name, joint.start) for joint in joints if joint.start is not None and joint.name not in given]
+    return (*start, *usual)
 
 
 def _tolerance(scope: Scope, node: Node | None, key: str) -> Fraction | None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from symgen.model.mechanism import INERTIA_ELEMENTS
+from symgen.model.joint_forms import JOINTS
+from symgen.model.loops import LOOPS
+from symgen.model.mechanism import AXES, INERTIA_ELEMENTS
 from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
 from symgen.model.shape import (
     Either,
@@ -21,6 +23,7 @@ from symgen.model.shape import (
 _RANGE = Listing(Formula(), 2, 2)
 _VECTOR = Listing(Formula(), 3, 3)
 _AXIS = Either((Word(), _VECTOR))
+_MAIN_AXIS = Word(AXES)
 _UNIT = Field("unit", Text(), "SI unit such as m, kg*m**2, N*m, rad; a declaration, nothing is converted")
 _DESCRIPTION = Field("description", Text(), "what it is, in a few words; stands in headers and reports")
 _MATRIX = Listing(Either((Formula(), Listing(Formula(), 1))), 1)
@@ -53,6 +56,14 @@ _PARAMETER = Record(
         Field("range", _RANGE, "[lower, upper] of sensible values"),
     ),
 )
+_ACTION = (
+    Field("point", Word(), "a point (or frame, for its origin) where a force acts, along `direction`"),
+    Field("torque_on", Word(), "a frame on which a torque acts, about `direction`"),
+    Field("direction", _VECTOR, "unit vector of the force or torque"),
+    Field("axes", Word(), "the frame whose axes the direction is given in, world if absent"),
+    Field("reaction", Word(), "the point or frame on which the opposite force or torque acts"),
+    Field("cable", Listing(Word(), 2), "points that a cable runs through; the force is its tension"),
+)
 _INPUT = Record(
     "an input",
     (
@@ -60,14 +71,10 @@ _INPUT = Record(
         _DESCRIPTION,
         Field("acts_on", Table(Formula(), 1), "coordinate: coefficient of the input in its equation"),
         Field("joint", Word(), "a coordinate: short for acts_on: {it: 1}"),
-        Field("point", Word(), "a point (or frame, for its origin) where a force acts, along `direction`"),
-        Field("torque_on", Word(), "a frame on which a torque acts, about `direction`"),
-        Field("direction", _VECTOR, "unit vector of the force or torque"),
-        Field("axes", Word(), "the frame whose axes the direction is given in, world if absent"),
-        Field("reaction", Word(), "the point or frame on which the opposite force or torque acts"),
-        Field("cable", Listing(Word(), 2), "points that a cable runs through; the input is its tension"),
+        *_ACTION,
     ),
 )
+_TURNS = Listing(Listing(Either((Formula(), _VECTOR)), 2, 2))
 _FRAME = Record(
     "a frame",
     (
@@ -77,7 +84,7 @@ _FRAME = Record(
             "rotation",
             Either(
                 (
-                    Listing(Listing(Either((Formula(), _VECTOR)), 2, 2)),
+                    _TURNS,
                     Record(
                         "`rotation`",
                         (Field("quaternion", Listing(Formula(), 4, 4), "its four parts, scalar first", required=True),),
@@ -86,6 +93,64 @@ _FRAME = Record(
             ),
             "turns after the translation, each [axis, angle] about the axes reached so far; or {quaternion: [...]}",
         ),
+        _DESCRIPTION,
+    ),
+)
+_JOINT = Record(
+    "a joint",
+    (
+        Field("type", Word(tuple(JOINTS)), "what it lets move", required=True),
+        Field("parent", Word(), "the frame it is attached to, world if absent"),
+        Field("child", Word(), "the frame that moves; absent: named like the joint"),
+        Field("at", _VECTOR, "its place in the parent's axes; absent: the origin"),
+        Field("rotation", _TURNS, "fixed turns before the joint, each [axis, angle]"),
+        Field("axis", _AXIS, "its axis after these turns, x, y, z or three components; absent: z"),
+        Field("coordinate", Word(), "the name of its coordinate, declared by this if nowhere else"),
+        Field("coordinates", Listing(Word(), 1), "the names of several: lengths first, then angle or quaternion"),
+        _DESCRIPTION,
+    ),
+)
+_LOOP = Record(
+    "a loop",
+    (
+        Field("type", Word(LOOPS), "point, distance, revolute or fixed", required=True),
+        Field("between", Listing(Word(), 2, 2), "the two points (point, distance) or frames that meet", required=True),
+        Field("axis", _MAIN_AXIS, "of a revolute loop: the axis x, y or z of both frames; absent: z"),
+        Field("length", Formula(), "of a distance loop: the distance of the points"),
+    ),
+)
+_WHEEL = Record(
+    "a wheel",
+    (
+        Field("frame", Word(), "the frame that turns with it, its origin in the centre", required=True),
+        Field("radius", Formula(), "its radius", required=True),
+        Field("axle", _MAIN_AXIS, "the axis x, y or z of the frame it turns about; absent: y"),
+        Field("plane", Word(("world",)), "what it rolls on: the plane z = 0 of the world"),
+    ),
+)
+_SPRING = Record(
+    "a spring",
+    (
+        Field("between", Listing(Word(), 2, 2), "the two points it connects"),
+        Field("joint", Word(), "or the coordinate it acts in"),
+        Field("stiffness", Formula(), "force per length, or torque per angle"),
+        Field("length", Formula(), "its length (or the coordinate) without force; absent: 0"),
+        Field("damping", Formula(), "force per rate of its length"),
+    ),
+)
+_FRICTION = Record(
+    "friction",
+    (
+        Field("viscous", Formula(), "force per rate"),
+        Field("coulomb", Formula(), "dry friction: c*tanh(rate/width)"),
+        Field("width", Formula(), "the rate at which dry friction has 76 % of its full size"),
+    ),
+)
+_FORCE = Record(
+    "a force",
+    (
+        *_ACTION,
+        Field("magnitude", Formula(), "its size, of coordinates, rates, parameters, points", required=True),
         _DESCRIPTION,
     ),
 )
@@ -204,7 +269,6 @@ MODEL = Record(
             "coordinates",
             Table(_COORDINATE, 1, entries_may_be_empty=True),
             "the generalized coordinates, in the order of q; the rate of x is x_dot",
-            required=True,
         ),
         Field("parameters", Table(Either((Formula(), _PARAMETER))), "run-time parameters of the kernels"),
         Field("definitions", Table(Formula()), "named sub-expressions, in order of use"),
@@ -225,6 +289,12 @@ MODEL = Record(
         Field("frames", Table(_FRAME), "axes that move with the bodies: a tree that hangs on `world`"),
         Field("bodies", Table(_BODY), "rigid bodies by name; their energies are added to those written out"),
         Field("rotor_inertias", Table(Formula()), "coordinate: J of a geared rotor, adds J/2*rate**2 to T"),
+        Field("joints", Table(_JOINT), "short form of frames: each brings its frame and its coordinates"),
+        Field("loops", Table(_LOOP), "what closes kinematic loops: rows of geometric constraints"),
+        Field("rolling", Table(_WHEEL), "wheels that roll without slip on the plane z = 0 of the world"),
+        Field("springs", Table(_SPRING), "springs and dampers between points or in a coordinate"),
+        Field("friction", Table(_FRICTION), "coordinate: friction in it"),
+        Field("forces", Table(_FORCE), "forces and torques on points and frames that depend on the state"),
         Field("points", Table(_POINT), "places with components `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` in expressions"),
         Field("inputs", Table(_INPUT), "control forces: the columns of the control matrix"),
         Field("allocation", _ALLOCATION, "how redundant inputs share the work: members of the parameter struct"),
@@ -253,11 +323,8 @@ MODEL = Record(
         Field("paths", Table(_PATH), "trajectories as functions of t, for charts and tests"),
         Field("report", Word(("full", "short")), "length of the report"),
     ),
-    later=(
-        "joints", "loops", "springs", "rolling", "friction",
-        "urdf",
-    ),
-)  # fmt: skip
+    later=("urdf",),
+)
 
 
 def json_schema() -> JsonSchema:

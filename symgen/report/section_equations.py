@@ -52,7 +52,7 @@ def equations_of_motion(context: Context) -> Section:
     """Lagrange's equations of the first kind and their matrices."""
     names: list[Slot] = [G, C, Q]
     pattern = "Here {} is the mass matrix, {} the Coriolis matrix and {} the vector of potential forces."
-    if context.model.applied_forces:
+    if context.model.has_applied_forces:
         pattern = "Here {} is the mass matrix, {} the Coriolis matrix, {} are the potential and {} the applied forces."
         names.append(Qa)
     blocks: list[Block] = [
@@ -63,7 +63,7 @@ def equations_of_motion(context: Context) -> Section:
         *_coriolis(context),
         *_potential(context),
     ]
-    if context.model.applied_forces:
+    if context.model.has_applied_forces:
         blocks += [paragraph("The applied forces are"), *context.quantity("applied_force", "Qa")]
     if context.model.r:
         blocks += _jacobian(context)
@@ -81,7 +81,7 @@ def _motion(context: Context) -> Layout:
     if context.model.r:
         left.append(juxtaposed(transposed(B), lam))
     right: list[Layout] = [juxtaposed(M, u)] if context.model.m else []
-    if context.model.applied_forces:
+    if context.model.has_applied_forces:
         right.append(Qa)
     return equals(plus(*left), plus(*right) if right else ZERO)
 

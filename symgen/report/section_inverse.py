@@ -123,7 +123,7 @@ def _by_basis() -> Layout:
 
 def _balance(context: Context) -> Layout:
     return minus_sum(
-        (juxtaposed(G, qdd), juxtaposed(CORIOLIS, qd), POTENTIAL), (Qa,) if context.model.applied_forces else ()
+        (juxtaposed(G, qdd), juxtaposed(CORIOLIS, qd), POTENTIAL), (Qa,) if context.model.has_applied_forces else ()
     )
 
 

@@ -72,7 +72,7 @@ def projection(context: Context) -> Section:
 def _balance(context: Context) -> Layout:
     """G q̈ + C q̇ + Q − Q_a."""
     balance = plus(juxtaposed(G, qdd), juxtaposed(C, qd), Q)
-    if not context.model.applied_forces:
+    if not context.model.has_applied_forces:
         return balance
     return Sum((("+", juxtaposed(G, qdd)), ("+", juxtaposed(C, qd)), ("+", Q), ("-", Qa)))
 

@@ -240,15 +240,32 @@ def _virtual_power(control: Input) -> Layout:
 
 def _applied_forces(context: Context) -> list[Block]:
     forces = context.model.applied_forces
+    elements = _force_elements(context)
     if not forces:
-        return []
+        return elements
     equations = tuple(
         equation(_component(name_layout(force.coordinate)), expression_layout(force.expression)) for force in forces
     )
     return [
         paragraph("Further generalized forces {}, damping for example, stand on the right-hand side:", Qa),
         displayed(equations),
+        *elements,
     ]
+
+
+def _force_elements(context: Context) -> list[Block]:
+    if not context.model.forces:
+        return []
+    rows = tuple(
+        (
+            (InlineCode(force.name),),
+            (InlineMath(expression_layout(force.magnitude)),),
+            (InlineMath(expression_layout(force.velocity)),),
+        )
+        for force in context.model.forces
+    )
+    intro = "Dampers, friction and given forces act with a magnitude each, and work on a rate:"
+    return [paragraph(intro), Table((say("Name"), say("Magnitude"), say("Rate")), rows, (0, 1, 1))]
 
 
 def _component(index: Layout) -> Layout:

@@ -372,6 +372,39 @@ BODIES = {
     "no_freedom_left": arm(more="constraints: {geometric: {c: tip.x - l, d: tip.y}}\n"),
 }
 
+ELEMENTS = {
+    "unknown_joint": arm(more="joints: {wrist: {type: hinge, parent: lower, coordinate: c}}\n"),
+    "joint_of_too_few_coordinates": arm(more="joints: {wrist: {type: planar, parent: lower, coordinates: [c, d]}}\n"),
+    "joint_axis_of_zero_length": arm(
+        more="joints: {wrist: {type: revolute, parent: lower, axis: [0, 0, 0], coordinate: c}}\n"
+    ),
+    "two_frames_of_one_name": arm(more="joints: {wrist: {type: revolute, child: lower, coordinate: c}}\n"),
+    "joint_that_hangs_on_itself": arm(more="joints: {wrist: {type: revolute, parent: wrist, coordinate: c}}\n"),
+    "quaternion_before_a_joint": arm(
+        more="joints: {wrist: {type: revolute, rotation: {quaternion: [1, 0, 0, 0]}, coordinate: c}}\n"
+    ),
+    "unknown_loop": arm(more="loops: {cut: {type: spring, between: [tip, upper]}}\n"),
+    "loop_between_three": arm(more="loops: {cut: {type: point, between: [tip, upper, lower]}}\n"),
+    "loop_to_nowhere": arm(more="loops: {cut: {type: point, between: [tip, hook]}}\n"),
+    "loop_of_points_with_an_axis": arm(more="loops: {cut: {type: revolute, between: [tip, upper]}}\n"),
+    "distance_without_length": arm(more="loops: {cut: {type: distance, between: [tip, upper]}}\n"),
+    "loop_that_cannot_close": arm(more="loops: {cut: {type: distance, between: [tip, upper], length: 3*l}}\n"),
+    "row_of_a_taken_name": arm(
+        more="inputs: {cut_x: {joint: a}}\nloops: {cut: {type: point, between: [tip, upper]}}\n"
+    ),
+    "wheel_without_radius": arm(more="rolling: {wheel: {frame: lower}}\n"),
+    "wheel_on_a_point": arm(more="rolling: {wheel: {frame: tip, radius: l}}\n"),
+    "spring_on_nothing": arm(more="springs: {s: {stiffness: 100}}\n"),
+    "spring_in_kilograms": arm(more="springs: {s: {between: [tip, upper], stiffness: m, length: J}}\n"),
+    "dry_friction_without_width": arm(more="friction: {a: {coulomb: 1}}\n"),
+    "friction_in_a_frame": arm(more="friction: {lower: {viscous: 1}}\n"),
+    "force_without_magnitude": arm(more="forces: {wind: {point: tip, direction: [1, 0, 0]}}\n"),
+    "force_of_an_acceleration": arm(
+        more="forces: {wind: {point: tip, direction: [1, 0, 0], magnitude: m*a_ddot}}\n"
+    ),
+    "cable_of_one_point": arm(more="inputs: {u: {cable: [tip]}}\n"),
+}
+
 GROUPS = {
     "yaml": YAML,
     "shape": SHAPE,
@@ -380,6 +413,7 @@ GROUPS = {
     "structure": STRUCTURE,
     "mechanism": MECHANISM,
     "bodies": BODIES,
+    "elements": ELEMENTS,
     "units": UNITS,
     "allocation": ALLOCATION,
     "published_and_paths": PUBLISHED_AND_PATHS,

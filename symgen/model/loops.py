@@ -1,0 +1,153 @@
+"""Reading loops and rolling wheels: constraint rows between points and frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from typing import Literal
+
+from symgen.diagnostics import Span
+from symgen.model.combine import divided, minus, negated, plus, times
+from symgen.model.expression import Call, Expression, Name, Number, Power
+from symgen.model.formulas import Form, Formula, Formulas
+from symgen.model.frames import frame_name
+from symgen.model.inputs import difference, point_name, squared_distance
+from symgen.model.kinematics import Kinematics
+from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, component, is_component
+from symgen.model.model import ConstraintRow, Coordinate, Definition
+from symgen.model.reading import entries, items, member, text_of
+from symgen.model.scope import PARAMETERS, Scope
+from symgen.model.source import MappingNode, Node, ScalarNode
+from symgen.model.walk import exact_value, names_in
+
+LOOPS = ("point", "distance", "revolute", "fixed")
+ONE = Number(Fraction(1))
+TWO = Fraction(2)
+
+
+class Rows:
+    """Rows of loops and wheels, without those that hold in every configuration of a plane mechanism."""
+
+    def __init__(
+        self, scope: Scope, mechanism: Mechanism, coordinates: tuple[Coordinate, ...], known: tuple[Definition, ...]
+    ) -> None:
+        self._scope = scope
+        formulas = Formulas(coordinates, {definition.name: definition.value for definition in known})
+        self._kinematics: Kinematics[Formula, Form] = Kinematics(mechanism, formulas)
+
+    def of_loops(self, tree: MappingNode) -> Iterator[ConstraintRow]:
+        """The rows that close the loops."""
+        for key, node in entries(tree.get("loops")):
+            what = f"the loop `{key.value}`"
+            kind = text_of(member(node, "type"))
+            if kind not in LOOPS:
+                continue
+            owner_of = point_name if kind in ("point", "distance") else frame_name
+            owners = [owner_of(self._scope, item, f"`between` of {what}") for item in items(member(node, "between"))]
+            known = [owner for owner in owners if owner is not None]
+            if len(known) != 2:
+                continue
+            yield from self._named(key, self._closing(kind, known[0], known[1], node, what))
+
+    def of_wheels(self, tree: MappingNode) -> Iterator[ConstraintRow]:
+        """The rows of wheels that roll on the plane z = 0 of the world."""
+        for key, node in entries(tree.get("rolling")):
+            what = f"the wheel `{key.value}`"
+            frame = frame_name(self._scope, member(node, "frame"), f"`frame` of {what}")
+            radius = self._scope.expression(member(node, "radius"), f"the radius of {what}", PARAMETERS)
+            if frame is not None and radius is not None and frame in self._kinematics.frames:
+                axle = _main_axis(text_of(member(node, "axle")), 1)
+                yield from self._named(key, self._rolling(frame, radius, axle), ("along", "across"))
+
+    def _closing(
+        self, kind: str, one: str, other: str, node: Node, what: str
+    ) -> Iterator[tuple[str, Expression]]:
+        if kind == "distance":
+            length = self._scope.expression(member(node, "length"), f"the length of {what}", PARAMETERS)
+            if member(node, "length") is None:
+                self._scope.wrong(f"{what} has no `length`", "add `length`, the distance of the points", node.span)
+            if length is not None:
+                yield "length", minus(squared_distance(one, other), Power(length, TWO))
+            return
+        yield from ((place, difference(other, one, place)) for place in PLACES)
+        if kind == "point":
+            return
+        axis = _main_axis(text_of(member(node, "axis")), 2)
+        # the axis of one, seen from the other, has no components across it
+        across = [index for index in range(3) if index != axis]
+        for row in across:
+            yield f"tilt_{AXES[row]}", Name(Component(one, f"r{row + 1}{axis + 1}", other).name)
+        if kind == "fixed":
+            yield "turn", Name(Component(one, f"r{across[0] + 1}{across[1] + 1}", other).name)
+
+    def _rolling(self, frame: str, radius: Expression, axle: int) -> Iterator[tuple[str, Expression]]:
+        """No slip where the wheel touches the plane, and the height of its centre where that can change.
+
+        The lowest point lies at -R (n - (n.a) a) / sqrt(1 - (n.a)^2) from the centre, with the axle a and the normal n.
+        """
+        column = axle + 1
+        parent = self._kinematics.frames[frame].parent
+        upright = self._zero(Component(frame, f"r3{column}").name)
+        level = self._value(Component(parent, "r33").name) if parent != WORLD else ONE
+        axes = parent if upright and exact_value(level) == 1 else WORLD
+
+        def rate(what: str) -> Expression:
+            return Name(Component(frame, what, axes).name)
+
+        if upright:
+            yield "along", minus(rate("vx"), times(radius, rate("wy")))
+            yield "across", plus(rate("vy"), times(radius, rate("wx")))
+            return
+        lean = Name(Component(frame, f"r3{column}").name)
+        side = Call("sqrt", (minus(ONE, Power(lean, TWO)),))
+        arm_x, arm_y = (
+            times(times(radius, lean), Name(Component(frame, f"r{row}{column}").name)) for row in (1, 2)
+        )
+        arm_x, arm_y, arm_z = divided(arm_x, side), divided(arm_y, side), negated(times(radius, side))
+        yield "along", plus(rate("vx"), minus(times(rate("wy"), arm_z), times(rate("wz"), arm_y)))
+        yield "across", plus(rate("vy"), minus(times(rate("wz"), arm_x), times(rate("wx"), arm_z)))
+        yield "height", minus(Name(f"{frame}.z"), times(radius, side))
+
+    def _named(
+        self, key: ScalarNode, rows: Iterable[tuple[str, Expression]], of_rates: tuple[str, ...] = ()
+    ) -> Iterator[ConstraintRow]:
+        for suffix, expression in rows:
+            if not self._zero_row(expression):
+                name = f"{key.value}_{suffix}"
+                self._enter(name, key.span)
+                kind: Literal["geometric", "nonholonomic"] = "nonholonomic" if suffix in of_rates else "geometric"
+                yield ConstraintRow(name, kind, expression, key.span)
+
+    def _enter(self, name: str, span: Span) -> None:
+        scope = self._scope
+        if name in scope.kinds:
+            message = f"the row `{name}` that is made here has the name of another thing ({scope.kinds[name]})"
+            scope.wrong(message, "rename one of them", span)
+            return
+        scope.kinds[name] = "constraint row"
+        scope.kinds.setdefault(f"multiplier_{name}", "multiplier")
+
+    def _zero_row(self, expression: Expression) -> bool:
+        """Whether a row vanishes because each of its components does, or cancels as it stands."""
+        names = [name.name for name in names_in(expression) if is_component(name.name)]
+        if not names:
+            return False
+        values = {name: self._value(name) for name in names}
+        if all(exact_value(value) == 0 for value in values.values()):
+            return True
+        return len(names) == 2 and values[names[0]] == values[names[1]] and expression == minus(
+            Name(names[0]), Name(names[1])
+        )
+
+    def _zero(self, name: str) -> bool:
+        return exact_value(self._value(name)) == 0
+
+    def _value(self, name: str) -> Expression:
+        one = component(name)
+        if one.is_rate:
+            return ZERO if not self._kinematics.component_rate(one) else Name(name)
+        return self._kinematics.component(one).expression
+
+
+def _main_axis(name: str | None, usual: int) -> int:
+    return next((index for index, axis in enumerate(AXES) if axis == name), usual)
