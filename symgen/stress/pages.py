@@ -22,6 +22,13 @@ FORMS = (
     *("(9) fixed partition", "(27)+(28) fixed", "(27)+(28) switching", "symgen"),
     *(f"form {name}" for name in FORM_NAMES),
 )
+KIND_TITLES = {
+    "parameter": "near parameter singularities",
+    "input": "near input singularities",
+    "constraint": "near constraint singularities",
+    "mass ratios": "under extreme mass ratios",
+}
+FORM_KINDS = tuple(KIND_TITLES)
 HEAD = """# Numerical stability
 
 Written by `make stress`. Every family of trouble was found by `symgen stress` itself: the zeros of the factored
@@ -33,7 +40,9 @@ Errors are those of whole kernels against a reference of 50 digits. The unit of 
 how far the exact result moves when inputs, parameters and literals are rounded; 16 units are allowed. The paper's
 formulas run in NumPy, in the same precision, on B, M, G, C and Q as the generated kernels compute them: (9) with the
 coordinates, and (28) with the inputs, that fail where the family leads. Beside (27) and (28), N_B is (21), and λ and q̈
-are (14) and (15) as corrected. "Breaks" is the largest d at which a form is beyond the tolerance.
+are (14) and (15) as corrected. Forms by name are symgen's own, compiled as the generated one is (decisions 8 and 12);
+they answer for the states that the generated kernel accepts. "Breaks" is the largest d at which a form is beyond the
+tolerance.
 """
 CLAIM = """## The paper's claim
 
@@ -79,8 +88,7 @@ def _model(result: Mapping[str, Any], charts: Sequence[str]) -> list[str]:
     parts.append("\n".join(["Singularities found:\n", *(families or ["- none"])]) + "\n")
     if result["nowhere"]:
         parts.append("\n".join(["Looked for without success:\n", *(f"- {line}" for line in result["nowhere"])]) + "\n")
-    if forms := _forms(result):
-        parts.append(forms)
+    parts += [_forms(result, kind) for kind in FORM_KINDS]
     parts += [_statuses(result), _scaling(result), _runs(result)]
     for title, lines in (("Known limits:", result["limits"]), ("Wrong:", result["failures"])):
         if lines:
@@ -98,8 +106,9 @@ def _singular(family: Mapping[str, Any]) -> bool:
     return family["kind"] in ("constraint", "input", "parameter")
 
 
-def _forms(result: Mapping[str, Any]) -> str:
-    chosen = {i for i, family in enumerate(result["families"]) if family["kind"] == "parameter"}
+def _forms(result: Mapping[str, Any], kind: str) -> str:
+    """Errors of every form in one kind of trouble, and where it breaks; nothing where there is no such trouble."""
+    chosen = {i for i, family in enumerate(result["families"]) if family["kind"] == kind}
     rows = []
     for quantity, symbol in SYMBOLS.items():
         for form in FORMS:
@@ -121,7 +130,7 @@ def _forms(result: Mapping[str, Any]) -> str:
                 rows.append(cells)
     if not rows:
         return ""
-    head = ["", "form, near parameter singularities", "float64", "breaks", "float32", "breaks"]
+    head = ["", f"form, {KIND_TITLES[kind]}", "float64", "breaks", "float32", "breaks"]
     return _table(head, rows)
 
 
