@@ -25,7 +25,7 @@ class PairsView:
     """What the template of the source file prints: the body of the pair, and which functions call it.
 
     `single` and `group` name the functions of one and of several angles, empty where no kernel calls them; `pair` is
-    the inlined body with parameter `angle`.
+    the inlined body with parameter `angle`.  `kind` and `unroll` name macros that say how the group is compiled.
     """
 
     pair: str
@@ -35,6 +35,8 @@ class PairsView:
     group: str
     inline: str
     lanes: str
+    kind: str
+    unroll: str
     count: int
 
 
@@ -58,6 +60,8 @@ def pairs_view(name: str, suffix: str, program: Program) -> PairsView | None:
         group=f"{name}_sincos_group{suffix}" if groups else "",
         inline=f"{name}_inline{suffix}".upper(),
         lanes=f"{name}_lanes{suffix}".upper(),
+        kind=f"{name}_group{suffix}".upper(),
+        unroll=f"{name}_unroll{suffix}".upper(),
         count=LANES[program.scalar],
     )
 
@@ -65,7 +69,7 @@ def pairs_view(name: str, suffix: str, program: Program) -> PairsView | None:
 def pair_names(name: str, suffix: str) -> set[str]:
     """Every name that `pairs_view` may give to a file."""
     functions = {f"{name}_{tail}{suffix}" for tail in ("pair", "sincos", "sincos_group")}
-    return functions | {f"{name}_{tail}{suffix}".upper() for tail in ("inline", "lanes")}
+    return functions | {f"{name}_{tail}{suffix}".upper() for tail in ("inline", "lanes", "group", "unroll")}
 
 
 def pair_body(scalar: Scalar, function: Function, name: str) -> tuple[str, tuple[str, ...]]:
