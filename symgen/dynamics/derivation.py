@@ -13,6 +13,7 @@ from itertools import combinations
 from symgen.dynamics.allocation import InputAllocation
 from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
 from symgen.dynamics.exterior import square as multivector_square
+from symgen.dynamics.forms.definiteness import positive_definite
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.motions import MotionName, candidates, cheapest, motion
@@ -86,6 +87,9 @@ class Derivation:
     @cached_property
     def _motions(self) -> dict[MotionName, Motion]:
         names = candidates(self.generic, self.space)
+        if "nullspace" in names and not positive_definite(self.mechanics):
+            # not even built: equal functions are one node, and pivots of a singular G may be 0/0 where others are not
+            names = tuple(name for name in names if name != "schur_qr")
         return {name: motion(name, self.mechanics, self.space, self.inertia) for name in names}
 
     @cached_property

@@ -27,7 +27,11 @@ SMALLEST = 1e-4
 
 @lru_cache(maxsize=2)  # asked for q_ddot and for lambda, along each null space
 def positive_definite(mechanics: Mechanics) -> bool:
-    """Whether G is positive definite at every configuration, for parameters in their ranges."""
+    """Whether G is positive definite at every configuration, for parameters in their ranges.
+
+    On a graph of its own, so that no kernel shares the pivots.
+    """
+    mechanics = Mechanics(mechanics.model)
     graph = mechanics.graph
     if any(row[i].is_zero for i, row in enumerate(mechanics.mass_matrix)):
         return False
