@@ -136,39 +136,33 @@ class InverseDynamics:
                 chosen = name
         if chosen is None:
             return "no form is valid at every regular state"
-        best, least = offers[chosen], weights[chosen]
-        for shorter in self._factored(best):
+        best = offers[chosen]
+        shorter = self._factored(best)
+        if shorter is not None:
             weights[shorter.way] = weight = shorter.form.weight
-            offers[shorter.way] = shorter
             found = verdicts[shorter.way] = self.verdict(shorter, first_only=True)
             remarks[shorter.way] = found.explanation
-            worth = weights[chosen] * (1 + CANCELLATION_WORTH)
-            if found.admitted and (weight <= worth if shorter.form.name == chosen == "minor" else weight < least):
-                best, least = shorter, weight
+            worth = CANCELLATION_WORTH if chosen == "minor" else 0
+            if found.admitted and weight < weights[chosen] * (1 + worth):
+                best = shorter
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
         return best, FormChoice(best.way, verdicts[best.way], others)
 
-    def _factored(self, best: Offer) -> list[Offer]:
-        """The best form and the minor form multiplied out and factored, where they are short enough.
+    def _factored(self, best: Offer) -> Offer | None:
+        """The minor form multiplied out and factored, where it is short enough to compete.
 
         Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.
+        The other forms have nothing to cancel that their steps have left.
         """
-        if self._generic.rank < self._generic.r:
-            return []
-        limit = min(FACTORING_LIMIT, int(best.form.weight * (1 + FACTORING_GAIN)))
         minor = self.offer("minor")
-        found = []
-        for offer in dict.fromkeys((best, minor)):
-            if isinstance(offer, str) or offer.way == "householder" or not 0 < offer.form.weight <= limit:
-                continue
-            kept: frozenset[Scalar] = frozenset()
-            if offer.way == "minor":
-                kept = frozenset() if isinstance(self.minor, str) else self.minor.common_speeds
-            system = offer.system
-            outputs = system.mechanics.factoring.shorten(offer.form.outputs, kept)
-            made = form(offer.form.name, offer.form.quantity, outputs, offer.form.guards, system.given)
-            found.append(Offer(f"{offer.way} factored", system, made))
-        return found
+        limit = min(FACTORING_LIMIT, int(best.form.weight * (1 + FACTORING_GAIN)))
+        if self._generic.rank < self._generic.r or isinstance(minor, str) or not 0 < minor.form.weight <= limit:
+            return None
+        kept = frozenset[Scalar]() if isinstance(self.minor, str) else self.minor.common_speeds
+        system = minor.system
+        outputs = system.mechanics.factoring.shorten(minor.form.outputs, kept)
+        made = form(minor.form.name, minor.form.quantity, outputs, minor.form.guards, system.given)
+        return Offer("minor factored", system, made)
 
     def _least_householder(self) -> int:
         """A cost that the Householder form exceeds: its data, and a root and a division for each reflection."""
