@@ -26,9 +26,9 @@ from symgen.verify.states import sample_states
 
 CORE = BY_NAME["cortex-m4f"]
 STATES = 64
-# model: instructions at most at some level, of -O2, -O3 and -Os, bytes at -Os, share of CasADi's best form at -O2
+# model: instructions at most at -O2, bytes at most at -Os, share of CasADi's best form at -O2
 GOALS = {"front_car": (165, 600, 0.35), "rapkm_2rrr_rr": (500, 1400, 0.35)}
-LEVELS = ("-O2", "-O3", "-Os")
+LEVELS = ("-O2", "-Os")
 # CasADi writes double's functions whatever its type is: it is given float's, which makes it 17 times cheaper here.
 SINGLE = ("-include", "single.h", "-fsingle-precision-constant", "-DREAL=float", "-Dcasadi_real=REAL")
 HEADER = "#include <math.h>\n" + "".join(
@@ -115,5 +115,5 @@ def test_u_on_a_cortex_m4f_meets_its_goals(tool: Callable[[str], str], tmp_path:
     casadi = _casadi(name, tmp_path)
     told = f"{name}: {counts}, {code} bytes; CasADi {({form: round(count) for form, count in casadi.items()})}"
     assert counts["-O2"] <= share * min(casadi.values()), told
-    assert min(counts.values()) <= instructions, told
+    assert counts["-O2"] <= instructions, told
     assert code <= size, told
