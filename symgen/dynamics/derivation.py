@@ -22,6 +22,7 @@ from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import elementary_symmetric, reflected
+from symgen.dynamics.solvable import solvable
 from symgen.dynamics.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
 from symgen.graph.calculus import derivative_along
 from symgen.graph.matrix import (
@@ -113,28 +114,7 @@ class Derivation:
         return self._solvable(forms, self.mechanics.inputs, Status.ACTUATION_RANK)
 
     def _solvable(self, forms: ActuationForms, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
-        if forms.denominator().constant is not None:
-            return ()
-        if self.mechanics.factoring.fixed(forms.denominator()):
-            return (Guard(status, forms.denominator(), 1 if forms.single else 2, self.space.guards),)
-        # Hadamard's bounds: reflections keep the columns' lengths, minors are made of the rows of B as well
-        squares = magnitude(self.graph, [dot(self.graph, column, column) for column in columns])
-        scale = self.graph.sum(
-            self.graph.product(squares[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
-        )
-        if isinstance(self.space, MinorSpace):
-            lengths = [self._square_of_row(row) for row in self.mechanics.constraint_jacobian]
-            scale = scale * elementary_symmetric(self.graph, lengths, self.generic.rank)
-        denominator = forms.denominator() * forms.denominator() if forms.single else forms.denominator()
-        return (Guard(status, denominator, 2, self.space.guards, scale),)
-
-    def _square_of_row(self, row: Vector) -> Scalar:
-        """|b|^2 where the row may become short, else a bound that needs no sine or cosine."""
-        square = dot(self.graph, row, row)
-        fixed = self.mechanics.factoring.fixed
-        if any(fixed(entry) and not entry.is_zero for entry in row):
-            (square,) = magnitude(self.graph, [square])
-        return square
+        return solvable(self.mechanics, self.generic, self.space, forms, columns, status)
 
     def _solve_inputs(self, force: Vector) -> Vector:
         forms, restriction = self._actuation
