@@ -43,13 +43,16 @@ class _Writer:
         kinetic = plus(model.kinetic_energy, self._kinetic_energy())
         potential = plus(model.potential_energy, self._potential_energy())
         components = [Definition(name, self._component(name)) for name in self._components()]
+        kinematic = tuple(formulas.definitions)
+        # what inputs and forces work on contains components and definitions of the file, and comes after these
         inputs = tuple(self._input(one) for one in model.inputs)
         forces = self._forces()
+        of_forces = tuple(formulas.definitions[len(kinematic) :])
         earlier = {definition.name for definition in self.before}
         later = tuple(definition for definition in model.definitions if definition.name not in earlier)
         return replace(
             model,
-            definitions=(*self.before, *formulas.definitions, *components, *later),
+            definitions=(*self.before, *kinematic, *components, *later, *of_forces),
             kinetic_energy=kinetic,
             potential_energy=potential,
             inputs=inputs,

@@ -1,0 +1,180 @@
+"""Bodies, joints and force elements against energies, against the reference's own walk, and against each other."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.evaluate import Evaluator
+from symgen.graph.scalar import Scalar
+from symgen.graph.traverse import cost
+from symgen.model.energy_form import energy_form
+from symgen.model.load import load_model, load_text
+from symgen.model.model import Model
+from symgen.verify.reference import Reference, State
+
+HERE = Path(__file__).parent
+MODELS = HERE.parents[1] / "models"
+MECHANISMS = sorted(path.stem for path in HERE.glob("*.yaml"))
+SMALL = [name for name in MECHANISMS if name != "chain8"]
+QUANTITIES = (
+    "mass_matrix",
+    "coriolis_force",
+    "potential_force",
+    "applied_force",
+    "constraint_residual",
+    "constraint_jacobian",
+    "control_matrix",
+    "energy",
+)
+
+
+def mechanism(name: str) -> Model:
+    """One of the models beside this file."""
+    return load_model(HERE / f"{name}.yaml")
+
+
+def a_state(model: Model, seed: int) -> State:
+    """A state off every constraint, with parameters a little off their defaults."""
+    source = random.Random(f"{model.name} {seed}")
+
+    def drawn(count: int) -> tuple[Fraction, ...]:
+        return tuple(Fraction(source.randrange(200, 1200), 1000) for _ in range(count))
+
+    return State(drawn(model.n), drawn(model.n), drawn(model.n), drawn(model.m), drawn(len(model.parameters)))
+
+
+def values(state: State, model: Model) -> dict[str, float]:
+    """The state by the names of the graph's symbols."""
+    coordinates = model.coordinates
+    named = {c.name: float(x) for c, x in zip(coordinates, state.q, strict=True)}
+    named |= {c.rate: float(x) for c, x in zip(coordinates, state.qd, strict=True)}
+    named |= {c.acceleration: float(x) for c, x in zip(coordinates, state.qdd, strict=True)}
+    named |= {i.name: float(x) for i, x in zip(model.inputs, state.u, strict=True)}
+    return named | {p.name: float(x) for p, x in zip(model.parameters, state.parameters, strict=True)}
+
+
+def exact(reference: Reference, state: State, quantity: str) -> list[float]:
+    """Entries of a quantity from the reference."""
+    return [float(x) for x in reference.matrices(state, [quantity])[quantity].entries()]
+
+
+def on_graph(mechanics: Mechanics, quantity: str) -> list[Scalar]:
+    """Entries of the same quantity on the graph."""
+    if quantity == "energy":
+        return [mechanics.kinetic_energy, mechanics.potential_energy]
+    found = getattr(mechanics, quantity)
+    return (
+        [x for row in found for x in row]
+        if quantity in ("mass_matrix", "constraint_jacobian", "control_matrix")
+        else [*found]
+    )
+
+
+def offered(reference: Reference, quantity: str) -> bool:
+    return quantity in reference.quantities()
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_the_graph_agrees_with_the_walk_of_the_reference(name: str) -> None:
+    model = mechanism(name)
+    reference, mechanics = Reference(model), Mechanics(model)
+    for quantity in QUANTITIES:
+        if not offered(reference, quantity):
+            continue
+        evaluate = Evaluator(on_graph(mechanics, quantity))
+        for seed in range(2):
+            state = a_state(model, seed)
+            expected = exact(reference, state, quantity)
+            size = max(map(abs, expected), default=0.0)
+            assert evaluate(values(state, model)) == pytest.approx(expected, rel=1e-11, abs=1e-12 * size), quantity
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_newton_and_euler_agree_with_lagrange(name: str) -> None:
+    model = mechanism(name)
+    bodies, energies = Mechanics(model), Mechanics(energy_form(model))
+    state = values(a_state(model, 3), model)
+    for quantity in ("balance", "bias_force", "applied_force"):
+        expected = Evaluator(getattr(energies, quantity))(state)
+        assert Evaluator(getattr(bodies, quantity))(state) == pytest.approx(expected, rel=1e-10, abs=1e-10)
+    for quantity in ("control_matrix", "constraint_jacobian"):
+        rows = [[x for row in getattr(side, quantity) for x in row] for side in (bodies, energies)]
+        assert Evaluator(rows[0])(state) == pytest.approx(Evaluator(rows[1])(state), rel=1e-11, abs=1e-11)
+
+
+@pytest.mark.parametrize(("twin", "original"), [("front_car_bodies", "front_car"), ("rapkm_bodies", "rapkm_2rrr_rr")])
+def test_the_twins_are_the_same_system(twin: str, original: str) -> None:
+    """Identical to 40 digits: both references, which share no formula of the mechanics."""
+    models = mechanism(twin), load_model(MODELS / f"{original}.yaml")
+    assert [c.name for c in models[0].coordinates] == [c.name for c in models[1].coordinates]
+    assert [p.name for p in models[0].parameters] == [p.name for p in models[1].parameters]
+    references = [Reference(model) for model in models]
+    for seed in range(2):
+        state = a_state(models[0], seed)
+        for quantity in (
+            "mass_matrix",
+            "coriolis_matrix",
+            "constraint_jacobian",
+            "inverse_dynamics",
+            "forward_dynamics",
+        ):
+            one, other = (reference.matrices(state, [quantity])[quantity] for reference in references)
+            size = max(abs(float(x)) for x in one.entries())
+            assert all(abs(float(x)) <= 1e-40 * size for x in (one - other).entries()), quantity
+
+
+def test_recursion_is_linear_in_the_number_of_links() -> None:
+    four, eight = (cost(Mechanics(mechanism(name)).balance) for name in ("chain4", "chain8"))
+    per_link = (eight.multiplications - four.multiplications) / 4, (eight.additive - four.additive) / 4
+    assert per_link[0] <= 20
+    assert per_link[1] <= 16
+    assert (four.angles, eight.angles) == (4, 8)
+
+
+def test_rows_across_the_plane_are_left_out() -> None:
+    text = (HERE / "rapkm_bodies.yaml").read_text(encoding="utf-8")
+    head, _, tail = text.partition("constraints:")
+    loops = (
+        "loops:\n  loop_12: {type: point, between: [tip_2, tip_1]}\n  loop_13: {type: point, between: [tip_3, tip_1]}\n"
+    )
+    model = load_text(f"{head}loops:\n{loops}inputs:" + tail.partition("inputs:")[2], "m.yaml")
+    assert [row.name for row in model.constraints] == ["loop_12_x", "loop_12_y", "loop_13_x", "loop_13_y"]
+    state = a_state(model, 0)
+    expected = exact(Reference(mechanism("rapkm_bodies")), state, "constraint_jacobian")
+    found = exact(Reference(model), state, "constraint_jacobian")
+    assert [abs(x) for x in found] == pytest.approx([abs(x) for x in expected], abs=1e-15)
+
+
+def test_dependent_rows_of_a_full_joint() -> None:
+    reference = Reference(mechanism("tilted_four_bar"))
+    assert (reference.model.r, reference.ranks.constraints) == (3, 2)
+
+
+def test_a_joint_brings_its_coordinates_and_its_norm() -> None:
+    model = mechanism("floating_body")
+    assert [c.name for c in model.coordinates] == ["x", "y", "z", "e_0", "e_1", "e_2", "e_3", "a"]
+    assert [row.name for row in model.constraints] == ["base_norm"]
+    assert dict(model.configuration)["e_0"] == 1
+    assert next(c for c in model.coordinates if c.name == "a").is_angle
+
+
+def test_a_quaternion_of_any_length_is_a_rotation() -> None:
+    """The height of a point on an axis that is turned by e/|e| does not know the length of e."""
+    model = load_text(
+        """\
+model: m
+joints: {j: {type: spherical, child: b, coordinates: [e_0, e_1, e_2, e_3]}}
+bodies: {b: {mass: 1, com: [0, 0, 0.5], inertia: {xx: 1, yy: 1, zz: 1}}}
+gravity: [0, 0, -10]
+""",
+        "m.yaml",
+    )
+    evaluate = Evaluator([Mechanics(model).potential_energy])
+    tilt = {"e_0": 0.6, "e_1": 0.8, "e_2": 0.0, "e_3": 0.0}
+    assert evaluate(tilt) == pytest.approx([5 * (0.36 - 0.64)])
+    assert evaluate({name: 3 * value for name, value in tilt.items()}) == pytest.approx([5 * (0.36 - 0.64)])
