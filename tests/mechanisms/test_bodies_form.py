@@ -139,10 +139,8 @@ def test_recursion_is_linear_in_the_number_of_links() -> None:
 def test_rows_across_the_plane_are_left_out() -> None:
     text = (HERE / "rapkm_bodies.yaml").read_text(encoding="utf-8")
     head, _, tail = text.partition("constraints:")
-    loops = (
-        "loops:\n  loop_12: {type: point, between: [tip_2, tip_1]}\n  loop_13: {type: point, between: [tip_3, tip_1]}\n"
-    )
-    model = load_text(f"{head}loops:\n{loops}inputs:" + tail.partition("inputs:")[2], "m.yaml")
+    loops = "".join(f"  loop_1{i}: {{type: point, between: [tip_{i}, tip_1]}}\n" for i in (2, 3))
+    model = load_text(f"{head}loops:\n{loops}inputs:{tail.partition('inputs:')[2]}", "m.yaml")
     assert [row.name for row in model.constraints] == ["loop_12_x", "loop_12_y", "loop_13_x", "loop_13_y"]
     state = a_state(model, 0)
     expected = exact(Reference(mechanism("rapkm_bodies")), state, "constraint_jacobian")
