@@ -13,6 +13,7 @@ from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, by_blocks, de
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.inverse import FormChoice, InverseDynamics, derived_on
+from symgen.dynamics.grouping import grouped as grouped_scalars
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import MinorSpace
@@ -122,4 +123,15 @@ def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") 
                 candidates["factored"], best = shorter, "factored"
         quantities.append(candidates[best])
         choices.append(Choice(name, best, tuple(costs.items())))
-    return Derivations(mechanics, generic, tuple(quantities), tuple(choices), tuple(absent), chosen_form)
+    grouped = tuple(_with_groups(mechanics, derived) for derived in quantities)
+    return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form)
+
+
+def _with_groups(mechanics: Mechanics, derived: Derived) -> Derived:
+    """The quantity with numbers multiplied into groups of parameters, where that saves operations."""
+    found = grouped_scalars(mechanics.graph, mechanics.factoring, scalars(derived))
+    outputs, denominators = found[: len(derived.outputs)], found[len(derived.outputs) :]
+    guards = tuple(
+        replace(guard, denominator=denominator) for guard, denominator in zip(derived.guards, denominators, strict=True)
+    )
+    return replace(derived, outputs=tuple(outputs), guards=guards)
