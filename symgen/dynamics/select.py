@@ -12,8 +12,8 @@ from symgen.dynamics.blocks import components
 from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, by_blocks, derive, missing, scalars
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity, genericity
-from symgen.dynamics.inverse import FormChoice, InverseDynamics, derived_on
 from symgen.dynamics.grouping import grouped as grouped_scalars
+from symgen.dynamics.inverse import FormChoice, InverseDynamics, derived_on
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import MinorSpace
