@@ -60,7 +60,7 @@ class FloatKinematics:
     def __init__(self, mechanism: Mechanism, gradients: Gradients) -> None:
         self._mechanism, self._index = mechanism, gradients.index
         self._arithmetic = Floats(gradients)
-        self._kinematics: Kinematics[float, Form] = Kinematics(mechanism, self._arithmetic)
+        self._kinematics: Kinematics[float, Form] = Kinematics(mechanism, self._arithmetic, False)
 
     def place(self, name: str) -> Dual:
         """Value and gradient of a component that is no rate."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Generic
 
 from symgen.model import combine
@@ -44,32 +45,46 @@ def plane_turn(frame: Frame) -> tuple[Vector3 | None, Expression] | None:
     shared: Vector3 | None = None
     angle: Expression = ZERO
     for turn in frame.rotation:
-        exact = [exact_value(entry) for entry in turn.axis]
-        if sorted(abs(value) if value is not None else 2 for value in exact) != [0, 0, 1]:
-            return None
-        if shared is not None and exact != [exact_value(entry) for entry in shared]:
+        main = main_axis(turn.axis)
+        if main is None or (shared is not None and main != main_axis(shared)):
             return None
         shared, angle = turn.axis, combine.plus(angle, turn.angle)
     return shared, angle
+
+
+@lru_cache(maxsize=1000)
+def main_axis(axis: Vector3) -> tuple[int, int] | None:
+    """Which of x, y, z (0, 1, 2) the axis is, and its sign; None for any other direction."""
+    exact = [exact_value(entry) for entry in axis]
+    if sorted(abs(value) if value is not None else 2 for value in exact) != [0, 0, 1]:
+        return None
+    index = next(index for index, value in enumerate(exact) if value != 0)
+    return index, int(exact[index] or 0)
 
 
 def _turns(space: Space[P, V], turns: tuple[Turn, ...]) -> tuple[Rows[P], Rates[V], Rates[V]]:
     axes, turning, before = space.identity, space.still, space.still
     for turn in turns:
         axis = unit_axis(space, turn.axis)
-        matrix = turn_matrix(space, turn.angle, axis)
+        matrix = turn_matrix(space, turn.angle, turn.axis)
         spin = space.scaled(axis, space.arithmetic.rate(turn.angle))
-        turning = space.summed(space.turned(transposed(matrix), turning), spin)
-        before = space.summed(before, space.turned(axes, spin))
+        if turning is space.still:
+            turning = before = spin
+        else:
+            turning = space.summed(space.turned(transposed(matrix), turning), spin)
+            before = space.summed(before, space.turned(axes, spin))
         axes = matrix if axes is space.identity else product(axes, matrix)
     return axes, turning, before
 
 
-def turn_matrix(space: Space[P, V], turn: Expression, axis: Triple[P]) -> Rows[P]:
+def turn_matrix(space: Space[P, V], turn: Expression, axis: Vector3) -> Rows[P]:
     """Rodrigues' formula 1 + s K + (1 - c) K^2 with K = axis x."""
     angle = space.arithmetic.value(turn)
     sine, cosine = space.arithmetic.function("sin", angle), space.arithmetic.function("cos", angle)
-    x, y, z = axis
+    main = main_axis(axis)
+    if main is not None:
+        return _about(space, main[0], sine if main[1] > 0 else -sine, cosine)
+    x, y, z = unit_axis(space, axis)
     versed = space.one - cosine
     xy, xz, yz = x * y * versed, x * z * versed, y * z * versed
     return (
@@ -79,11 +94,20 @@ def turn_matrix(space: Space[P, V], turn: Expression, axis: Triple[P]) -> Rows[P
     )
 
 
+def _about(space: Space[P, V], index: int, sine: P, cosine: P) -> Rows[P]:
+    one, zero = space.one, space.zero
+    if index == 0:
+        return (one, zero, zero), (zero, cosine, -sine), (zero, sine, cosine)
+    if index == 1:
+        return (cosine, zero, sine), (zero, one, zero), (-sine, zero, cosine)
+    return (cosine, -sine, zero), (sine, cosine, zero), (zero, zero, one)
+
+
 def unit_axis(space: Space[P, V], axis: Vector3) -> Triple[P]:
     """The axis with length 1."""
-    exact = [exact_value(entry) for entry in axis]
-    if sorted(abs(value) if value is not None else 2 for value in exact) == [0, 0, 1]:
-        x, y, z = (space.arithmetic.number(int(value or 0)) for value in exact)
+    main = main_axis(axis)
+    if main is not None:
+        x, y, z = (space.arithmetic.number(main[1] if index == main[0] else 0) for index in range(3))
         return x, y, z
     x, y, z = space.values(axis)
     length = space.arithmetic.function("sqrt", x * x + y * y + z * z)

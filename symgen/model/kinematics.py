@@ -12,7 +12,7 @@ from typing import Generic
 
 from symgen.model import combine
 from symgen.model.expression import Expression
-from symgen.model.joints import Joint, joint_of, plane_turn, turn_matrix, unit_axis
+from symgen.model.joints import Joint, joint_of, main_axis, plane_turn, turn_matrix
 from symgen.model.mechanism import WORLD, ZERO, Component, Mechanism, Vector3
 from symgen.model.triples import (
     Arithmetic,
@@ -28,7 +28,6 @@ from symgen.model.triples import (
     product,
     transposed,
 )
-from symgen.model.walk import exact_value
 
 
 @dataclass(frozen=True)
@@ -42,8 +41,10 @@ class Twist(Generic[V]):
 class Kinematics(Generic[P, V]):
     """Everything about frames and points at one state; each part is worked out once, when it is first asked for."""
 
-    def __init__(self, mechanism: Mechanism, arithmetic: Arithmetic[P, V]) -> None:
+    def __init__(self, mechanism: Mechanism, arithmetic: Arithmetic[P, V], sums_of_angles: bool = True) -> None:
         self.mechanism, self.space = mechanism, Space(arithmetic)
+        # frames in a plane are turned by sums of angles, which symbols profit from and numbers do not
+        self._sums_of_angles = sums_of_angles
         self.frames = {frame.name: frame for frame in mechanism.frames}
         self.points = {point.name: point for point in mechanism.points}
         self._joints: dict[str, Joint[P, V]] = {}
@@ -77,7 +78,7 @@ class Kinematics(Generic[P, V]):
             return None
         if above[0] is None or own[0] is None:
             return above[0] or own[0], combine.plus(above[1], own[1])
-        same = [exact_value(a) for a in above[0]] == [exact_value(b) for b in own[0]]
+        same = main_axis(above[0]) == main_axis(own[0])
         return (above[0], combine.plus(above[1], own[1])) if same else None
 
     def joint(self, name: str) -> Joint[P, V]:
@@ -205,9 +206,9 @@ class Kinematics(Generic[P, V]):
         place = plus(place, applied(axes, joint.place))
         if joint.axes is self.space.identity:
             return axes, place
-        plane = self.plane(ancestor, name)
+        plane = self.plane(ancestor, name) if self._sums_of_angles else None
         if plane is not None and plane[0] is not None:
-            turned = turn_matrix(self.space, plane[1], unit_axis(self.space, plane[0]))
+            turned = turn_matrix(self.space, plane[1], plane[0])
             return self.space.named(f"{name}.axes_{ancestor}", turned), place
         return self.space.named(f"{name}.axes_{ancestor}", product(axes, joint.axes)), place
 
