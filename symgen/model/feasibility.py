@@ -66,7 +66,7 @@ def _check_masses(
             mass = mechanics.mass_matrix(q)
         except (ArithmeticError, ValueError):
             continue
-        if not is_positive(mass)[0]:
+        if not mechanics.mass_is_sure and not is_positive(mass)[0]:
             where = ", ".join(f"{c.name} = {value:.4g}" for c, value in zip(mechanics.coordinates, q, strict=True))
             yield Mistake(
                 f"the kinetic energy is negative for some velocities at {where}",
@@ -74,10 +74,14 @@ def _check_masses(
                 span,
             )
             return
+        if definite_somewhere:
+            continue
         basis = null_space(jacobian, len(q))
         images = [[sum(a * b for a, b in zip(row, vector, strict=True)) for row in mass] for vector in basis]
         reduced = [[sum(a * b for a, b in zip(image, vector, strict=True)) for vector in basis] for image in images]
-        definite_somewhere |= is_positive(reduced)[1]
+        definite_somewhere = is_positive(reduced)[1]
+        if definite_somewhere and mechanics.mass_is_sure:
+            break
     if not definite_somewhere:
         yield Mistake(
             "the accelerations are undetermined: some motion that the constraints allow moves no mass",

@@ -12,7 +12,7 @@ from symgen.model.float_kinematics import FloatKinematics
 from symgen.model.gradient import Gradients
 from symgen.model.mechanism import NO_MECHANISM, Mechanism, component
 from symgen.model.model import ConstraintRow, Coordinate, Definition, Parameter
-from symgen.model.walk import evaluate
+from symgen.model.walk import evaluate, exact_value
 
 SEED = 20140211
 STARTS = 40
@@ -75,6 +75,11 @@ class Mechanics:
             found += 1
             if found == POINTS:
                 return
+
+    @property
+    def mass_is_sure(self) -> bool:
+        """Whether T is that of bodies alone, whose masses and inertias are checked one by one."""
+        return self.mechanism.has_mass and exact_value(self._kinetic) == 0
 
     def mass_matrix(self, q: list[float]) -> Rows:
         """G, n x n."""
@@ -159,12 +164,7 @@ class Mechanics:
         for _ in range(STEPS):
             if _vanishes(residual, jacobian, q):
                 return q
-            normal = [[sum(row[i] * row[j] for row in jacobian) for j in range(n)] for i in range(n)]
-            slope = [-sum(row[i] * g for row, g in zip(jacobian, residual, strict=True)) for i in range(n)]
-            scale = max((normal[i][i] for i in range(n)), default=0.0) or 1.0
-            for i in range(n):
-                normal[i][i] += damping * scale
-            step = solve_definite(normal, slope)
+            step = _damped_step(jacobian, residual, damping, n)
             if step is None:
                 return None
             trial = [a + b for a, b in zip(q, step, strict=True)]
@@ -181,6 +181,24 @@ class Mechanics:
                 if damping > 1e12:
                     return None
         return None
+
+
+def _damped_step(jacobian: Rows, residual: list[float], damping: float, n: int) -> list[float] | None:
+    """-(J'J + mu)^-1 J'g, which is -J'(JJ' + mu)^-1 g: the smaller of the two systems is solved."""
+    scale = max((sum(row[i] * row[i] for row in jacobian) for i in range(n)), default=0.0) or 1.0
+    if len(jacobian) >= n:
+        normal = [[sum(row[i] * row[j] for row in jacobian) for j in range(n)] for i in range(n)]
+        slope = [-sum(row[i] * g for row, g in zip(jacobian, residual, strict=True)) for i in range(n)]
+        for i in range(n):
+            normal[i][i] += damping * scale
+        return solve_definite(normal, slope)
+    gram = [[sum(a * b for a, b in zip(row, other, strict=True)) for other in jacobian] for row in jacobian]
+    for i, row in enumerate(gram):
+        row[i] += damping * scale
+    weights = solve_definite(gram, residual)
+    if weights is None:
+        return None
+    return [-sum(w * row[i] for w, row in zip(weights, jacobian, strict=True)) for i in range(n)]
 
 
 def default_values(parameters: tuple[Parameter, ...]) -> dict[str, float]:
