@@ -142,12 +142,22 @@ def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> _Derive
 
 def _code(derived: _Derived, options: Options) -> dict[str, str | bytes]:
     files: dict[str, str | bytes] = {}
+    sources: dict[str, str] = {}
+    programs = [derived.programs[scalar] for scalar in options.scalars]
+    if {"c", "package"} & {*options.parts}:
+        for program in programs:
+            for emit in (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc):
+                sources |= emit(derived.model, program)
     if "c" in options.parts:
-        for scalar in options.scalars:
-            files |= emit_c(derived.model, derived.programs[scalar])
-            files |= emit_c_batch(derived.model, derived.programs[scalar])
-            files |= emit_c_prepared(derived.model, derived.programs[scalar])
-            files |= emit_c_sc(derived.model, derived.programs[scalar])
+        files |= sources
+    if "package" in options.parts:
+        from symgen.package.files import emit_package
+
+        files |= emit_package(derived.model, programs, sources)
+    if "proof" in options.parts:
+        from symgen.proof.files import emit_proofs
+
+        files |= emit_proofs(derived.model, programs)
     if "python" in options.parts:
         from symgen.emit.python import emit_python
 

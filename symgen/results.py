@@ -11,8 +11,8 @@ from symgen.diagnostics import Notice
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 
-Part: TypeAlias = Literal["c", "python", "report"]
-PARTS: tuple[Part, ...] = ("c", "python", "report")
+Part: TypeAlias = Literal["c", "python", "report", "package", "proof"]
+PARTS: tuple[Part, ...] = ("c", "python", "report", "package", "proof")
 DEFAULT_STATES = 64
 FORMS = ("auto", "minor", "nullspace", "range", "householder", "printed", "weighted", "kkt")
 Trig: TypeAlias = Literal["portable", "libm"]

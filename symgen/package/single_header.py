@@ -1,0 +1,39 @@
+"""Header and source as one file: declarations always, definitions where a macro asks for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import PurePosixPath
+
+# Loops over many states are for workstations; firmware computes one state at a time.
+_HOST_ONLY = ("_batch.h", "_batch_f.h")
+
+
+def single_headers(c_files: Mapping[str, str]) -> dict[str, str]:
+    """The single header of every header/source pair of `c/`, by file name.
+
+    `#define <STEM>_IMPLEMENTATION` before the inclusion, in one source file, brings the definitions.
+    """
+    return {
+        PurePosixPath(path).name: _merged(PurePosixPath(path).stem, header, c_files[path[:-2] + ".c"])
+        for path, header in c_files.items()
+        if path.endswith(".h") and not path.endswith(_HOST_ONLY)
+    }
+
+
+def implementation_macro(stem: str) -> str:
+    """The macro that brings the definitions of a single header."""
+    return f"{stem.upper()}_IMPLEMENTATION"
+
+
+def _merged(stem: str, header: str, source: str) -> str:
+    own = f'#include "{stem}.h"\n'
+    body = source.replace(own, "", 1)
+    macro = implementation_macro(stem)
+    # a guard of its own: the header may have been included before without definitions
+    return (
+        f"{header}\n"
+        f"/* Definitions: in one source file `#define {macro}` before this header is included. */\n"
+        f"#if defined({macro}) && !defined({macro}_DONE)\n"
+        f"#define {macro}_DONE\n\n{body}\n#endif\n"
+    )

@@ -1,0 +1,140 @@
+"""Drivers for Frama-C Eva: every kernel over the whole box of the model file, the unmodified C included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import prod
+
+from symgen.emit.c import c_names, status_name
+from symgen.emit.literals import decimal_text
+from symgen.emit.locals import array_arguments
+from symgen.emit.render import render
+from symgen.emit.statements import c_type
+from symgen.ir.kernel import Kernel, Load, Local, Program, Scalar, Status
+from symgen.model.model import Model, Range
+from symgen.naming import file_stem
+from symgen.proof.box import box, loaded_angles
+from symgen.proof.intervals import enclose
+from symgen.proof.slices import slices
+
+# Runs of a kernel in one analysis: a few seconds.
+MOST_RUNS = 512
+
+
+@dataclass(frozen=True, slots=True)
+class SliceView:
+    """A coordinate that is cut: its place in q and the bounds of its slices."""
+
+    index: int
+    lows: tuple[str, ...]
+    highs: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EntryView:
+    """A value that ranges over an interval as a whole."""
+
+    place: str
+    low: str
+    high: str
+
+
+@dataclass(frozen=True, slots=True)
+class DriverView:
+    """The entry function of one kernel."""
+
+    name: str
+    arrays: tuple[tuple[str, int], ...]
+    entries: tuple[EntryView, ...]
+    slices: tuple[SliceView, ...]
+    size: int
+    doubtful: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EvaView:
+    """Everything the template of a driver file prints."""
+
+    stem: str
+    model: str
+    suffix: str
+    scalar: str
+    interval: str
+    ok: str
+    not_finite: str
+    has_parameters: bool
+    drivers: tuple[DriverView, ...]
+
+
+def emit_eva(model: Model, program: Program) -> dict[str, str]:
+    """`proof/<model>_eva.c` (float32: `_f_eva.c`) with one entry function for each kernel."""
+    suffix = "" if program.scalar == "float64" else "_f"
+    stem = file_stem(model.name) + suffix
+    kind = c_type(program.scalar)
+    view = EvaView(
+        stem=stem,
+        model=model.name,
+        suffix=suffix,
+        scalar=kind,
+        interval=f"Frama_C_{kind}_interval",
+        ok=status_name(model, Status.OK),
+        not_finite=status_name(model, Status.NOT_FINITE),
+        has_parameters=bool(model.parameters),
+        drivers=tuple(_driver(model, program, kernel) for kernel in program.kernels),
+    )
+    return {f"proof/{stem}_eva.c": render("proof/eva.c.jinja", view)}
+
+
+def decisive_angles(kernel: Kernel) -> tuple[Load, ...]:
+    """The coordinates that enter a denominator or a test through their sine or cosine."""
+    needed = {o.name for s in kernel.statements if s.operation == "div" for o in s.operands[1:] if isinstance(o, Local)}
+    for block in kernel.blocks[1:]:
+        needed |= {o.name for check in block.checks for o in (check.value, check.limit) if isinstance(o, Local)}
+    for statement in reversed(kernel.statements):
+        if needed.intersection(statement.targets):
+            needed |= {o.name for o in statement.operands if isinstance(o, Local)}
+    return tuple(load for load in loaded_angles(kernel) if load.local in needed)
+
+
+def _driver(model: Model, program: Program, kernel: Kernel) -> DriverView:
+    ranges = box(model)
+    members = c_names(model, program).members
+    cut = _slices(program, kernel, ranges)
+    sliced = {view.index for view in cut}
+    arrays = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
+    places = [(f"{name}[{i}]", ranges[name][i]) for name, size in arrays for i in range(size)]
+    places = [(place, pair) for place, pair in places if place not in {f"q[{index}]" for index in sliced}]
+    places += [(f"p.{members[p.name]}", pair) for p, pair in zip(model.parameters, ranges["p"], strict=True)]
+    return DriverView(
+        name=kernel.name,
+        arrays=arrays,
+        entries=tuple(EntryView(place, *_texts(program.scalar, pair)) for place, pair in places),
+        slices=cut,
+        size=len(kernel.outputs),
+        doubtful=enclose(kernel, ranges).doubtful,
+    )
+
+
+def _slices(program: Program, kernel: Kernel, ranges: dict[str, tuple[Range, ...]]) -> tuple[SliceView, ...]:
+    """The slices of the decisive angles, none where there would be too many to analyse."""
+    found = {load.index: slices(program.scalar, ranges["q"][load.index]) for load in decisive_angles(kernel)}
+    if program.sincos is None or prod(len(cuts) for cuts in found.values()) > MOST_RUNS:
+        return ()
+    return tuple(
+        SliceView(
+            index,
+            tuple(_hexadecimal(program.scalar, cut.low) for cut in cuts),
+            tuple(_hexadecimal(program.scalar, cut.high) for cut in cuts),
+        )
+        for index, cuts in found.items()
+    )
+
+
+def _texts(scalar: Scalar, pair: Range) -> tuple[str, str]:
+    tail = "f" if scalar == "float32" else ""
+    low, high = (decimal_text(scalar, bound) + tail for bound in pair)
+    return low, high
+
+
+def _hexadecimal(scalar: Scalar, value: float) -> str:
+    return value.hex().replace("0000000p", "p") + ("f" if scalar == "float32" else "")

@@ -1,0 +1,106 @@
+"""The proof folder: drivers, scripts, and a page that says how to run them and what they cannot show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from symgen.emit.locals import array_arguments
+from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program
+from symgen.model.model import Model
+from symgen.naming import file_stem
+from symgen.proof.box import box
+from symgen.proof.eva import emit_eva
+from symgen.proof.fuzz import emit_fuzz
+from symgen.proof.gappa import QUANTITY, emit_gappa, obstacle
+from symgen.proof.intervals import enclose
+
+_LONGEST = 160
+_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+
+
+def emit_proofs(model: Model, programs: Sequence[Program]) -> dict[str, str]:
+    """`proof/...` for one or both scalar types; the fuzz target compares the two and needs both."""
+    if not any(program.kernels for program in programs):
+        return {}
+    files: dict[str, str] = {}
+    for program in programs:
+        files |= emit_eva(model, program)
+        files |= emit_gappa(model, program)
+    if len(programs) > 1:
+        files |= emit_fuzz(model, programs[0])
+    page = "\n".join(_page(model, programs, sorted(files))) + "\n"
+    return {**files, "proof/README.md": page}
+
+
+def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> Iterator[str]:
+    stem = file_stem(model.name)
+    yield f"# Proofs about {model.name}"
+    yield ""
+    yield "All of them speak of the C as it is, over the ranges of the model file, with the portable sine and cosine."
+    yield "How to run each file stands at its top:"
+    yield ""
+    yield from (f"- `{path.removeprefix('proof/')}`" for path in files)
+    yield ""
+    yield f"Frama-C Eva takes one kernel a run: `-main eva_<quantity>` with `{stem}_f_eva.c` and the like."
+    yield "0 alarms mean: no division by 0, no infinity, no NaN, no wrong access, status 0 in the whole box."
+    yield ""
+    yield "## Denominators that intervals cannot keep from 0"
+    yield ""
+    yield "Every value is bounded by the bounds of its operands, which forgets how they depend on each other: for these"
+    yield "kernels expect alarms. The kernels test these denominators, or the factors of them, at run time."
+    yield ""
+    program = programs[-1]
+    rows = [row for kernel in program.kernels for row in _doubtful(model, kernel)]
+    if rows:
+        yield "| kernel | denominators |"
+        yield "|---|---|"
+        yield from rows
+    else:
+        yield "None."
+    yield ""
+    kernel = next((kernel for kernel in program.kernels if kernel.name == QUANTITY), None)
+    if program.scalar == "float32" and kernel is not None and (why := obstacle(model, kernel)):
+        yield "## Rounding"
+        yield ""
+        yield f"There is no script for Gappa: {why}."
+        yield ""
+
+
+def _doubtful(model: Model, kernel: Kernel) -> Iterator[str]:
+    names = enclose(kernel, box(model)).doubtful
+    if names:
+        spelled = "<br>".join(f"`{_text(kernel, name)}`" for name in names)
+        yield f"| {kernel.name}({', '.join(argument.name for argument in array_arguments(kernel))}) | {spelled} |"
+
+
+def _text(kernel: Kernel, name: str) -> str:
+    """A value in terms of the inputs, or its name in the C where that would be long."""
+    statements = {target: statement for statement in kernel.statements for target in statement.targets}
+
+    known: dict[Operand, str] = {}
+
+    def spell(operand: Operand) -> str:
+        if operand not in known:
+            known[operand] = _cut(written(operand))
+        return known[operand]
+
+    def written(operand: Operand) -> str:
+        if isinstance(operand, Literal):
+            return str(operand.value)
+        statement = statements.get(operand.name)
+        if statement is None:
+            return operand.name
+        parts = [spell(o) for o in statement.operands]
+        if statement.operation == "sincos":
+            return f"{'sin' if statement.targets[0] == operand.name else 'cos'}({parts[0]})"
+        if statement.operation in _INFIX:
+            return f"({parts[0]} {_INFIX[statement.operation]} {parts[1]})"
+        return f"-{parts[0]}" if statement.operation == "neg" else f"{statement.operation}({', '.join(parts)})"
+
+    spelled = spell(Local(name))
+    return name if len(spelled) > _LONGEST else spelled[1:-1] if spelled.startswith("(") else spelled
+
+
+def _cut(text: str) -> str:
+    """A text that stays too long however often it is used: a graph spelled as a tree grows without bound."""
+    return text if len(text) <= _LONGEST else "…" * (_LONGEST + 1)

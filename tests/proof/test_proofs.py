@@ -1,0 +1,139 @@
+"""Interval analysis, rounding bounds, fuzzing and static analysis of the C as it is generated."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from shipped import NAMES, SCALARS, model, programs, sources
+
+from symgen.emit.c import emit_c
+from symgen.ir.kernel import Scalar
+from symgen.proof.eva import emit_eva
+from symgen.proof.files import emit_proofs
+from symgen.proof.fuzz import emit_fuzz
+from symgen.proof.gappa import emit_gappa
+from symgen.proof.slices import slices
+
+SANITIZE = ["-g", "-O1", "-std=c99", "-ffp-contract=off", "-fno-sanitize-recover=all", "-DSTANDALONE"]
+
+
+def run(*command: str | Path, folder: Path | None = None) -> str:
+    made = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False, cwd=folder)
+    assert made.returncode == 0, made.stdout + made.stderr
+    return made.stdout + made.stderr
+
+
+def write(folder: Path, files: dict[str, str]) -> None:
+    for path, text in files.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text)
+
+
+def proofs(name: str) -> dict[str, str]:
+    return emit_proofs(model(name), [programs(name)[scalar] for scalar in SCALARS])
+
+
+def alarms(frama_c: str, name: str, limit: Fraction | None, folder: Path) -> int:
+    """Alarms of Eva for u in float32, with another range of the last coordinate if one is given."""
+    system = model(name)
+    if limit is not None:
+        *others, last = system.coordinates
+        system = replace(system, coordinates=(*others, replace(last, range=(-limit, limit))))
+    write(folder, sources(name) | emit_eva(system, programs(name)["float32"]))
+    told = run(
+        frama_c, "-eva", "-eva-precision", "1", "-warn-special-float", "non-finite", f"-cpp-extra-args=-I{folder}/c",
+        "-main", "eva_inverse_dynamics", folder / f"proof/{name}_f_eva.c", folder / f"c/{name}_f.c",
+    )  # fmt: skip
+    found = re.search(r"(\d+) alarms? generated", told)
+    assert found, told
+    unproved = re.search(r"Assertions +\d+ valid +(\d+) unknown +(\d+) invalid", told)
+    assert unproved, told
+    return int(found[1]) + int(unproved[1]) + int(unproved[2])
+
+
+def test_front_car_has_no_alarm_in_its_box(tool: Callable[[str], str], tmp_path: Path) -> None:
+    assert alarms(tool("frama-c"), "front_car", None, tmp_path) == 0
+
+
+@pytest.mark.parametrize(("limit", "proved"), [(Fraction(12, 10), True), (Fraction(165, 100), False)])
+def test_eva_separates_the_input_singularity_of_the_rear_car(
+    tool: Callable[[str], str], tmp_path: Path, limit: Fraction, proved: bool
+) -> None:
+    assert (alarms(tool("frama-c"), "rear_car", limit, tmp_path) == 0) == proved
+
+
+@pytest.mark.parametrize("name", ["front_car", "skate"])
+def test_drivers_compile(tool: Callable[[str], str], tmp_path: Path, name: str) -> None:
+    write(tmp_path, proofs(name) | {path: text for path, text in sources(name).items() if path.endswith(".h")})
+    for driver in sorted((tmp_path / "proof").glob("*.c")):
+        run(tool("gcc"), "-std=c99", "-fsyntax-only", "-Wall", "-Wextra", "-I", tmp_path / "c", driver)
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+def test_slices_cover_the_range_without_overlap(scalar: Scalar) -> None:
+    found = slices(scalar, (Fraction(-33, 10), Fraction(33, 10)))
+    assert all(cut.low <= cut.high for cut in found)
+    gaps = [after.low - before.high for before, after in pairwise(found)]
+    assert all(0 <= gap < 1e-6 for gap in gaps)
+    assert sum(gap > 0 for gap in gaps) == 4  # the multiple of pi/2 changes between two floats
+    assert found[0].low == -found[-1].high
+
+
+@pytest.mark.parametrize("name", ["front_car", "skate", "slider_crank"])
+def test_gappa_certifies_a_rounding_bound(tool: Callable[[str], str], tmp_path: Path, name: str) -> None:
+    ((path, text),) = emit_gappa(model(name), programs(name)["float32"]).items()
+    write(tmp_path, {path: text})
+    told = run(tool("gappa"), tmp_path / path)
+    bounds = [float(bound) for bound in re.findall(r"\{([0-9.e+-]+),", told)]
+    assert len(bounds) == text.count(" in ?")
+    assert all(0 < bound < 1e4 for bound in bounds)
+
+
+# make fuzz takes every kernel, for longer
+SHORT = ("inverse_dynamics", "forward_dynamics", "multipliers", "nullspace_projector", "singularity")
+CAMPAIGNS = {
+    "clang": ["-fsanitize=address,undefined,float-cast-overflow"],
+    "gcc": ["-DINSIDE", "-fsanitize=address,undefined,float-divide-by-zero"],
+}
+
+
+@pytest.mark.parametrize(("name", "compiler"), [(name, [*CAMPAIGNS][k % 2]) for k, name in enumerate(NAMES)])
+def test_short_campaign(tool: Callable[[str], str], tmp_path: Path, name: str, compiler: str) -> None:
+    """Sanitizers, statuses, aliasing and float32 against float64, for every model."""
+    files: dict[str, str] = {}
+    for scalar, program in programs(name).items():
+        fewer = replace(program, kernels=tuple(k for k in program.kernels if k.name in SHORT))
+        files |= emit_c(model(name), fewer)
+        files |= emit_fuzz(model(name), fewer) if scalar == "float64" else {}
+    write(tmp_path, files)
+    made = [f"proof/{name}_fuzz.c", f"c/{name}.c", f"c/{name}_f.c"]
+    run(tool(compiler), *SANITIZE, *CAMPAIGNS[compiler], "-Ic", *made, "-o", "fuzz", "-lm", folder=tmp_path)
+    told = run(tmp_path / "fuzz", "30000")
+    counted = re.findall(r"^(\w+): (\d+) compared, (\d+) beyond", told, re.MULTILINE)
+    assert len(counted) == len([k for k in programs(name)["float64"].kernels if k.name in SHORT])
+    assert all(int(compared) > 100 for _, compared, _ in counted)
+
+
+def test_remaining_denominators_are_named() -> None:
+    page = proofs("rapkm_2rrr_rr")["proof/README.md"]
+    assert "| inverse_dynamics(q, qd, qdd) |" in page
+    assert "There is no script for Gappa" in page
+    assert "| inverse_dynamics(" not in proofs("front_car")["proof/README.md"]
+
+
+def test_static_analysis_has_listed_deviations_only(tool: Callable[[str], str], tmp_path: Path) -> None:
+    """package/DEVIATIONS.md lists them; each is found, so none is stale."""
+    write(tmp_path, {path: text for path, text in sources("skate").items() if "batch" not in path})
+    given = ["--std=c99", "--addon=misra", "--enable=warning,style,performance,portability", "-q", "c/skate_f.c"]
+    told = run(tool("cppcheck"), *given, folder=tmp_path)
+    assert set(re.findall(r"\[([\w.-]+)\]$", told, re.MULTILINE)) == {"misra-c2012-15.5"}
+    checks = "-checks=-*,bugprone-*,cert-*,clang-analyzer-*,-bugprone-easily-swappable-parameters"
+    told = run(tool("clang-tidy"), "--quiet", checks, "c/skate.c", "c/skate_f.c", "--", "-std=c99", folder=tmp_path)
+    assert "warning:" not in told
