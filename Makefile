@@ -42,6 +42,15 @@ firmware: $(VENV)/installed
 skipping: $(VENV)/installed
 	$(BIN)/python tools/skipping_page.py models/*.yaml
 
+# Every kernel of every model under libFuzzer and the sanitizers, a minute each: raw bits in, see proof/*_fuzz.c.
+FUZZ_SECONDS ?= 60
+fuzz: $(VENV)/installed
+	$(BIN)/symgen models/*.yaml --only c,proof --no-verify --quiet --out build/fuzz
+	set -e; for model in $(notdir $(basename $(wildcard models/*.yaml))); do (cd build/fuzz/$$model && clang -g -O1 \
+	    -ffp-contract=off -fno-sanitize-recover=all -Ic -fsanitize=fuzzer,address,undefined,float-cast-overflow \
+	    proof/$${model}_fuzz.c c/$$model.c c/$${model}_f.c -lm -o fuzz && \
+	    ./fuzz -max_total_time=$(FUZZ_SECONDS) -max_len=512 -print_final_stats=1); done
+
 # The marked blocks of README.md and the generated pages of docs/, with times measured on this machine.
 docs: $(VENV)/installed
 	$(BIN)/python tools/fill_readme.py
