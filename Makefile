@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PAPER := skate front_car front_car_wheelset rear_car rapkm_2rrr_rr rapkm_two_drives
 
-.PHONY: run test generated firmware bench stress skipping trig docs lock
+.PHONY: run test generated fuzz firmware bench stress skipping trig docs lock
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
