@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 from typing import Generic
 
 from symgen.model import combine
 from symgen.model.expression import Expression
+from symgen.model.fixed_angles import exact_sine_and_cosine
 from symgen.model.mechanism import ZERO, Frame, Quaternion, Turn, Vector3
 from symgen.model.triples import P, Rates, Rows, Space, Triple, V, product, transposed
 from symgen.model.walk import exact_value
@@ -79,8 +81,7 @@ def _turns(space: Space[P, V], turns: tuple[Turn, ...]) -> tuple[Rows[P], Rates[
 
 def turn_matrix(space: Space[P, V], turn: Expression, axis: Vector3) -> Rows[P]:
     """Rodrigues' formula 1 + s K + (1 - c) K^2 with K = axis x."""
-    angle = space.arithmetic.value(turn)
-    sine, cosine = space.arithmetic.function("sin", angle), space.arithmetic.function("cos", angle)
+    sine, cosine = _sine_and_cosine(space, turn)
     main = main_axis(axis)
     if main is not None:
         return _about(space, main[0], sine if main[1] > 0 else -sine, cosine)
@@ -92,6 +93,22 @@ def turn_matrix(space: Space[P, V], turn: Expression, axis: Vector3) -> Rows[P]:
         (xy + z * sine, cosine + y * y * versed, yz - x * sine),
         (xz - y * sine, yz + x * sine, cosine + z * z * versed),
     )
+
+
+def _sine_and_cosine(space: Space[P, V], turn: Expression) -> tuple[P, P]:
+    exact = exact_sine_and_cosine(turn)
+    if exact is None:
+        angle = space.arithmetic.value(turn)
+        return space.arithmetic.function("sin", angle), space.arithmetic.function("cos", angle)
+    sine, cosine = (_rooted(space, factor, root) for factor, root in exact)
+    return sine, cosine
+
+
+def _rooted(space: Space[P, V], factor: Fraction, root: int) -> P:
+    """factor * sqrt(root)."""
+    number = space.arithmetic.number
+    rational = number(factor.numerator) / number(factor.denominator)
+    return rational if root == 1 else rational * space.arithmetic.function("sqrt", number(root))
 
 
 def _about(space: Space[P, V], index: int, sine: P, cosine: P) -> Rows[P]:

@@ -168,9 +168,11 @@ def _sample(
     zero = (0.0,) * model.m
     state = State(tuple(q), tuple(rates), tuple(accelerations), zero, tuple(parameters))
     needed = ["singularity", "admissible_velocity", "admissible_acceleration", *(["inverse_dynamics"] * bool(model.m))]
+    # the measures are products of about δ numbers between 0 and 1
+    regular = REGULAR ** max(1.0, (model.n - reference.ranks.constraints) / 2)
     try:
         values = {name: _floats(matrix) for name, matrix in reference.matrices(state, needed, SAMPLING_BITS).items()}
-        if not all(map(isfinite, values["singularity"])) or min(values["singularity"]) < REGULAR:
+        if not all(map(isfinite, values["singularity"])) or min(values["singularity"]) < regular:
             return None
         # the measures compare directions of rows only; a row that all but vanishes is a drop of rank, too
         lengths = _row_lengths(reference, [q], parameters)
