@@ -15,6 +15,8 @@ from symgen.graph.traverse import cost
 from symgen.model.energy_form import energy_form
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
+from symgen.pipeline import generate
+from symgen.results import Options
 from symgen.verify.reference import Reference, State
 
 HERE = Path(__file__).parent
@@ -178,3 +180,12 @@ gravity: [0, 0, -10]
     tilt = {"e_0": 0.6, "e_1": 0.8, "e_2": 0.0, "e_3": 0.0}
     assert evaluate(tilt) == pytest.approx([5 * (0.36 - 0.64)])
     assert evaluate({name: 3 * value for name, value in tilt.items()}) == pytest.approx([5 * (0.36 - 0.64)])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["floating_body", "tilted_four_bar", "rolling_disc"])
+def test_generated_python_is_verified(name: str) -> None:
+    """All the way from the file: kernels of u, accelerations and multipliers within the tolerance."""
+    result = generate(HERE / f"{name}.yaml", Options(parts=("python",), states=8), lambda _: None)
+    assert result.failures == ()
+    assert result.certificate is not None
