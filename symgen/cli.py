@@ -63,6 +63,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         code = _COMMANDS[command](rest) if command else _generate(rest)
         sys.stdout.flush()
+        if arguments is None:
+            # the interpreter looks for cycles once more at its end, to free what the process gives back anyway
+            gc.freeze()
         return code
     except KeyboardInterrupt:
         print("\ninterrupted; earlier output is unchanged", file=sys.stderr)
