@@ -64,6 +64,8 @@ class Elimination:
         self.core += self._points.values()
         self._turn_rows()
         self._pivot()
+        if len(self.core) > 1:
+            self._divide_rows()
 
     @property
     def names(self) -> list[int]:
@@ -215,6 +217,19 @@ class Elimination:
             if last is None:
                 return
             self._leave(*last)
+
+    def _divide_rows(self) -> None:
+        """The rows of the core without the lengths that all coefficients of one have: determinants become shorter."""
+        graph, products = self._graph, self._graph.products
+        for row in self.core:
+            content = self.content(list(row.coefficients.values()))
+            if not content:
+                continue
+            divisor = graph.product(factor for factor, power in content.items() for _ in range(power))
+            for name, coefficient in row.coefficients.items():
+                row.coefficients[name] = products.quotient(coefficient, content)
+            right = row.right / divisor
+            row.right = self._mechanics.factoring.cancelled(right) if right.size <= LONGEST_TURNED else right
 
     def _solves(self, row: Row) -> bool:
         """One unknown with a safe pivot; an input is left for the end instead where no other row needs it."""
