@@ -35,6 +35,10 @@ def partials(graph: Graph, node: Scalar) -> tuple[Scalar, ...]:
         case "copysign":
             # of a magnitude that is not negative
             return (graph.function("copysign", (graph.one, args[1])), graph.zero)
+        case "max" | "min":
+            # where both are equal either derivative will do
+            larger = (1 + graph.function("copysign", (graph.one, args[0] - args[1]))) / 2
+            return (larger, 1 - larger) if node.op == "max" else (1 - larger, larger)
         case "pow":
             exponent = node.payload
             assert isinstance(exponent, Fraction)

@@ -102,7 +102,8 @@ class _Limits:
     def _limit(self, guard: Guard, scale: Node) -> Node:
         constant = scale.constant
         factor = Fraction(1) if constant is None else constant
-        name = f"threshold {guard.status.name} {guard.degree} {factor}"
+        # statuses of equal tolerance share a threshold, and with it what is computed from it
+        name = f"threshold {_own_tolerance(self._mechanics, guard)} {guard.degree} {factor}"
         self._thresholds[name] = guard, factor
         threshold = self._mechanics.graph.symbol(name)
         return threshold * scale if constant is None else threshold
@@ -110,13 +111,18 @@ class _Limits:
 
 def _threshold(mechanics: Mechanics, guard: Guard, scalar: Scalar) -> Fraction:
     """8 n eps, squared for sums of squares; the model's own tolerance where it is larger."""
-    model = mechanics.model
     value = (8 * mechanics.n * UNIT_ROUNDOFF[scalar]) ** guard.degree
-    own = {
+    own = _own_tolerance(mechanics, guard)
+    return max(value, own) if own is not None else value
+
+
+def _own_tolerance(mechanics: Mechanics, guard: Guard) -> Fraction | None:
+    """What the model itself sets for the status of a guard."""
+    model = mechanics.model
+    return {
         Status.CONSTRAINT_RANK: model.constraint_rank_tolerance,
         Status.ACTUATION_RANK: model.actuation_rank_tolerance,
     }.get(guard.status)
-    return max(value, own) if own is not None else value
 
 
 class _Filler:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -53,7 +54,7 @@ def code(*arguments: str) -> int:
 
 def test_generates_into_generated(asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert code(SKATE) == 0
-    assert asked == [Options()]
+    assert asked == [Options(measured=Path("generated"))]
     assert (tmp_path / "generated/skate/c/skate.c").read_text() == "source\n"
     out, err = capsys.readouterr()
     assert "n = 3, r = 1, δ = 2, m = 2" in out
@@ -76,7 +77,7 @@ def test_generates_into_generated(asked: list[Options], tmp_path: Path, capsys: 
 )
 def test_options(asked: list[Options], arguments: list[str], options: Options) -> None:
     assert code(SKATE, *arguments) == 0
-    assert asked == [options]
+    assert asked == [replace(options, measured=Path("generated"))]
 
 
 def test_out_and_quiet(asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -263,6 +263,17 @@ def test_sums_of_known_angles_are_products(graph: Graph) -> None:
         assert after == pytest.approx(before, abs=1e-15)
 
 
+@pytest.mark.parametrize(("op", "slopes"), [("max", (0.0, 1.0)), ("min", (1.0, 0.0))])
+def test_the_derivative_of_the_larger_and_the_smaller_is_that_of_the_one_taken(
+    op: str, slopes: tuple[float, float]
+) -> None:
+    graph = Graph()
+    x, y = graph.symbol("x"), graph.symbol("y")
+    derivatives = gradient(graph, graph.function(op, (x, y)), [x, y])
+    assert tuple(Evaluator(derivatives)({"x": -3.0, "y": 2.0})) == slopes
+    assert tuple(Evaluator(derivatives)({"x": 4.0, "y": 2.0})) == slopes[::-1]
+
+
 def test_frozen_direction_stands_still(graph: Graph) -> None:
     x, y = graph.symbol("x"), graph.symbol("y")
     rate = graph.symbol("rate")
