@@ -21,14 +21,26 @@ def template_folder() -> Path:
 def _environment() -> Environment:
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+    from symgen.emit.compiled import FOLDER, CompiledTemplates
+
+    folder = template_folder()
     return Environment(
-        loader=FileSystemLoader(template_folder()),
+        loader=FileSystemLoader(folder),
+        bytecode_cache=CompiledTemplates(folder / FOLDER),
+        auto_reload=False,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
     )
+
+
+def compile_all() -> None:
+    """Compiles the templates beside them, for runs to come: called once, when symgen is built or installed."""
+    from symgen.emit.compiled import compile_templates
+
+    compile_templates(_environment(), template_folder())
 
 
 def render(template: str, view: object) -> str:
