@@ -3,8 +3,12 @@
 
 #include <math.h>
 
-#ifdef __FAST_MATH__
-#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast)"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
+#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast, /fp:fast)"
+#elif defined(__FINITE_MATH_ONLY__)
+#if __FINITE_MATH_ONLY__
+#error "status tests need IEEE arithmetic: compile without -ffinite-math-only"
+#endif
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
@@ -12,8 +16,14 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+#ifdef __GNUC__
+#define DOUBLE_PENDULUM_INLINE static inline __attribute__((always_inline))
+#else
+#define DOUBLE_PENDULUM_INLINE static inline
+#endif
+
 /* Sine and cosine, the same bits on every IEEE platform. */
-static void double_pendulum_sincos(const double x, double *sine, double *cosine) {
+DOUBLE_PENDULUM_INLINE void double_pendulum_pair(const double x, double *sine, double *cosine) {
     const double turns = x * 0.6366197723675814;
     const double shifted = turns + 6755399441055744.0;
     const double k = shifted - 6755399441055744.0;
@@ -68,6 +78,47 @@ static void double_pendulum_sincos(const double x, double *sine, double *cosine)
     *cosine = cosine_;
 }
 
+static void double_pendulum_sincos(const double angle, double *sine, double *cosine) {
+    double_pendulum_pair(angle, sine, cosine);
+}
+
+/* Compilers take so many angles at once where there are vector registers: loops of constant count over local arrays. */
+#if defined(__SSE2__) || defined(_M_X64) || defined(__aarch64__) || defined(_M_ARM64)
+#define DOUBLE_PENDULUM_LANES 2
+#else
+#define DOUBLE_PENDULUM_LANES 1
+#endif
+
+/* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
+#if DOUBLE_PENDULUM_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
+    (defined(__ARM_FP) || defined(__riscv_flen))
+#define DOUBLE_PENDULUM_GROUP DOUBLE_PENDULUM_INLINE
+#define DOUBLE_PENDULUM_UNROLL _Pragma("GCC unroll 16")
+#else
+#define DOUBLE_PENDULUM_GROUP static
+#define DOUBLE_PENDULUM_UNROLL
+#endif
+
+/* Sines and cosines of several angles; the arrays are as long as the next multiple of 2. */
+DOUBLE_PENDULUM_GROUP void double_pendulum_sincos_group(const int count, const double *angle, double *sine, double *cosine) {
+    DOUBLE_PENDULUM_UNROLL
+    for (int start = 0; start < count; start += DOUBLE_PENDULUM_LANES) {
+        double x[DOUBLE_PENDULUM_LANES];
+        double s[DOUBLE_PENDULUM_LANES];
+        double c[DOUBLE_PENDULUM_LANES];
+        for (int i = 0; i < DOUBLE_PENDULUM_LANES; ++i) {
+            x[i] = angle[start + i];
+        }
+        for (int i = 0; i < DOUBLE_PENDULUM_LANES; ++i) {
+            double_pendulum_pair(x[i], &s[i], &c[i]);
+        }
+        for (int i = 0; i < DOUBLE_PENDULUM_LANES; ++i) {
+            sine[start + i] = s[i];
+            cosine[start + i] = c[i];
+        }
+    }
+}
+
 double_pendulum_params double_pendulum_default_params(void) {
     double_pendulum_params p;
     p.l_1 = 0.5;
@@ -89,7 +140,8 @@ double_pendulum_status double_pendulum_mass_matrix(const double q[2], const doub
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
     const double c_1 = p->c_1;
     const double t4 = c_1 * c_1;
@@ -139,7 +191,8 @@ double_pendulum_status double_pendulum_coriolis_matrix(const double q[2], const 
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
     const double l_1 = p->l_1;
     const double c_2 = p->c_2;
@@ -176,7 +229,8 @@ double_pendulum_status double_pendulum_coriolis_force(const double q[2], const d
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
     const double l_1 = p->l_1;
     const double c_2 = p->c_2;
@@ -217,15 +271,16 @@ double_pendulum_status double_pendulum_potential_force(const double q[2], const 
     if (!(100000.0 >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t3, t4;
-    double_pendulum_sincos(angle_2, &t3, &t4);
-    double t5, t6;
-    double_pendulum_sincos(q_1, &t5, &t6);
+    const double angle[2] = {angle_2, q_1};
+    double sine[2];
+    double cosine[2];
+    double_pendulum_sincos_group(2, angle, sine, cosine);
     const double m_2 = p->m_2;
     const double g = p->g;
     const double t7 = m_2 * g;
     const double c_2 = p->c_2;
     const double t8 = c_2 * t7;
+    const double t3 = sine[0];
     const double t9 = t8 * t3;
     const double l_1 = p->l_1;
     const double t10 = l_1 * t7;
@@ -234,6 +289,7 @@ double_pendulum_status double_pendulum_potential_force(const double q[2], const 
     const double t11 = c_1 * m_1;
     const double t12 = g * t11;
     const double t13 = t10 + t12;
+    const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
     double rest = t15 - t15;
@@ -343,7 +399,8 @@ double_pendulum_status double_pendulum_projected_mass_matrix(const double q[2], 
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
     const double c_1 = p->c_1;
     const double t4 = c_1 * c_1;
@@ -393,7 +450,8 @@ double_pendulum_status double_pendulum_projected_coriolis_matrix(const double q[
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
     const double l_1 = p->l_1;
     const double c_2 = p->c_2;
@@ -436,15 +494,16 @@ double_pendulum_status double_pendulum_projected_potential_force(const double q[
     if (!(100000.0 >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t3, t4;
-    double_pendulum_sincos(angle_2, &t3, &t4);
-    double t5, t6;
-    double_pendulum_sincos(q_1, &t5, &t6);
+    const double angle[2] = {angle_2, q_1};
+    double sine[2];
+    double cosine[2];
+    double_pendulum_sincos_group(2, angle, sine, cosine);
     const double m_2 = p->m_2;
     const double g = p->g;
     const double t7 = m_2 * g;
     const double c_2 = p->c_2;
     const double t8 = c_2 * t7;
+    const double t3 = sine[0];
     const double t9 = t8 * t3;
     const double l_1 = p->l_1;
     const double t10 = l_1 * t7;
@@ -453,6 +512,7 @@ double_pendulum_status double_pendulum_projected_potential_force(const double q[
     const double t11 = c_1 * m_1;
     const double t12 = g * t11;
     const double t13 = t10 + t12;
+    const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
     double rest = t15 - t15;
@@ -491,7 +551,8 @@ double_pendulum_status double_pendulum_minimal_mass_matrix(const double q[2], co
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
     const double c_1 = p->c_1;
     const double t4 = c_1 * c_1;
@@ -541,7 +602,8 @@ double_pendulum_status double_pendulum_minimal_coriolis_matrix(const double q[2]
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
     const double l_1 = p->l_1;
     const double c_2 = p->c_2;
@@ -584,15 +646,16 @@ double_pendulum_status double_pendulum_minimal_potential_force(const double q[2]
     if (!(100000.0 >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t3, t4;
-    double_pendulum_sincos(angle_2, &t3, &t4);
-    double t5, t6;
-    double_pendulum_sincos(q_1, &t5, &t6);
+    const double angle[2] = {angle_2, q_1};
+    double sine[2];
+    double cosine[2];
+    double_pendulum_sincos_group(2, angle, sine, cosine);
     const double m_2 = p->m_2;
     const double g = p->g;
     const double t7 = m_2 * g;
     const double c_2 = p->c_2;
     const double t8 = c_2 * t7;
+    const double t3 = sine[0];
     const double t9 = t8 * t3;
     const double l_1 = p->l_1;
     const double t10 = l_1 * t7;
@@ -601,6 +664,7 @@ double_pendulum_status double_pendulum_minimal_potential_force(const double q[2]
     const double t11 = c_1 * m_1;
     const double t12 = g * t11;
     const double t13 = t10 + t12;
+    const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
     double rest = t15 - t15;
@@ -689,101 +753,102 @@ double_pendulum_status double_pendulum_projected_configuration(const double q[2]
 }
 
 double_pendulum_status double_pendulum_inverse_dynamics(const double q[2], const double qd[2], const double qdd[2], const double_pendulum_params *p, double u[2]) {
-    const double q_1 = q[0];
-    const double t1 = fabs(q_1);
     const double q_2 = q[1];
-    const double t2 = fabs(q_2);
+    const double t1 = fabs(q_2);
+    const double q_1 = q[0];
+    const double t2 = fabs(q_1);
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (!(100000.0 >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t3, t4;
-    double_pendulum_sincos(q_1, &t3, &t4);
-    double t5, t6;
-    double_pendulum_sincos(q_2, &t5, &t6);
-    const double J_2 = p->J_2;
-    const double t7 = 0.5 * J_2;
-    const double c_2 = p->c_2;
-    const double t8 = c_2 * c_2;
-    const double m_2 = p->m_2;
-    const double t9 = m_2 * t8;
-    const double t10 = 0.5 * t9;
-    const double t11 = t7 + t10;
-    const double t12 = 2.0 * t11;
-    const double c_1 = p->c_1;
-    const double t13 = c_1 * c_1;
-    const double m_1 = p->m_1;
-    const double t14 = m_1 * t13;
-    const double J_1 = p->J_1;
-    const double t15 = J_1 + t14;
-    const double t16 = 0.5 * t15;
-    const double l_1 = p->l_1;
-    const double t17 = l_1 * l_1;
-    const double t18 = m_2 * t17;
-    const double t19 = 0.5 * t18;
-    const double t20 = t16 + t19;
-    const double t21 = 2.0 * t20;
-    const double t22 = t12 + t21;
-    const double q_1_ddot = qdd[0];
-    const double t23 = q_1_ddot * t22;
-    const double g = p->g;
-    const double t24 = m_2 * g;
-    const double t25 = l_1 * t24;
-    const double t26 = c_1 * m_1;
-    const double t27 = g * t26;
-    const double t28 = t25 + t27;
-    const double t29 = t28 * t3;
+    const double angle[2] = {q_2, q_1};
+    double sine[2];
+    double cosine[2];
+    double_pendulum_sincos_group(2, angle, sine, cosine);
     const double q_1_dot = qd[0];
     const double d_1 = p->d_1;
-    const double t30 = q_1_dot * d_1;
+    const double t7 = q_1_dot * d_1;
+    const double c_1 = p->c_1;
+    const double t8 = c_1 * c_1;
+    const double m_1 = p->m_1;
+    const double t9 = m_1 * t8;
+    const double J_1 = p->J_1;
+    const double t10 = J_1 + t9;
+    const double t11 = 0.5 * t10;
+    const double l_1 = p->l_1;
+    const double t12 = l_1 * l_1;
+    const double m_2 = p->m_2;
+    const double t13 = m_2 * t12;
+    const double t14 = 0.5 * t13;
+    const double t15 = t11 + t14;
+    const double q_1_ddot = qdd[0];
+    const double t16 = q_1_ddot * t15;
+    const double c_2 = p->c_2;
+    const double t17 = l_1 * c_2;
+    const double t4 = cosine[0];
+    const double t18 = t17 * t4;
     const double q_2_ddot = qdd[1];
-    const double t31 = q_2_ddot * t11;
-    const double t32 = 2.0 * t31;
-    const double t33 = t30 + t32;
-    const double t34 = t29 + t33;
-    const double t35 = t23 + t34;
-    const double t36 = 2.0 * q_1_ddot;
-    const double t37 = q_2_ddot + t36;
-    const double t38 = t6 * t37;
+    const double t19 = q_1_ddot + q_2_ddot;
+    const double t20 = m_2 * t19;
+    const double t21 = t18 * t20;
     const double q_2_dot = qd[1];
-    const double t39 = q_2_dot * t5;
-    const double t40 = 2.0 * q_1_dot;
-    const double t41 = q_2_dot + t40;
-    const double t42 = t39 * t41;
-    const double t43 = t38 - t42;
-    const double t44 = l_1 * t43;
-    const double t45 = t6 * t3;
-    const double t46 = t5 * t4;
-    const double t47 = t45 + t46;
-    const double t48 = g * t47;
-    const double t49 = t44 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = c_2 * t50;
-    const double t52 = t35 + t51;
+    const double turn_2 = q_1_dot + q_2_dot;
+    const double t22 = m_2 * turn_2;
+    const double t3 = sine[0];
+    const double t23 = q_2_dot * t3;
+    const double t24 = t17 * t23;
+    const double t25 = t22 * t24;
+    const double t26 = t21 - t25;
+    const double J_2 = p->J_2;
+    const double t27 = 0.5 * J_2;
+    const double t28 = c_2 * c_2;
+    const double t29 = m_2 * t28;
+    const double t30 = 0.5 * t29;
+    const double t31 = t27 + t30;
+    const double t32 = t31 * t19;
+    const double t33 = q_1_ddot * t18;
+    const double t34 = q_1_dot * t24;
+    const double t35 = t33 - t34;
+    const double t36 = m_2 * t35;
+    const double t37 = t32 + t36;
+    const double t38 = t32 + t37;
+    const double t39 = t26 + t38;
+    const double t40 = t16 + t39;
+    const double t41 = t16 + t40;
+    const double g = p->g;
+    const double t42 = m_2 * g;
+    const double t43 = l_1 * t42;
+    const double t44 = c_1 * m_1;
+    const double t45 = g * t44;
+    const double t46 = t43 + t45;
+    const double t5 = sine[1];
+    const double t47 = t46 * t5;
+    const double t48 = c_2 * t42;
+    const double t49 = t4 * t5;
+    const double t6 = cosine[1];
+    const double t50 = t3 * t6;
+    const double t51 = t49 + t50;
+    const double t52 = t48 * t51;
+    const double t53 = t47 + t52;
+    const double t54 = t41 + t53;
+    const double t55 = t7 + t54;
     const double d_2 = p->d_2;
-    const double t53 = q_2_dot * d_2;
-    const double t54 = 2.0 * q_2_ddot;
-    const double t55 = t36 + t54;
-    const double t56 = t11 * t55;
-    const double t57 = t53 + t56;
-    const double t58 = q_1_dot * q_1_dot;
-    const double t59 = t58 * t5;
-    const double t60 = q_1_ddot * t6;
-    const double t61 = t59 + t60;
-    const double t62 = l_1 * t61;
-    const double t63 = t62 + t48;
-    const double t64 = m_2 * t63;
-    const double t65 = c_2 * t64;
-    const double t66 = t57 + t65;
-    double rest = t52 - t52;
-    rest += t66 - t66;
+    const double t56 = q_2_dot * d_2;
+    const double t57 = q_1_dot * t22;
+    const double t58 = t17 * t57;
+    const double t59 = t3 * t58;
+    const double t60 = t59 + t38;
+    const double t61 = t60 + t52;
+    const double t62 = t56 + t61;
+    double rest = t55 - t55;
+    rest += t62 - t62;
     if (!(rest >= 0.0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    u[0] = t52;
-    u[1] = t66;
+    u[0] = t55;
+    u[1] = t62;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -818,7 +883,8 @@ double_pendulum_status double_pendulum_actuator_mass_matrix(const double q[2], c
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
     const double c_1 = p->c_1;
     const double t4 = c_1 * c_1;
@@ -873,11 +939,12 @@ double_pendulum_status double_pendulum_actuator_bias(const double q[2], const do
     if (!(100000.0 >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t3, t4;
-    double_pendulum_sincos(q_2, &t3, &t4);
-    double t5, t6;
-    double_pendulum_sincos(q_1, &t5, &t6);
+    const double angle[2] = {q_2, q_1};
+    double sine[2];
+    double cosine[2];
+    double_pendulum_sincos_group(2, angle, sine, cosine);
     const double g = p->g;
+    const double t6 = cosine[1];
     const double t7 = g * t6;
     const double q_1_dot = qd[0];
     const double t8 = 2.0 * q_1_dot;
@@ -887,7 +954,10 @@ double_pendulum_status double_pendulum_actuator_bias(const double q[2], const do
     const double t10 = l_1 * t9;
     const double t11 = q_2_dot * t10;
     const double t12 = t7 - t11;
+    const double t3 = sine[0];
     const double t13 = t3 * t12;
+    const double t4 = cosine[0];
+    const double t5 = sine[1];
     const double t14 = t4 * t5;
     const double t15 = g * t14;
     const double t16 = t13 + t15;
@@ -930,141 +1000,145 @@ double_pendulum_status double_pendulum_actuator_bias(const double q[2], const do
 }
 
 double_pendulum_status double_pendulum_forward_dynamics(const double q[2], const double qd[2], const double u[2], const double_pendulum_params *p, double qdd[2]) {
-    const double q_1 = q[0];
-    const double t1 = fabs(q_1);
     const double q_2 = q[1];
-    const double t2 = fabs(q_2);
+    const double t1 = fabs(q_2);
+    const double q_1 = q[0];
+    const double t2 = fabs(q_1);
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (!(100000.0 >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t3, t4;
-    double_pendulum_sincos(q_1, &t3, &t4);
-    double t5, t6;
-    double_pendulum_sincos(q_2, &t5, &t6);
-    const double l_1 = p->l_1;
-    const double c_2 = p->c_2;
-    const double t7 = l_1 * c_2;
-    const double t8 = t7 * t6;
-    const double m_2 = p->m_2;
-    const double t9 = m_2 * t8;
-    const double J_2 = p->J_2;
-    const double t10 = 0.5 * J_2;
-    const double t11 = c_2 * c_2;
-    const double t12 = m_2 * t11;
-    const double t13 = 0.5 * t12;
-    const double t14 = t10 + t13;
-    const double t15 = 2.0 * t14;
-    const double t16 = t9 + t15;
-    const double t17 = t9 + t16;
+    const double angle[2] = {q_2, q_1};
+    double sine[2];
+    double cosine[2];
+    double_pendulum_sincos_group(2, angle, sine, cosine);
     const double c_1 = p->c_1;
-    const double t18 = c_1 * c_1;
+    const double t7 = c_1 * c_1;
     const double m_1 = p->m_1;
-    const double t19 = m_1 * t18;
+    const double t8 = m_1 * t7;
+    const double l_1 = p->l_1;
+    const double t9 = l_1 * l_1;
+    const double m_2 = p->m_2;
+    const double t10 = m_2 * t9;
+    const double t3 = sine[0];
+    const double t11 = t3 * t3;
+    const double t12 = t10 * t11;
+    const double t13 = t8 + t12;
     const double J_1 = p->J_1;
-    const double t20 = J_1 + t19;
-    const double t21 = 0.5 * t20;
-    const double t22 = l_1 * l_1;
-    const double t23 = m_2 * t22;
-    const double t24 = 0.5 * t23;
-    const double t25 = t21 + t24;
-    const double t26 = 2.0 * t25;
-    const double t27 = t17 + t26;
-    const double t28 = fabs(t27);
-    const double t29 = fabs(m_2);
-    const double t30 = fabs(l_1);
-    const double t31 = fabs(c_2);
-    const double t32 = t30 * t31;
-    const double t33 = t29 * t32;
-    const double t34 = fabs(J_2);
-    const double t35 = 0.5 * t34;
-    const double t36 = t31 * t31;
-    const double t37 = t29 * t36;
-    const double t38 = 0.5 * t37;
-    const double t39 = t35 + t38;
-    const double t40 = 2.0 * t39;
-    const double t41 = t33 + t40;
-    const double t42 = t33 + t41;
-    const double t43 = fabs(J_1);
-    const double t44 = fabs(m_1);
-    const double t45 = fabs(c_1);
-    const double t46 = t45 * t45;
-    const double t47 = t44 * t46;
-    const double t48 = t43 + t47;
-    const double t49 = 0.5 * t48;
-    const double t50 = t30 * t30;
-    const double t51 = t29 * t50;
-    const double t52 = 0.5 * t51;
-    const double t53 = t49 + t52;
-    const double t54 = 2.0 * t53;
-    const double t55 = t42 + t54;
-    const double t56 = t55 * 1.7763568394002505e-15;
-    const double t57 = t16 / t27;
-    const double t58 = t16 * t57;
-    const double t59 = t15 - t58;
-    const double t60 = fabs(t59);
-    const double t61 = t39 * 1.7763568394002505e-15;
-    const double t62 = 2.0 * t61;
-    const double q_1_dot = qd[0];
-    const double d_1 = p->d_1;
-    const double t63 = q_1_dot * d_1;
-    const double g = p->g;
-    const double t64 = m_2 * g;
-    const double t65 = l_1 * t64;
-    const double t66 = c_1 * m_1;
-    const double t67 = g * t66;
-    const double t68 = t65 + t67;
-    const double t69 = t68 * t3;
-    const double t70 = c_2 * t64;
-    const double t71 = t6 * t3;
-    const double t72 = t5 * t4;
-    const double t73 = t71 + t72;
-    const double t74 = t70 * t73;
-    const double t75 = t69 + t74;
+    const double t14 = J_1 + t13;
+    const double c_2 = p->c_2;
+    const double t15 = c_2 * t14;
+    const double t16 = c_2 * t15;
+    const double J_2 = p->J_2;
+    const double t17 = J_2 * t9;
+    const double t18 = t16 + t17;
+    const double t19 = m_2 * t18;
+    const double t20 = J_1 + t8;
+    const double t21 = J_2 * t20;
+    const double t22 = t19 + t21;
+    const double t23 = fabs(t22);
+    const double t24 = fabs(m_2);
+    const double t25 = fabs(c_2);
+    const double t26 = fabs(J_1);
+    const double t27 = fabs(m_1);
+    const double t28 = fabs(c_1);
+    const double t29 = t28 * t28;
+    const double t30 = t27 * t29;
+    const double t31 = fabs(l_1);
+    const double t32 = t31 * t31;
+    const double t33 = t24 * t32;
+    const double t34 = t30 + t33;
+    const double t35 = t26 + t34;
+    const double t36 = t25 * t35;
+    const double t37 = t25 * t36;
+    const double t38 = fabs(J_2);
+    const double t39 = t38 * t32;
+    const double t40 = t37 + t39;
+    const double t41 = t24 * t40;
+    const double t42 = t26 + t30;
+    const double t43 = t38 * t42;
+    const double t44 = t41 + t43;
+    const double t45 = t44 * 1.7763568394002505e-15;
+    if (!(t23 > t45)) {
+        return DOUBLE_PENDULUM_MASS_RANK;
+    }
+    const double t46 = 1.0 / t22;
+    const double t47 = l_1 * c_2;
+    const double t4 = cosine[0];
+    const double t48 = t47 * t4;
+    const double t49 = m_2 * t48;
+    const double t50 = 0.5 * J_2;
+    const double t51 = c_2 * c_2;
+    const double t52 = m_2 * t51;
+    const double t53 = 0.5 * t52;
+    const double t54 = t50 + t53;
+    const double t55 = 2.0 * t54;
+    const double t56 = t49 + t55;
     const double q_2_dot = qd[1];
-    const double turn_2 = q_1_dot + q_2_dot;
-    const double t76 = m_2 * turn_2;
-    const double t77 = q_2_dot * t5;
-    const double t78 = t7 * t77;
-    const double t79 = t76 * t78;
-    const double t80 = q_1_dot * t78;
-    const double t81 = m_2 * t80;
-    const double t82 = t79 + t81;
-    const double t83 = t75 - t82;
-    const double t84 = t63 + t83;
-    const double shoulder = u[0];
-    const double t85 = shoulder - t84;
-    const double t86 = t85 / t27;
     const double d_2 = p->d_2;
-    const double t87 = q_2_dot * d_2;
-    const double t88 = q_1_dot * t76;
-    const double t89 = t7 * t88;
-    const double t90 = t5 * t89;
-    const double t91 = t90 - t81;
-    const double t92 = t91 + t74;
-    const double t93 = t87 + t92;
+    const double t57 = q_2_dot * d_2;
+    const double q_1_dot = qd[0];
+    const double turn_2 = q_1_dot + q_2_dot;
+    const double t58 = m_2 * turn_2;
+    const double t59 = q_1_dot * t58;
+    const double t60 = t47 * t59;
+    const double t61 = t3 * t60;
+    const double t62 = q_2_dot * t3;
+    const double t63 = t47 * t62;
+    const double t64 = q_1_dot * t63;
+    const double t65 = m_2 * t64;
+    const double t66 = t61 - t65;
+    const double g = p->g;
+    const double t67 = m_2 * g;
+    const double t68 = c_2 * t67;
+    const double t5 = sine[1];
+    const double t69 = t4 * t5;
+    const double t6 = cosine[1];
+    const double t70 = t3 * t6;
+    const double t71 = t69 + t70;
+    const double t72 = t68 * t71;
+    const double t73 = t66 + t72;
+    const double t74 = t57 + t73;
     const double elbow = u[1];
-    const double t94 = elbow - t93;
-    const double t95 = t57 * t85;
-    const double t96 = t94 - t95;
-    const double t97 = t96 / t59;
-    const double t98 = t57 * t97;
-    const double t99 = t86 - t98;
-    if (!(t28 > t56)) {
-        return DOUBLE_PENDULUM_MASS_RANK;
-    }
-    if (!(t60 > t62)) {
-        return DOUBLE_PENDULUM_MASS_RANK;
-    }
-    double rest = t99 - t99;
-    rest += t97 - t97;
+    const double t75 = elbow - t74;
+    const double t76 = t56 * t75;
+    const double d_1 = p->d_1;
+    const double t77 = q_1_dot * d_1;
+    const double t78 = l_1 * t67;
+    const double t79 = c_1 * m_1;
+    const double t80 = g * t79;
+    const double t81 = t78 + t80;
+    const double t82 = t81 * t5;
+    const double t83 = t82 + t72;
+    const double t84 = t58 * t63;
+    const double t85 = t84 + t65;
+    const double t86 = t83 - t85;
+    const double t87 = t77 + t86;
+    const double shoulder = u[0];
+    const double t88 = t87 - shoulder;
+    const double t89 = t55 * t88;
+    const double t90 = t76 + t89;
+    const double t91 = t46 * t90;
+    const double t92 = -t91;
+    const double t93 = t49 + t56;
+    const double t94 = 0.5 * t20;
+    const double t95 = 0.5 * t10;
+    const double t96 = t94 + t95;
+    const double t97 = 2.0 * t96;
+    const double t98 = t93 + t97;
+    const double t99 = t98 * t75;
+    const double t100 = t56 * t88;
+    const double t101 = t99 + t100;
+    const double t102 = t46 * t101;
+    double rest = t92 - t92;
+    rest += t102 - t102;
     if (!(rest >= 0.0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    qdd[0] = t99;
-    qdd[1] = t97;
+    qdd[0] = t92;
+    qdd[1] = t102;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1079,10 +1153,10 @@ double_pendulum_status double_pendulum_energy(const double q[2], const double qd
     if (!(100000.0 >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    double t3, t4;
-    double_pendulum_sincos(q_2, &t3, &t4);
-    double t5, t6;
-    double_pendulum_sincos(q_1, &t5, &t6);
+    const double angle[2] = {q_2, q_1};
+    double sine[2];
+    double cosine[2];
+    double_pendulum_sincos_group(2, angle, sine, cosine);
     const double c_1 = p->c_1;
     const double t7 = c_1 * c_1;
     const double m_1 = p->m_1;
@@ -1105,6 +1179,7 @@ double_pendulum_status double_pendulum_energy(const double q[2], const double qd
     const double t18 = t10 * t17;
     const double c_2 = p->c_2;
     const double t19 = l_1 * c_2;
+    const double t4 = cosine[0];
     const double t20 = t19 * t4;
     const double t21 = q_1_dot * t20;
     const double t22 = turn_2 * t21;
@@ -1118,9 +1193,12 @@ double_pendulum_status double_pendulum_energy(const double q[2], const double qd
     const double t29 = 0.5 * t28;
     const double t30 = t16 + t29;
     const double t31 = c_1 * m_1;
+    const double t6 = cosine[1];
     const double t32 = t31 * t6;
     const double t33 = l_1 * t6;
     const double t34 = t4 * t6;
+    const double t3 = sine[0];
+    const double t5 = sine[1];
     const double t35 = t3 * t5;
     const double t36 = t34 - t35;
     const double t37 = c_2 * t36;

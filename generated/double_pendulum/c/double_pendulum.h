@@ -36,12 +36,12 @@
  * admissible_velocity                   0      0      0      0      0      0
  * admissible_acceleration               0      0      0      0      0      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                     19     41      0      0      2      0
+ * inverse_dynamics                     20     37      0      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                  6     16      0      0      1      0
  * actuator_bias                         9     23      0      0      2      0
- * forward_dynamics                     27     55      3      0      2      0
+ * forward_dynamics                     29     58      1      0      2      0
  * energy                                9     27      0      0      2      0
  * singularity                           0      0      0      0      0      0
  * (changes of sign are not counted)

@@ -3,8 +3,12 @@
 
 #include <math.h>
 
-#ifdef __FAST_MATH__
-#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast)"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
+#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast, /fp:fast)"
+#elif defined(__FINITE_MATH_ONLY__)
+#if __FINITE_MATH_ONLY__
+#error "status tests need IEEE arithmetic: compile without -ffinite-math-only"
+#endif
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
@@ -12,16 +16,22 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+#ifdef __GNUC__
+#define DOUBLE_PENDULUM_INLINE_F static inline __attribute__((always_inline))
+#else
+#define DOUBLE_PENDULUM_INLINE_F static inline
+#endif
+
 /* Sine and cosine, the same bits on every IEEE platform. */
-static void double_pendulum_sincos_f(const float x, float *sine, float *cosine) {
+DOUBLE_PENDULUM_INLINE_F void double_pendulum_pair_f(const float x, float *sine, float *cosine) {
     const float turns = x * 0.63661975f;
     const float shifted = turns + 12582912.0f;
     const float k = shifted - 12582912.0f;
-    const float k1 = k * 1.5707703f;
+    const float k1 = k * 1.5707855f;
     const float r1 = x - k1;
-    const float k2 = k * 2.6063062e-05f;
+    const float k2 = k * 1.0804331e-05f;
     const float r2 = r1 - k2;
-    const float k3 = k * 6.0771006e-11f;
+    const float k3 = k * 2.563344e-12f;
     const float r = r2 - k3;
     const float z = r * r;
     const float s1p = z * (-0.00019507884f);
@@ -60,6 +70,47 @@ static void double_pendulum_sincos_f(const float x, float *sine, float *cosine) 
     *cosine = cosine_;
 }
 
+static void double_pendulum_sincos_f(const float angle, float *sine, float *cosine) {
+    double_pendulum_pair_f(angle, sine, cosine);
+}
+
+/* Compilers take so many angles at once where there are vector registers: loops of constant count over local arrays. */
+#if defined(__SSE2__) || defined(_M_X64) || defined(__aarch64__) || defined(_M_ARM64)
+#define DOUBLE_PENDULUM_LANES_F 4
+#else
+#define DOUBLE_PENDULUM_LANES_F 1
+#endif
+
+/* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
+#if DOUBLE_PENDULUM_LANES_F == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
+    (defined(__ARM_FP) || defined(__riscv_flen))
+#define DOUBLE_PENDULUM_GROUP_F DOUBLE_PENDULUM_INLINE_F
+#define DOUBLE_PENDULUM_UNROLL_F _Pragma("GCC unroll 16")
+#else
+#define DOUBLE_PENDULUM_GROUP_F static
+#define DOUBLE_PENDULUM_UNROLL_F
+#endif
+
+/* Sines and cosines of several angles; the arrays are as long as the next multiple of 4. */
+DOUBLE_PENDULUM_GROUP_F void double_pendulum_sincos_group_f(const int count, const float *angle, float *sine, float *cosine) {
+    DOUBLE_PENDULUM_UNROLL_F
+    for (int start = 0; start < count; start += DOUBLE_PENDULUM_LANES_F) {
+        float x[DOUBLE_PENDULUM_LANES_F];
+        float s[DOUBLE_PENDULUM_LANES_F];
+        float c[DOUBLE_PENDULUM_LANES_F];
+        for (int i = 0; i < DOUBLE_PENDULUM_LANES_F; ++i) {
+            x[i] = angle[start + i];
+        }
+        for (int i = 0; i < DOUBLE_PENDULUM_LANES_F; ++i) {
+            double_pendulum_pair_f(x[i], &s[i], &c[i]);
+        }
+        for (int i = 0; i < DOUBLE_PENDULUM_LANES_F; ++i) {
+            sine[start + i] = s[i];
+            cosine[start + i] = c[i];
+        }
+    }
+}
+
 double_pendulum_params_f double_pendulum_default_params_f(void) {
     double_pendulum_params_f p;
     p.l_1 = 0.5f;
@@ -81,7 +132,8 @@ double_pendulum_status double_pendulum_mass_matrix_f(const float q[2], const dou
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
     const float c_1 = p->c_1;
     const float t4 = c_1 * c_1;
@@ -131,7 +183,8 @@ double_pendulum_status double_pendulum_coriolis_matrix_f(const float q[2], const
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
     const float l_1 = p->l_1;
     const float c_2 = p->c_2;
@@ -168,7 +221,8 @@ double_pendulum_status double_pendulum_coriolis_force_f(const float q[2], const 
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
     const float l_1 = p->l_1;
     const float c_2 = p->c_2;
@@ -209,15 +263,16 @@ double_pendulum_status double_pendulum_potential_force_f(const float q[2], const
     if (!(100.0f >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t3, t4;
-    double_pendulum_sincos_f(angle_2, &t3, &t4);
-    float t5, t6;
-    double_pendulum_sincos_f(q_1, &t5, &t6);
+    const float angle[4] = {angle_2, q_1, q_1, q_1};
+    float sine[4];
+    float cosine[4];
+    double_pendulum_sincos_group_f(2, angle, sine, cosine);
     const float m_2 = p->m_2;
     const float g = p->g;
     const float t7 = m_2 * g;
     const float c_2 = p->c_2;
     const float t8 = c_2 * t7;
+    const float t3 = sine[0];
     const float t9 = t8 * t3;
     const float l_1 = p->l_1;
     const float t10 = l_1 * t7;
@@ -226,6 +281,7 @@ double_pendulum_status double_pendulum_potential_force_f(const float q[2], const
     const float t11 = c_1 * m_1;
     const float t12 = g * t11;
     const float t13 = t10 + t12;
+    const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
     float rest = t15 - t15;
@@ -335,7 +391,8 @@ double_pendulum_status double_pendulum_projected_mass_matrix_f(const float q[2],
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
     const float c_1 = p->c_1;
     const float t4 = c_1 * c_1;
@@ -385,7 +442,8 @@ double_pendulum_status double_pendulum_projected_coriolis_matrix_f(const float q
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
     const float l_1 = p->l_1;
     const float c_2 = p->c_2;
@@ -428,15 +486,16 @@ double_pendulum_status double_pendulum_projected_potential_force_f(const float q
     if (!(100.0f >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t3, t4;
-    double_pendulum_sincos_f(angle_2, &t3, &t4);
-    float t5, t6;
-    double_pendulum_sincos_f(q_1, &t5, &t6);
+    const float angle[4] = {angle_2, q_1, q_1, q_1};
+    float sine[4];
+    float cosine[4];
+    double_pendulum_sincos_group_f(2, angle, sine, cosine);
     const float m_2 = p->m_2;
     const float g = p->g;
     const float t7 = m_2 * g;
     const float c_2 = p->c_2;
     const float t8 = c_2 * t7;
+    const float t3 = sine[0];
     const float t9 = t8 * t3;
     const float l_1 = p->l_1;
     const float t10 = l_1 * t7;
@@ -445,6 +504,7 @@ double_pendulum_status double_pendulum_projected_potential_force_f(const float q
     const float t11 = c_1 * m_1;
     const float t12 = g * t11;
     const float t13 = t10 + t12;
+    const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
     float rest = t15 - t15;
@@ -483,7 +543,8 @@ double_pendulum_status double_pendulum_minimal_mass_matrix_f(const float q[2], c
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
     const float c_1 = p->c_1;
     const float t4 = c_1 * c_1;
@@ -533,7 +594,8 @@ double_pendulum_status double_pendulum_minimal_coriolis_matrix_f(const float q[2
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
     const float l_1 = p->l_1;
     const float c_2 = p->c_2;
@@ -576,15 +638,16 @@ double_pendulum_status double_pendulum_minimal_potential_force_f(const float q[2
     if (!(100.0f >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t3, t4;
-    double_pendulum_sincos_f(angle_2, &t3, &t4);
-    float t5, t6;
-    double_pendulum_sincos_f(q_1, &t5, &t6);
+    const float angle[4] = {angle_2, q_1, q_1, q_1};
+    float sine[4];
+    float cosine[4];
+    double_pendulum_sincos_group_f(2, angle, sine, cosine);
     const float m_2 = p->m_2;
     const float g = p->g;
     const float t7 = m_2 * g;
     const float c_2 = p->c_2;
     const float t8 = c_2 * t7;
+    const float t3 = sine[0];
     const float t9 = t8 * t3;
     const float l_1 = p->l_1;
     const float t10 = l_1 * t7;
@@ -593,6 +656,7 @@ double_pendulum_status double_pendulum_minimal_potential_force_f(const float q[2
     const float t11 = c_1 * m_1;
     const float t12 = g * t11;
     const float t13 = t10 + t12;
+    const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
     float rest = t15 - t15;
@@ -681,101 +745,102 @@ double_pendulum_status double_pendulum_projected_configuration_f(const float q[2
 }
 
 double_pendulum_status double_pendulum_inverse_dynamics_f(const float q[2], const float qd[2], const float qdd[2], const double_pendulum_params_f *p, float u[2]) {
-    const float q_1 = q[0];
-    const float t1 = fabsf(q_1);
     const float q_2 = q[1];
-    const float t2 = fabsf(q_2);
+    const float t1 = fabsf(q_2);
+    const float q_1 = q[0];
+    const float t2 = fabsf(q_1);
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t3, t4;
-    double_pendulum_sincos_f(q_1, &t3, &t4);
-    float t5, t6;
-    double_pendulum_sincos_f(q_2, &t5, &t6);
-    const float J_2 = p->J_2;
-    const float t7 = 0.5f * J_2;
-    const float c_2 = p->c_2;
-    const float t8 = c_2 * c_2;
-    const float m_2 = p->m_2;
-    const float t9 = m_2 * t8;
-    const float t10 = 0.5f * t9;
-    const float t11 = t7 + t10;
-    const float t12 = 2.0f * t11;
-    const float c_1 = p->c_1;
-    const float t13 = c_1 * c_1;
-    const float m_1 = p->m_1;
-    const float t14 = m_1 * t13;
-    const float J_1 = p->J_1;
-    const float t15 = J_1 + t14;
-    const float t16 = 0.5f * t15;
-    const float l_1 = p->l_1;
-    const float t17 = l_1 * l_1;
-    const float t18 = m_2 * t17;
-    const float t19 = 0.5f * t18;
-    const float t20 = t16 + t19;
-    const float t21 = 2.0f * t20;
-    const float t22 = t12 + t21;
-    const float q_1_ddot = qdd[0];
-    const float t23 = q_1_ddot * t22;
-    const float g = p->g;
-    const float t24 = m_2 * g;
-    const float t25 = l_1 * t24;
-    const float t26 = c_1 * m_1;
-    const float t27 = g * t26;
-    const float t28 = t25 + t27;
-    const float t29 = t28 * t3;
+    const float angle[4] = {q_2, q_1, q_1, q_1};
+    float sine[4];
+    float cosine[4];
+    double_pendulum_sincos_group_f(2, angle, sine, cosine);
     const float q_1_dot = qd[0];
     const float d_1 = p->d_1;
-    const float t30 = q_1_dot * d_1;
+    const float t7 = q_1_dot * d_1;
+    const float c_1 = p->c_1;
+    const float t8 = c_1 * c_1;
+    const float m_1 = p->m_1;
+    const float t9 = m_1 * t8;
+    const float J_1 = p->J_1;
+    const float t10 = J_1 + t9;
+    const float t11 = 0.5f * t10;
+    const float l_1 = p->l_1;
+    const float t12 = l_1 * l_1;
+    const float m_2 = p->m_2;
+    const float t13 = m_2 * t12;
+    const float t14 = 0.5f * t13;
+    const float t15 = t11 + t14;
+    const float q_1_ddot = qdd[0];
+    const float t16 = q_1_ddot * t15;
+    const float c_2 = p->c_2;
+    const float t17 = l_1 * c_2;
+    const float t4 = cosine[0];
+    const float t18 = t17 * t4;
     const float q_2_ddot = qdd[1];
-    const float t31 = q_2_ddot * t11;
-    const float t32 = 2.0f * t31;
-    const float t33 = t30 + t32;
-    const float t34 = t29 + t33;
-    const float t35 = t23 + t34;
-    const float t36 = 2.0f * q_1_ddot;
-    const float t37 = q_2_ddot + t36;
-    const float t38 = t6 * t37;
+    const float t19 = q_1_ddot + q_2_ddot;
+    const float t20 = m_2 * t19;
+    const float t21 = t18 * t20;
     const float q_2_dot = qd[1];
-    const float t39 = q_2_dot * t5;
-    const float t40 = 2.0f * q_1_dot;
-    const float t41 = q_2_dot + t40;
-    const float t42 = t39 * t41;
-    const float t43 = t38 - t42;
-    const float t44 = l_1 * t43;
-    const float t45 = t6 * t3;
-    const float t46 = t5 * t4;
-    const float t47 = t45 + t46;
-    const float t48 = g * t47;
-    const float t49 = t44 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = c_2 * t50;
-    const float t52 = t35 + t51;
+    const float turn_2 = q_1_dot + q_2_dot;
+    const float t22 = m_2 * turn_2;
+    const float t3 = sine[0];
+    const float t23 = q_2_dot * t3;
+    const float t24 = t17 * t23;
+    const float t25 = t22 * t24;
+    const float t26 = t21 - t25;
+    const float J_2 = p->J_2;
+    const float t27 = 0.5f * J_2;
+    const float t28 = c_2 * c_2;
+    const float t29 = m_2 * t28;
+    const float t30 = 0.5f * t29;
+    const float t31 = t27 + t30;
+    const float t32 = t31 * t19;
+    const float t33 = q_1_ddot * t18;
+    const float t34 = q_1_dot * t24;
+    const float t35 = t33 - t34;
+    const float t36 = m_2 * t35;
+    const float t37 = t32 + t36;
+    const float t38 = t32 + t37;
+    const float t39 = t26 + t38;
+    const float t40 = t16 + t39;
+    const float t41 = t16 + t40;
+    const float g = p->g;
+    const float t42 = m_2 * g;
+    const float t43 = l_1 * t42;
+    const float t44 = c_1 * m_1;
+    const float t45 = g * t44;
+    const float t46 = t43 + t45;
+    const float t5 = sine[1];
+    const float t47 = t46 * t5;
+    const float t48 = c_2 * t42;
+    const float t49 = t4 * t5;
+    const float t6 = cosine[1];
+    const float t50 = t3 * t6;
+    const float t51 = t49 + t50;
+    const float t52 = t48 * t51;
+    const float t53 = t47 + t52;
+    const float t54 = t41 + t53;
+    const float t55 = t7 + t54;
     const float d_2 = p->d_2;
-    const float t53 = q_2_dot * d_2;
-    const float t54 = 2.0f * q_2_ddot;
-    const float t55 = t36 + t54;
-    const float t56 = t11 * t55;
-    const float t57 = t53 + t56;
-    const float t58 = q_1_dot * q_1_dot;
-    const float t59 = t58 * t5;
-    const float t60 = q_1_ddot * t6;
-    const float t61 = t59 + t60;
-    const float t62 = l_1 * t61;
-    const float t63 = t62 + t48;
-    const float t64 = m_2 * t63;
-    const float t65 = c_2 * t64;
-    const float t66 = t57 + t65;
-    float rest = t52 - t52;
-    rest += t66 - t66;
+    const float t56 = q_2_dot * d_2;
+    const float t57 = q_1_dot * t22;
+    const float t58 = t17 * t57;
+    const float t59 = t3 * t58;
+    const float t60 = t59 + t38;
+    const float t61 = t60 + t52;
+    const float t62 = t56 + t61;
+    float rest = t55 - t55;
+    rest += t62 - t62;
     if (!(rest >= 0.0f)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    u[0] = t52;
-    u[1] = t66;
+    u[0] = t55;
+    u[1] = t62;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -810,7 +875,8 @@ double_pendulum_status double_pendulum_actuator_mass_matrix_f(const float q[2], 
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
     const float c_1 = p->c_1;
     const float t4 = c_1 * c_1;
@@ -865,11 +931,12 @@ double_pendulum_status double_pendulum_actuator_bias_f(const float q[2], const f
     if (!(100.0f >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t3, t4;
-    double_pendulum_sincos_f(q_2, &t3, &t4);
-    float t5, t6;
-    double_pendulum_sincos_f(q_1, &t5, &t6);
+    const float angle[4] = {q_2, q_1, q_1, q_1};
+    float sine[4];
+    float cosine[4];
+    double_pendulum_sincos_group_f(2, angle, sine, cosine);
     const float g = p->g;
+    const float t6 = cosine[1];
     const float t7 = g * t6;
     const float q_1_dot = qd[0];
     const float t8 = 2.0f * q_1_dot;
@@ -879,7 +946,10 @@ double_pendulum_status double_pendulum_actuator_bias_f(const float q[2], const f
     const float t10 = l_1 * t9;
     const float t11 = q_2_dot * t10;
     const float t12 = t7 - t11;
+    const float t3 = sine[0];
     const float t13 = t3 * t12;
+    const float t4 = cosine[0];
+    const float t5 = sine[1];
     const float t14 = t4 * t5;
     const float t15 = g * t14;
     const float t16 = t13 + t15;
@@ -922,141 +992,145 @@ double_pendulum_status double_pendulum_actuator_bias_f(const float q[2], const f
 }
 
 double_pendulum_status double_pendulum_forward_dynamics_f(const float q[2], const float qd[2], const float u[2], const double_pendulum_params_f *p, float qdd[2]) {
-    const float q_1 = q[0];
-    const float t1 = fabsf(q_1);
     const float q_2 = q[1];
-    const float t2 = fabsf(q_2);
+    const float t1 = fabsf(q_2);
+    const float q_1 = q[0];
+    const float t2 = fabsf(q_1);
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t3, t4;
-    double_pendulum_sincos_f(q_1, &t3, &t4);
-    float t5, t6;
-    double_pendulum_sincos_f(q_2, &t5, &t6);
-    const float l_1 = p->l_1;
-    const float c_2 = p->c_2;
-    const float t7 = l_1 * c_2;
-    const float t8 = t7 * t6;
-    const float m_2 = p->m_2;
-    const float t9 = m_2 * t8;
-    const float J_2 = p->J_2;
-    const float t10 = 0.5f * J_2;
-    const float t11 = c_2 * c_2;
-    const float t12 = m_2 * t11;
-    const float t13 = 0.5f * t12;
-    const float t14 = t10 + t13;
-    const float t15 = 2.0f * t14;
-    const float t16 = t9 + t15;
-    const float t17 = t9 + t16;
+    const float angle[4] = {q_2, q_1, q_1, q_1};
+    float sine[4];
+    float cosine[4];
+    double_pendulum_sincos_group_f(2, angle, sine, cosine);
     const float c_1 = p->c_1;
-    const float t18 = c_1 * c_1;
+    const float t7 = c_1 * c_1;
     const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
+    const float t8 = m_1 * t7;
+    const float l_1 = p->l_1;
+    const float t9 = l_1 * l_1;
+    const float m_2 = p->m_2;
+    const float t10 = m_2 * t9;
+    const float t3 = sine[0];
+    const float t11 = t3 * t3;
+    const float t12 = t10 * t11;
+    const float t13 = t8 + t12;
     const float J_1 = p->J_1;
-    const float t20 = J_1 + t19;
-    const float t21 = 0.5f * t20;
-    const float t22 = l_1 * l_1;
-    const float t23 = m_2 * t22;
-    const float t24 = 0.5f * t23;
-    const float t25 = t21 + t24;
-    const float t26 = 2.0f * t25;
-    const float t27 = t17 + t26;
-    const float t28 = fabsf(t27);
-    const float t29 = fabsf(m_2);
-    const float t30 = fabsf(l_1);
-    const float t31 = fabsf(c_2);
-    const float t32 = t30 * t31;
-    const float t33 = t29 * t32;
-    const float t34 = fabsf(J_2);
-    const float t35 = 0.5f * t34;
-    const float t36 = t31 * t31;
-    const float t37 = t29 * t36;
-    const float t38 = 0.5f * t37;
-    const float t39 = t35 + t38;
-    const float t40 = 2.0f * t39;
-    const float t41 = t33 + t40;
-    const float t42 = t33 + t41;
-    const float t43 = fabsf(J_1);
-    const float t44 = fabsf(m_1);
-    const float t45 = fabsf(c_1);
-    const float t46 = t45 * t45;
-    const float t47 = t44 * t46;
-    const float t48 = t43 + t47;
-    const float t49 = 0.5f * t48;
-    const float t50 = t30 * t30;
-    const float t51 = t29 * t50;
-    const float t52 = 0.5f * t51;
-    const float t53 = t49 + t52;
-    const float t54 = 2.0f * t53;
-    const float t55 = t42 + t54;
-    const float t56 = t55 * 9.536743e-07f;
-    const float t57 = t16 / t27;
-    const float t58 = t16 * t57;
-    const float t59 = t15 - t58;
-    const float t60 = fabsf(t59);
-    const float t61 = t39 * 9.536743e-07f;
-    const float t62 = 2.0f * t61;
-    const float q_1_dot = qd[0];
-    const float d_1 = p->d_1;
-    const float t63 = q_1_dot * d_1;
-    const float g = p->g;
-    const float t64 = m_2 * g;
-    const float t65 = l_1 * t64;
-    const float t66 = c_1 * m_1;
-    const float t67 = g * t66;
-    const float t68 = t65 + t67;
-    const float t69 = t68 * t3;
-    const float t70 = c_2 * t64;
-    const float t71 = t6 * t3;
-    const float t72 = t5 * t4;
-    const float t73 = t71 + t72;
-    const float t74 = t70 * t73;
-    const float t75 = t69 + t74;
+    const float t14 = J_1 + t13;
+    const float c_2 = p->c_2;
+    const float t15 = c_2 * t14;
+    const float t16 = c_2 * t15;
+    const float J_2 = p->J_2;
+    const float t17 = J_2 * t9;
+    const float t18 = t16 + t17;
+    const float t19 = m_2 * t18;
+    const float t20 = J_1 + t8;
+    const float t21 = J_2 * t20;
+    const float t22 = t19 + t21;
+    const float t23 = fabsf(t22);
+    const float t24 = fabsf(m_2);
+    const float t25 = fabsf(c_2);
+    const float t26 = fabsf(J_1);
+    const float t27 = fabsf(m_1);
+    const float t28 = fabsf(c_1);
+    const float t29 = t28 * t28;
+    const float t30 = t27 * t29;
+    const float t31 = fabsf(l_1);
+    const float t32 = t31 * t31;
+    const float t33 = t24 * t32;
+    const float t34 = t30 + t33;
+    const float t35 = t26 + t34;
+    const float t36 = t25 * t35;
+    const float t37 = t25 * t36;
+    const float t38 = fabsf(J_2);
+    const float t39 = t38 * t32;
+    const float t40 = t37 + t39;
+    const float t41 = t24 * t40;
+    const float t42 = t26 + t30;
+    const float t43 = t38 * t42;
+    const float t44 = t41 + t43;
+    const float t45 = t44 * 9.536743e-07f;
+    if (!(t23 > t45)) {
+        return DOUBLE_PENDULUM_MASS_RANK;
+    }
+    const float t46 = 1.0f / t22;
+    const float t47 = l_1 * c_2;
+    const float t4 = cosine[0];
+    const float t48 = t47 * t4;
+    const float t49 = m_2 * t48;
+    const float t50 = 0.5f * J_2;
+    const float t51 = c_2 * c_2;
+    const float t52 = m_2 * t51;
+    const float t53 = 0.5f * t52;
+    const float t54 = t50 + t53;
+    const float t55 = 2.0f * t54;
+    const float t56 = t49 + t55;
     const float q_2_dot = qd[1];
-    const float turn_2 = q_1_dot + q_2_dot;
-    const float t76 = m_2 * turn_2;
-    const float t77 = q_2_dot * t5;
-    const float t78 = t7 * t77;
-    const float t79 = t76 * t78;
-    const float t80 = q_1_dot * t78;
-    const float t81 = m_2 * t80;
-    const float t82 = t79 + t81;
-    const float t83 = t75 - t82;
-    const float t84 = t63 + t83;
-    const float shoulder = u[0];
-    const float t85 = shoulder - t84;
-    const float t86 = t85 / t27;
     const float d_2 = p->d_2;
-    const float t87 = q_2_dot * d_2;
-    const float t88 = q_1_dot * t76;
-    const float t89 = t7 * t88;
-    const float t90 = t5 * t89;
-    const float t91 = t90 - t81;
-    const float t92 = t91 + t74;
-    const float t93 = t87 + t92;
+    const float t57 = q_2_dot * d_2;
+    const float q_1_dot = qd[0];
+    const float turn_2 = q_1_dot + q_2_dot;
+    const float t58 = m_2 * turn_2;
+    const float t59 = q_1_dot * t58;
+    const float t60 = t47 * t59;
+    const float t61 = t3 * t60;
+    const float t62 = q_2_dot * t3;
+    const float t63 = t47 * t62;
+    const float t64 = q_1_dot * t63;
+    const float t65 = m_2 * t64;
+    const float t66 = t61 - t65;
+    const float g = p->g;
+    const float t67 = m_2 * g;
+    const float t68 = c_2 * t67;
+    const float t5 = sine[1];
+    const float t69 = t4 * t5;
+    const float t6 = cosine[1];
+    const float t70 = t3 * t6;
+    const float t71 = t69 + t70;
+    const float t72 = t68 * t71;
+    const float t73 = t66 + t72;
+    const float t74 = t57 + t73;
     const float elbow = u[1];
-    const float t94 = elbow - t93;
-    const float t95 = t57 * t85;
-    const float t96 = t94 - t95;
-    const float t97 = t96 / t59;
-    const float t98 = t57 * t97;
-    const float t99 = t86 - t98;
-    if (!(t28 > t56)) {
-        return DOUBLE_PENDULUM_MASS_RANK;
-    }
-    if (!(t60 > t62)) {
-        return DOUBLE_PENDULUM_MASS_RANK;
-    }
-    float rest = t99 - t99;
-    rest += t97 - t97;
+    const float t75 = elbow - t74;
+    const float t76 = t56 * t75;
+    const float d_1 = p->d_1;
+    const float t77 = q_1_dot * d_1;
+    const float t78 = l_1 * t67;
+    const float t79 = c_1 * m_1;
+    const float t80 = g * t79;
+    const float t81 = t78 + t80;
+    const float t82 = t81 * t5;
+    const float t83 = t82 + t72;
+    const float t84 = t58 * t63;
+    const float t85 = t84 + t65;
+    const float t86 = t83 - t85;
+    const float t87 = t77 + t86;
+    const float shoulder = u[0];
+    const float t88 = t87 - shoulder;
+    const float t89 = t55 * t88;
+    const float t90 = t76 + t89;
+    const float t91 = t46 * t90;
+    const float t92 = -t91;
+    const float t93 = t49 + t56;
+    const float t94 = 0.5f * t20;
+    const float t95 = 0.5f * t10;
+    const float t96 = t94 + t95;
+    const float t97 = 2.0f * t96;
+    const float t98 = t93 + t97;
+    const float t99 = t98 * t75;
+    const float t100 = t56 * t88;
+    const float t101 = t99 + t100;
+    const float t102 = t46 * t101;
+    float rest = t92 - t92;
+    rest += t102 - t102;
     if (!(rest >= 0.0f)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    qdd[0] = t99;
-    qdd[1] = t97;
+    qdd[0] = t92;
+    qdd[1] = t102;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1071,10 +1145,10 @@ double_pendulum_status double_pendulum_energy_f(const float q[2], const float qd
     if (!(100.0f >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    float t3, t4;
-    double_pendulum_sincos_f(q_2, &t3, &t4);
-    float t5, t6;
-    double_pendulum_sincos_f(q_1, &t5, &t6);
+    const float angle[4] = {q_2, q_1, q_1, q_1};
+    float sine[4];
+    float cosine[4];
+    double_pendulum_sincos_group_f(2, angle, sine, cosine);
     const float c_1 = p->c_1;
     const float t7 = c_1 * c_1;
     const float m_1 = p->m_1;
@@ -1097,6 +1171,7 @@ double_pendulum_status double_pendulum_energy_f(const float q[2], const float qd
     const float t18 = t10 * t17;
     const float c_2 = p->c_2;
     const float t19 = l_1 * c_2;
+    const float t4 = cosine[0];
     const float t20 = t19 * t4;
     const float t21 = q_1_dot * t20;
     const float t22 = turn_2 * t21;
@@ -1110,9 +1185,12 @@ double_pendulum_status double_pendulum_energy_f(const float q[2], const float qd
     const float t29 = 0.5f * t28;
     const float t30 = t16 + t29;
     const float t31 = c_1 * m_1;
+    const float t6 = cosine[1];
     const float t32 = t31 * t6;
     const float t33 = l_1 * t6;
     const float t34 = t4 * t6;
+    const float t3 = sine[0];
+    const float t5 = sine[1];
     const float t35 = t3 * t5;
     const float t36 = t34 - t35;
     const float t37 = c_2 * t36;

@@ -34,12 +34,12 @@ minimal_control_matrix                0      0      0      0      0      0
 admissible_velocity                   0      0      0      0      0      0
 admissible_acceleration               0      0      0      0      0      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                     19     41      0      0      2      0
+inverse_dynamics                     20     37      0      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     0      0      0      0      0      0
 actuator_mass_matrix                  6     16      0      0      1      0
 actuator_bias                         9     23      0      0      2      0
-forward_dynamics                     27     55      3      0      2      0
+forward_dynamics                     29     58      1      0      2      0
 energy                                9     27      0      0      2      0
 singularity                           0      0      0      0      0      0
 (changes of sign are not counted)
@@ -59,7 +59,9 @@ import os
 import platform
 import shutil
 import subprocess
+import sys
 import tempfile
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -871,75 +873,72 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         g = np.float64(p.g)
         d_1 = np.float64(p.d_1)
         d_2 = np.float64(p.d_2)
-        t1 = np.abs(q_1)
-        t2 = np.abs(q_2)
+        t1 = np.abs(q_2)
+        t2 = np.abs(q_1)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(q_1)
-        t5, t6 = _sincos(q_2)
-        t7 = 0.5 * J_2
-        t8 = c_2 * c_2
-        t9 = m_2 * t8
-        t10 = 0.5 * t9
-        t11 = t7 + t10
-        t12 = 2.0 * t11
-        t13 = c_1 * c_1
-        t14 = m_1 * t13
-        t15 = J_1 + t14
-        t16 = 0.5 * t15
-        t17 = l_1 * l_1
-        t18 = m_2 * t17
-        t19 = 0.5 * t18
-        t20 = t16 + t19
-        t21 = 2.0 * t20
-        t22 = t12 + t21
-        t23 = q_1_ddot * t22
-        t24 = m_2 * g
-        t25 = l_1 * t24
-        t26 = c_1 * m_1
-        t27 = g * t26
-        t28 = t25 + t27
-        t29 = t28 * t3
-        t30 = q_1_dot * d_1
-        t31 = q_2_ddot * t11
-        t32 = 2.0 * t31
-        t33 = t30 + t32
-        t34 = t29 + t33
-        t35 = t23 + t34
-        t36 = 2.0 * q_1_ddot
-        t37 = q_2_ddot + t36
-        t38 = t6 * t37
-        t39 = q_2_dot * t5
-        t40 = 2.0 * q_1_dot
-        t41 = q_2_dot + t40
-        t42 = t39 * t41
-        t43 = t38 - t42
-        t44 = l_1 * t43
-        t45 = t6 * t3
-        t46 = t5 * t4
-        t47 = t45 + t46
-        t48 = g * t47
-        t49 = t44 + t48
-        t50 = m_2 * t49
-        t51 = c_2 * t50
-        t52 = t35 + t51
-        t53 = q_2_dot * d_2
-        t54 = 2.0 * q_2_ddot
-        t55 = t36 + t54
-        t56 = t11 * t55
-        t57 = t53 + t56
-        t58 = q_1_dot * q_1_dot
-        t59 = t58 * t5
-        t60 = q_1_ddot * t6
-        t61 = t59 + t60
-        t62 = l_1 * t61
-        t63 = t62 + t48
-        t64 = m_2 * t63
-        t65 = c_2 * t64
-        t66 = t57 + t65
+        t3, t4 = _sincos(q_2)
+        t5, t6 = _sincos(q_1)
+        t7 = q_1_dot * d_1
+        t8 = c_1 * c_1
+        t9 = m_1 * t8
+        t10 = J_1 + t9
+        t11 = 0.5 * t10
+        t12 = l_1 * l_1
+        t13 = m_2 * t12
+        t14 = 0.5 * t13
+        t15 = t11 + t14
+        t16 = q_1_ddot * t15
+        t17 = l_1 * c_2
+        t18 = t17 * t4
+        t19 = q_1_ddot + q_2_ddot
+        t20 = m_2 * t19
+        t21 = t18 * t20
+        turn_2 = q_1_dot + q_2_dot
+        t22 = m_2 * turn_2
+        t23 = q_2_dot * t3
+        t24 = t17 * t23
+        t25 = t22 * t24
+        t26 = t21 - t25
+        t27 = 0.5 * J_2
+        t28 = c_2 * c_2
+        t29 = m_2 * t28
+        t30 = 0.5 * t29
+        t31 = t27 + t30
+        t32 = t31 * t19
+        t33 = q_1_ddot * t18
+        t34 = q_1_dot * t24
+        t35 = t33 - t34
+        t36 = m_2 * t35
+        t37 = t32 + t36
+        t38 = t32 + t37
+        t39 = t26 + t38
+        t40 = t16 + t39
+        t41 = t16 + t40
+        t42 = m_2 * g
+        t43 = l_1 * t42
+        t44 = c_1 * m_1
+        t45 = g * t44
+        t46 = t43 + t45
+        t47 = t46 * t5
+        t48 = c_2 * t42
+        t49 = t4 * t5
+        t50 = t3 * t6
+        t51 = t49 + t50
+        t52 = t48 * t51
+        t53 = t47 + t52
+        t54 = t41 + t53
+        t55 = t7 + t54
+        t56 = q_2_dot * d_2
+        t57 = q_1_dot * t22
+        t58 = t17 * t57
+        t59 = t3 * t58
+        t60 = t59 + t38
+        t61 = t60 + t52
+        t62 = t56 + t61
         entries = (
-            t52,
-            t66,
+            t55,
+            t62,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -1116,111 +1115,113 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         g = np.float64(p.g)
         d_1 = np.float64(p.d_1)
         d_2 = np.float64(p.d_2)
-        t1 = np.abs(q_1)
-        t2 = np.abs(q_2)
+        t1 = np.abs(q_2)
+        t2 = np.abs(q_1)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(q_1)
-        t5, t6 = _sincos(q_2)
-        t7 = l_1 * c_2
-        t8 = t7 * t6
-        t9 = m_2 * t8
-        t10 = 0.5 * J_2
-        t11 = c_2 * c_2
-        t12 = m_2 * t11
-        t13 = 0.5 * t12
-        t14 = t10 + t13
-        t15 = 2.0 * t14
-        t16 = t9 + t15
-        t17 = t9 + t16
-        t18 = c_1 * c_1
-        t19 = m_1 * t18
-        t20 = J_1 + t19
-        t21 = 0.5 * t20
-        t22 = l_1 * l_1
-        t23 = m_2 * t22
-        t24 = 0.5 * t23
-        t25 = t21 + t24
-        t26 = 2.0 * t25
-        t27 = t17 + t26
-        t28 = np.abs(t27)
-        t29 = np.abs(m_2)
-        t30 = np.abs(l_1)
-        t31 = np.abs(c_2)
-        t32 = t30 * t31
-        t33 = t29 * t32
-        t34 = np.abs(J_2)
-        t35 = 0.5 * t34
-        t36 = t31 * t31
-        t37 = t29 * t36
-        t38 = 0.5 * t37
-        t39 = t35 + t38
-        t40 = 2.0 * t39
-        t41 = t33 + t40
-        t42 = t33 + t41
-        t43 = np.abs(J_1)
-        t44 = np.abs(m_1)
-        t45 = np.abs(c_1)
-        t46 = t45 * t45
-        t47 = t44 * t46
-        t48 = t43 + t47
-        t49 = 0.5 * t48
-        t50 = t30 * t30
-        t51 = t29 * t50
-        t52 = 0.5 * t51
-        t53 = t49 + t52
-        t54 = 2.0 * t53
-        t55 = t42 + t54
-        t56 = t55 * 1.7763568394002505e-15
-        t57 = t16 / t27
-        t58 = t16 * t57
-        t59 = t15 - t58
-        t60 = np.abs(t59)
-        t61 = t39 * 1.7763568394002505e-15
-        t62 = 2.0 * t61
-        t63 = q_1_dot * d_1
-        t64 = m_2 * g
-        t65 = l_1 * t64
-        t66 = c_1 * m_1
-        t67 = g * t66
-        t68 = t65 + t67
-        t69 = t68 * t3
-        t70 = c_2 * t64
-        t71 = t6 * t3
-        t72 = t5 * t4
-        t73 = t71 + t72
-        t74 = t70 * t73
-        t75 = t69 + t74
+        t3, t4 = _sincos(q_2)
+        t5, t6 = _sincos(q_1)
+        t7 = c_1 * c_1
+        t8 = m_1 * t7
+        t9 = l_1 * l_1
+        t10 = m_2 * t9
+        t11 = t3 * t3
+        t12 = t10 * t11
+        t13 = t8 + t12
+        t14 = J_1 + t13
+        t15 = c_2 * t14
+        t16 = c_2 * t15
+        t17 = J_2 * t9
+        t18 = t16 + t17
+        t19 = m_2 * t18
+        t20 = J_1 + t8
+        t21 = J_2 * t20
+        t22 = t19 + t21
+        t23 = np.abs(t22)
+        t24 = np.abs(m_2)
+        t25 = np.abs(c_2)
+        t26 = np.abs(J_1)
+        t27 = np.abs(m_1)
+        t28 = np.abs(c_1)
+        t29 = t28 * t28
+        t30 = t27 * t29
+        t31 = np.abs(l_1)
+        t32 = t31 * t31
+        t33 = t24 * t32
+        t34 = t30 + t33
+        t35 = t26 + t34
+        t36 = t25 * t35
+        t37 = t25 * t36
+        t38 = np.abs(J_2)
+        t39 = t38 * t32
+        t40 = t37 + t39
+        t41 = t24 * t40
+        t42 = t26 + t30
+        t43 = t38 * t42
+        t44 = t41 + t43
+        t45 = t44 * 1.7763568394002505e-15
+        status = _first(status, ~np.asarray(t23 > t45), 5)
+        t46 = 1.0 / t22
+        t47 = l_1 * c_2
+        t48 = t47 * t4
+        t49 = m_2 * t48
+        t50 = 0.5 * J_2
+        t51 = c_2 * c_2
+        t52 = m_2 * t51
+        t53 = 0.5 * t52
+        t54 = t50 + t53
+        t55 = 2.0 * t54
+        t56 = t49 + t55
+        t57 = q_2_dot * d_2
         turn_2 = q_1_dot + q_2_dot
-        t76 = m_2 * turn_2
-        t77 = q_2_dot * t5
-        t78 = t7 * t77
-        t79 = t76 * t78
-        t80 = q_1_dot * t78
-        t81 = m_2 * t80
-        t82 = t79 + t81
-        t83 = t75 - t82
-        t84 = t63 + t83
-        t85 = shoulder - t84
-        t86 = t85 / t27
-        t87 = q_2_dot * d_2
-        t88 = q_1_dot * t76
-        t89 = t7 * t88
-        t90 = t5 * t89
-        t91 = t90 - t81
-        t92 = t91 + t74
-        t93 = t87 + t92
-        t94 = elbow - t93
-        t95 = t57 * t85
-        t96 = t94 - t95
-        t97 = t96 / t59
-        t98 = t57 * t97
-        t99 = t86 - t98
-        status = _first(status, ~np.asarray(t28 > t56), 5)
-        status = _first(status, ~np.asarray(t60 > t62), 5)
+        t58 = m_2 * turn_2
+        t59 = q_1_dot * t58
+        t60 = t47 * t59
+        t61 = t3 * t60
+        t62 = q_2_dot * t3
+        t63 = t47 * t62
+        t64 = q_1_dot * t63
+        t65 = m_2 * t64
+        t66 = t61 - t65
+        t67 = m_2 * g
+        t68 = c_2 * t67
+        t69 = t4 * t5
+        t70 = t3 * t6
+        t71 = t69 + t70
+        t72 = t68 * t71
+        t73 = t66 + t72
+        t74 = t57 + t73
+        t75 = elbow - t74
+        t76 = t56 * t75
+        t77 = q_1_dot * d_1
+        t78 = l_1 * t67
+        t79 = c_1 * m_1
+        t80 = g * t79
+        t81 = t78 + t80
+        t82 = t81 * t5
+        t83 = t82 + t72
+        t84 = t58 * t63
+        t85 = t84 + t65
+        t86 = t83 - t85
+        t87 = t77 + t86
+        t88 = t87 - shoulder
+        t89 = t55 * t88
+        t90 = t76 + t89
+        t91 = t46 * t90
+        t92 = -t91
+        t93 = t49 + t56
+        t94 = 0.5 * t20
+        t95 = 0.5 * t10
+        t96 = t94 + t95
+        t97 = 2.0 * t96
+        t98 = t93 + t97
+        t99 = t98 * t75
+        t100 = t56 * t88
+        t101 = t99 + t100
+        t102 = t46 * t101
         entries = (
-            t99,
-            t97,
+            t92,
+            t102,
         )
         return _result("forward_dynamics", status, batch, (2,), entries)
 
@@ -1324,93 +1325,152 @@ class _CParameters(ctypes.Structure):
     ]
 
 
-# quantity: (lengths of the array arguments, shape of the result)
+# quantity: (lengths of the array arguments, shape of the result, whether there is a batch kernel)
 _SIGNATURES = {
-    mass_matrix: ((2,), (2, 2)),
-    coriolis_matrix: ((2, 2), (2, 2)),
-    coriolis_force: ((2, 2), (2,)),
-    potential_force: ((2,), (2,)),
-    applied_force: ((2, 2), (2,)),
-    nullspace_projector: ((2,), (2, 2)),
-    nullspace_projector_dot: ((2, 2), (2, 2)),
-    weighted_nullspace_projector: ((2,), (2, 2)),
-    control_matrix: ((2,), (2, 2)),
-    projected_control_matrix: ((2,), (2, 2)),
-    projected_control_pseudoinverse: ((2,), (2, 2)),
-    orthogonal_complement: ((2,), (2, 2)),
-    projected_mass_matrix: ((2,), (2, 2)),
-    projected_coriolis_matrix: ((2, 2), (2, 2)),
-    projected_potential_force: ((2,), (2,)),
-    projected_applied_force: ((2, 2), (2,)),
-    minimal_mass_matrix: ((2,), (2, 2)),
-    minimal_coriolis_matrix: ((2, 2), (2, 2)),
-    minimal_potential_force: ((2,), (2,)),
-    minimal_applied_force: ((2, 2), (2,)),
-    minimal_control_matrix: ((2,), (2, 2)),
-    admissible_velocity: ((2, 2), (2,)),
-    admissible_acceleration: ((2, 2, 2), (2,)),
-    projected_configuration: ((2,), (2,)),
-    inverse_dynamics: ((2, 2, 2), (2,)),
-    inverse_dynamics_residual: ((2, 2, 2), (2,)),
-    actuator_velocity: ((2, 2), (2,)),
-    actuator_mass_matrix: ((2,), (2, 2)),
-    actuator_bias: ((2, 2), (2,)),
-    forward_dynamics: ((2, 2, 2), (2,)),
-    energy: ((2, 2), (2,)),
-    singularity: ((2,), (2,)),
+    mass_matrix: ((2,), (2, 2), False),
+    coriolis_matrix: ((2, 2), (2, 2), False),
+    coriolis_force: ((2, 2), (2,), False),
+    potential_force: ((2,), (2,), False),
+    applied_force: ((2, 2), (2,), False),
+    nullspace_projector: ((2,), (2, 2), False),
+    nullspace_projector_dot: ((2, 2), (2, 2), False),
+    weighted_nullspace_projector: ((2,), (2, 2), False),
+    control_matrix: ((2,), (2, 2), False),
+    projected_control_matrix: ((2,), (2, 2), False),
+    projected_control_pseudoinverse: ((2,), (2, 2), False),
+    orthogonal_complement: ((2,), (2, 2), False),
+    projected_mass_matrix: ((2,), (2, 2), False),
+    projected_coriolis_matrix: ((2, 2), (2, 2), False),
+    projected_potential_force: ((2,), (2,), False),
+    projected_applied_force: ((2, 2), (2,), False),
+    minimal_mass_matrix: ((2,), (2, 2), False),
+    minimal_coriolis_matrix: ((2, 2), (2, 2), False),
+    minimal_potential_force: ((2,), (2,), False),
+    minimal_applied_force: ((2, 2), (2,), False),
+    minimal_control_matrix: ((2,), (2, 2), False),
+    admissible_velocity: ((2, 2), (2,), False),
+    admissible_acceleration: ((2, 2, 2), (2,), False),
+    projected_configuration: ((2,), (2,), False),
+    inverse_dynamics: ((2, 2, 2), (2,), True),
+    inverse_dynamics_residual: ((2, 2, 2), (2,), False),
+    actuator_velocity: ((2, 2), (2,), False),
+    actuator_mass_matrix: ((2,), (2, 2), False),
+    actuator_bias: ((2, 2), (2,), False),
+    forward_dynamics: ((2, 2, 2), (2,), True),
+    energy: ((2, 2), (2,), False),
+    singularity: ((2,), (2,), False),
 }
-_FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+_FILES = ('double_pendulum.h', 'double_pendulum.c', 'double_pendulum_batch.h', 'double_pendulum_batch.c')
+_FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+# The first of these that the compiler knows: this machine's vector instructions, at their full width.
+_MACHINE_FLAGS = (("-march=native", "-mprefer-vector-width=512"), ("-march=native",), ("-mcpu=native",), ())
+_CHUNK = 4096  # states whose components stay in the cache between two transpositions
 
 
 class Compiled:
-    """The functions of this module, run by the compiled C."""
+    """The functions of this module with the same arguments, results and errors.
 
-    def __init__(self, library: ctypes.CDLL) -> None:
-        for function, (lengths, shape) in _SIGNATURES.items():
-            call = getattr(library, "double_pendulum_" + function.__name__)
-            call.restype = ctypes.c_int
-            call.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
-            setattr(self, function.__name__, functools.partial(_run, call, function, lengths, shape))
+    Single states and the quantities with a batch kernel run in C, all else in NumPy: other quantities of many states,
+    and parameters that are arrays. Without a library NumPy does everything.
+    """
+
+    def __init__(self, library: ctypes.CDLL | None) -> None:
+        for function, signature in _SIGNATURES.items():
+            setattr(self, function.__name__, function if library is None else _compiled(library, function, *signature))
 
 
-def _run(call, function, lengths, shape, *args, **kwargs):
-    bound = inspect.signature(function).bind(*args, **kwargs)
-    bound.apply_defaults()
-    *values, p = bound.arguments.values()
-    names = list(bound.arguments)[:-1]
-    arrays = {name: _array(name, length, value) for name, length, value in zip(names, lengths, values)}
-    *arrays, batch = _states(**arrays)
-    rows = [np.ascontiguousarray(array).reshape(-1, array.shape[-1]) for array in arrays]
-    parameters = _CParameters(p.l_1, p.c_1, p.c_2, p.m_1, p.m_2, p.J_1, p.J_2, p.g, p.d_1, p.d_2)
-    result = np.empty((len(rows[0]), int(np.prod(shape))))
-    for index in range(len(result)):
-        status = call(*(row[index].ctypes.data for row in rows), ctypes.addressof(parameters), result[index].ctypes.data)
-        if status != 0 and not batch:
-            raise StateError(function.__name__, Status(status))
+_last = PARAMETERS, None
+
+
+def _c_parameters(p):
+    """The C struct of parameters, kept for the next call with the same ones; None where one of them is an array."""
+    global _last
+    known, struct = _last
+    if p is not known or struct is None:
+        members = (p.l_1, p.c_1, p.c_2, p.m_1, p.m_2, p.J_1, p.J_2, p.g, p.d_1, p.d_2, )
+        if any(map(np.ndim, members)):
+            return None
+        struct = _CParameters(*members)
+        if type(p) is Parameters:  # which is frozen; what else has these attributes may change
+            _last = p, struct
+    return struct
+
+
+def _compiled(library, function, lengths, shape, batched):
+    one = getattr(library, "double_pendulum_" + function.__name__)
+    one.restype = ctypes.c_int
+    one.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
+    many = getattr(library, "double_pendulum_" + function.__name__ + "_batch") if batched else None
+    if many is not None:
+        many.restype = ctypes.c_size_t
+        many.argtypes = [ctypes.c_size_t] * 2 + [ctypes.c_void_p] * (len(lengths) + 3)
+    signature = inspect.signature(function)
+    names = list(signature.parameters)[:-1]
+
+    @functools.wraps(function)
+    def run(*args, **kwargs):
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        *values, p = bound.arguments.values()
+        arrays = [_array(name, length, value) for name, length, value in zip(names, lengths, values)]
+        single = all(array.ndim == 1 for array in arrays)
+        parameters = _c_parameters(p)
+        if parameters is None or not (single or many):
+            return function(*args, **kwargs)
+        if not single:
+            if len({array.shape[:-1] for array in arrays}) > 1:
+                *arrays, _ = _states(**dict(zip(names, arrays)))
+            return _many(many, arrays, parameters, arrays[0].shape[:-1], shape)
+        arrays = [np.ascontiguousarray(array) for array in arrays]
+        result = np.empty(shape)
+        status = one(*(a.ctypes.data for a in arrays), ctypes.addressof(parameters), result.ctypes.data)
         if status != 0:
-            result[index] = np.nan
+            raise StateError(function.__name__, Status(status))
+        return result
+
+    return run
+
+
+def _many(kernel, arrays, parameters, batch, shape):
+    """The kernel takes arrays of components: states are transposed there and back, a chunk at a time."""
+    rows = [array.reshape(-1, array.shape[-1]) for array in arrays]
+    count = len(rows[0])
+    result = np.empty((count, int(np.prod(shape))))
+    stride = min(count, _CHUNK)
+    places = [np.empty((width, stride)) for width in (*(row.shape[1] for row in rows), result.shape[1])]
+    pointers = [place.ctypes.data for place in places]
+    pointers.insert(len(rows), ctypes.addressof(parameters))
+    for start in range(0, count, _CHUNK):
+        length = min(_CHUNK, count - start)
+        for place, row in zip(places, rows):
+            place[:, :length] = row[start : start + length].T
+        kernel(length, stride, *pointers, None)
+        result[start : start + length] = places[-1][:, :length].T
     return result.reshape(batch + shape)
 
 
 def compile():
-    """Builds ../c/double_pendulum.c with the system's C compiler (CC, else cc) into a cache folder.
+    """Builds the C beside this module (../c) with the system's C compiler (CC, else cc) into a cache folder.
 
-    Returns an object with the functions of this module. Raises FileNotFoundError without source or compiler and
-    RuntimeError with the compiler's message when it fails.
+    Returns an object with the functions of this module. Without a compiler it warns, and NumPy does the work. Raises
+    FileNotFoundError without the C files and RuntimeError with the compiler's message when it fails.
     """
     folder = Path(__file__).resolve().parent.parent / "c"
-    source, header = folder / "double_pendulum.c", folder / "double_pendulum.h"
+    contents = b"".join((folder / name).read_bytes() for name in _FILES)
     command = os.environ.get("CC", "cc").split()
     if not command or shutil.which(command[0]) is None:
-        raise FileNotFoundError(f"no C compiler {' '.join(command)!r}: install one or set CC")
-    command += _FLAGS
-    text = repr((command, platform.machine())).encode() + source.read_bytes() + header.read_bytes()
-    built = _cache_folder() / f"double_pendulum-{hashlib.sha256(text).hexdigest()[:24]}.so"
+        message = f"no C compiler {' '.join(command)!r}: NumPy does the work; install one or set CC"
+        warnings.warn(message, RuntimeWarning, stacklevel=2)
+        return Compiled(None)
+    command, machine = _for_this_machine([*command, *_FLAGS])
+    key = hashlib.sha256(repr((command, machine)).encode() + contents).hexdigest()[:24]
+    built = _cache_folder() / f"double_pendulum-{key}.so"
     if not built.exists():
         handle, name = tempfile.mkstemp(dir=built.parent, suffix=".tmp")
         os.close(handle)
         try:
-            made = subprocess.run([*command, "-o", name, str(source), "-lm"], capture_output=True, text=True, check=False)
+            sources = [str(folder / name) for name in _FILES if name.endswith(".c")]
+            made = _told([*command, "-o", name, *sources, "-lm"])
             if made.returncode != 0:
                 raise RuntimeError(f"{' '.join(command)} failed:\n{made.stderr}")
             os.replace(name, built)
@@ -1419,9 +1479,23 @@ def compile():
     return Compiled(ctypes.CDLL(str(built)))
 
 
+def _for_this_machine(command):
+    """The command with flags for this machine, and what the compiler then says of itself and of the machine."""
+    for flags in _MACHINE_FLAGS:
+        told = _told([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
+        if told.returncode == 0:
+            return [*command, *flags], (platform.machine(), told.stdout)
+    raise RuntimeError(f"{' '.join(command)} failed:\n{told.stderr}")
+
+
+def _told(command):
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
 def _cache_folder() -> Path:
     """The user's cache folder, or a fresh private one where that cannot be written."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    usual = {"darwin": Path.home() / "Library" / "Caches", "win32": Path(os.environ.get("LOCALAPPDATA", Path.home()))}
+    base = os.environ.get("XDG_CACHE_HOME") or usual.get(sys.platform, Path.home() / ".cache")
     folder = Path(base) / "symgen"
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -3,8 +3,12 @@
 
 #include <math.h>
 
-#ifdef __FAST_MATH__
-#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast)"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
+#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast, /fp:fast)"
+#elif defined(__FINITE_MATH_ONLY__)
+#if __FINITE_MATH_ONLY__
+#error "status tests need IEEE arithmetic: compile without -ffinite-math-only"
+#endif
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
@@ -12,8 +16,14 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+#ifdef __GNUC__
+#define FRONT_CAR_WHEELSET_INLINE static inline __attribute__((always_inline))
+#else
+#define FRONT_CAR_WHEELSET_INLINE static inline
+#endif
+
 /* Sine and cosine, the same bits on every IEEE platform. */
-static void front_car_wheelset_sincos(const double x, double *sine, double *cosine) {
+FRONT_CAR_WHEELSET_INLINE void front_car_wheelset_pair(const double x, double *sine, double *cosine) {
     const double turns = x * 0.6366197723675814;
     const double shifted = turns + 6755399441055744.0;
     const double k = shifted - 6755399441055744.0;
@@ -68,6 +78,47 @@ static void front_car_wheelset_sincos(const double x, double *sine, double *cosi
     *cosine = cosine_;
 }
 
+static void front_car_wheelset_sincos(const double angle, double *sine, double *cosine) {
+    front_car_wheelset_pair(angle, sine, cosine);
+}
+
+/* Compilers take so many angles at once where there are vector registers: loops of constant count over local arrays. */
+#if defined(__SSE2__) || defined(_M_X64) || defined(__aarch64__) || defined(_M_ARM64)
+#define FRONT_CAR_WHEELSET_LANES 2
+#else
+#define FRONT_CAR_WHEELSET_LANES 1
+#endif
+
+/* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
+#if FRONT_CAR_WHEELSET_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
+    (defined(__ARM_FP) || defined(__riscv_flen))
+#define FRONT_CAR_WHEELSET_GROUP FRONT_CAR_WHEELSET_INLINE
+#define FRONT_CAR_WHEELSET_UNROLL _Pragma("GCC unroll 16")
+#else
+#define FRONT_CAR_WHEELSET_GROUP static
+#define FRONT_CAR_WHEELSET_UNROLL
+#endif
+
+/* Sines and cosines of several angles; the arrays are as long as the next multiple of 2. */
+FRONT_CAR_WHEELSET_GROUP void front_car_wheelset_sincos_group(const int count, const double *angle, double *sine, double *cosine) {
+    FRONT_CAR_WHEELSET_UNROLL
+    for (int start = 0; start < count; start += FRONT_CAR_WHEELSET_LANES) {
+        double x[FRONT_CAR_WHEELSET_LANES];
+        double s[FRONT_CAR_WHEELSET_LANES];
+        double c[FRONT_CAR_WHEELSET_LANES];
+        for (int i = 0; i < FRONT_CAR_WHEELSET_LANES; ++i) {
+            x[i] = angle[start + i];
+        }
+        for (int i = 0; i < FRONT_CAR_WHEELSET_LANES; ++i) {
+            front_car_wheelset_pair(x[i], &s[i], &c[i]);
+        }
+        for (int i = 0; i < FRONT_CAR_WHEELSET_LANES; ++i) {
+            sine[start + i] = s[i];
+            cosine[start + i] = c[i];
+        }
+    }
+}
+
 front_car_wheelset_params front_car_wheelset_default_params(void) {
     front_car_wheelset_params p;
     p.L = 2.6;
@@ -84,7 +135,8 @@ front_car_wheelset_status front_car_wheelset_mass_matrix(const double q[4], cons
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     front_car_wheelset_sincos(theta, &t2, &t3);
     const double m_1 = p->m_1;
     const double m_2 = p->m_2;
@@ -133,7 +185,8 @@ front_car_wheelset_status front_car_wheelset_coriolis_matrix(const double q[4], 
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     front_car_wheelset_sincos(theta, &t2, &t3);
     const double L = p->L;
     const double m_2 = p->m_2;
@@ -174,7 +227,8 @@ front_car_wheelset_status front_car_wheelset_coriolis_force(const double q[4], c
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     front_car_wheelset_sincos(theta, &t2, &t3);
     const double L = p->L;
     const double m_2 = p->m_2;
@@ -231,12 +285,16 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian(const double q[
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double angle[2] = {theta, phi};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t4 = cosine[0];
     const double t7 = -t4;
+    const double t3 = sine[0];
+    const double t6 = cosine[1];
     const double t8 = t3 * t6;
+    const double t5 = sine[1];
     const double t9 = t4 * t5;
     const double t10 = t8 + t9;
     const double t11 = t4 * t6;
@@ -276,16 +334,20 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot(const doubl
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double angle[2] = {theta, phi};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
     const double theta_dot = qd[2];
+    const double t4 = cosine[0];
     const double t7 = theta_dot * t4;
+    const double t3 = sine[0];
     const double t8 = theta_dot * t3;
     const double phi_dot = qd[3];
     const double t9 = theta_dot + phi_dot;
+    const double t6 = cosine[1];
     const double t10 = t4 * t6;
+    const double t5 = sine[1];
     const double t11 = t3 * t5;
     const double t12 = t10 - t11;
     const double t13 = t9 * t12;
@@ -326,22 +388,29 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double t18 = 1.0 / t14;
     const double t19 = t8 * t9;
     const double t20 = t6 * t4;
@@ -365,9 +434,6 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
     const double t38 = t36 * t37;
     const double t39 = t4 * t36;
     const double t40 = -t39;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
     double rest = t25 - t25;
     rest += t27 - t27;
     rest += t34 - t34;
@@ -399,22 +465,29 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double angle[2] = {theta, phi};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t5 = sine[1];
     const double t7 = t5 * t5;
     const double L = p->L;
+    const double t6 = cosine[1];
     const double t8 = L * t6;
+    const double t3 = sine[0];
     const double t9 = t3 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t4 = cosine[0];
     const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double t18 = 1.0 / t14;
     const double t19 = t13 * t18;
     const double t20 = t9 * t12;
@@ -425,9 +498,6 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
     const double t25 = t5 * t9;
     const double t26 = t18 * t25;
     const double t27 = t7 * t18;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
     double rest = t19 - t19;
     rest += t21 - t21;
     rest += t23 - t23;
@@ -467,22 +537,29 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t18 / t19;
@@ -552,9 +629,6 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t82 = t3 * t81;
     const double t83 = t20 * t82;
     const double t84 = 2.0 * t83;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
     double rest = t34 - t34;
     rest += t52 - t52;
     rest += t63 - t63;
@@ -594,340 +668,267 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double t18 = m_1 + m_2;
-    const double t19 = t9 * t18;
-    const double t20 = L * m_2;
-    const double t21 = t6 * t20;
-    const double t22 = t3 * t21;
-    const double t23 = t19 + t22;
-    const double t24 = t9 * t23;
-    const double t25 = t5 * t20;
-    const double t26 = t3 * t25;
-    const double t27 = t12 * t18;
-    const double t28 = t26 - t27;
-    const double t29 = t12 * t28;
-    const double t30 = t24 - t29;
-    const double t31 = L * L;
-    const double t32 = m_2 * t31;
-    const double Theta_1 = p->Theta_1;
-    const double t33 = Theta_1 + t32;
-    const double Theta_2 = p->Theta_2;
-    const double t34 = Theta_2 + t33;
-    const double t35 = t3 * t34;
-    const double t36 = t3 * t35;
-    const double t37 = t30 + t36;
-    const double t38 = Theta_2 * t37;
-    const double t39 = Theta_2 * t3;
-    const double t40 = t3 * t39;
-    const double t41 = Theta_2 * t40;
-    const double t42 = t38 - t41;
-    const double t43 = fabs(t42);
-    const double t44 = fabs(Theta_2);
-    const double t45 = fabs(Theta_1);
-    const double t46 = fabs(m_2);
-    const double t47 = fabs(L);
-    const double t48 = t47 * t47;
-    const double t49 = t46 * t48;
-    const double t50 = t45 + t49;
-    const double t51 = t44 + t50;
-    const double t52 = t44 * t51;
-    const double t53 = t7 * t52;
-    const double t54 = fabs(m_1);
-    const double t55 = t54 + t46;
-    const double t56 = t55 * t44;
-    const double t57 = t10 * t56;
-    const double t58 = t53 + t57;
-    const double t59 = t13 * t56;
-    const double t60 = t58 + t59;
-    const double t61 = t60 * 3.552713678800501e-15;
-    const double t62 = t6 * t3;
-    const double t63 = Theta_2 + t32;
-    const double t64 = t18 + t63;
-    const double t65 = t64 - t34;
-    const double t66 = t4 * t65;
-    const double t67 = t4 * t66;
-    const double t68 = m_2 * t7;
-    const double t69 = t67 + t68;
-    const double t70 = t62 * t69;
-    const double t71 = Theta_2 * t70;
-    const double t72 = t5 * t4;
-    const double t73 = t72 * t42;
-    const double t74 = t71 + t73;
-    const double t75 = L * t74;
-    const double t76 = L * t75;
-    const double t77 = t62 * t42;
-    const double t78 = t76 - t77;
-    const double t79 = t4 * t78;
-    const double t80 = t5 * t3;
-    const double t81 = t3 * t80;
-    const double t82 = t42 * t81;
-    const double t83 = t79 + t82;
-    const double t84 = t14 * t42;
-    const double t85 = 1.0 / t84;
-    const double t86 = t83 * t85;
-    const double t87 = L * Theta_2;
-    const double t88 = t4 * t4;
-    const double t89 = Theta_2 + t18;
-    const double t90 = t34 - t89;
-    const double t91 = t88 * t90;
-    const double t92 = t87 * t91;
-    const double t93 = L * t92;
-    const double t94 = t42 + t93;
-    const double t95 = t62 * t94;
-    const double t96 = t85 * t95;
-    const double t97 = t80 * t69;
-    const double t98 = Theta_2 * t97;
-    const double t99 = t6 * t4;
-    const double t100 = t99 * t42;
-    const double t101 = t98 - t100;
-    const double t102 = L * t101;
-    const double t103 = L * t102;
-    const double t104 = t80 * t42;
-    const double t105 = t103 - t104;
-    const double t106 = t4 * t105;
-    const double t107 = t3 * t62;
-    const double t108 = t42 * t107;
-    const double t109 = t106 - t108;
-    const double t110 = t85 * t109;
-    const double t111 = t80 * t94;
-    const double t112 = t85 * t111;
-    const double t113 = t3 * t65;
-    const double t114 = t3 * t113;
-    const double t115 = t88 + (-2.0);
-    const double t116 = m_2 * t115;
-    const double t117 = t114 + t116;
-    const double t118 = t4 * t117;
-    const double t119 = t4 * t118;
-    const double t120 = m_2 + t119;
-    const double t121 = Theta_2 * t120;
-    const double t122 = t88 * t42;
-    const double t123 = t121 + t122;
-    const double t124 = L / t84;
-    const double t125 = t123 * t124;
-    const double t126 = t7 * t90;
-    const double t127 = Theta_2 * t126;
-    const double t128 = t41 - t38;
-    const double t129 = t127 + t128;
-    const double t130 = t4 * t129;
-    const double t131 = t124 * t130;
-    const double t132 = t34 - t64;
-    const double t133 = t3 * t132;
-    const double t134 = t3 * t133;
-    const double t135 = 2.0 - t88;
-    const double t136 = m_2 * t135;
-    const double t137 = t134 + t136;
-    const double t138 = t4 * t137;
-    const double t139 = t4 * t138;
-    const double t140 = t139 - m_2;
-    const double t141 = Theta_2 * t140;
-    const double t142 = t141 - t122;
-    const double t143 = t124 * t142;
-    const double t144 = t89 - t34;
-    const double t145 = t7 * t144;
-    const double t146 = Theta_2 * t145;
-    const double t147 = t42 + t146;
-    const double t148 = t4 * t147;
-    const double t149 = t124 * t148;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t43 > t61)) {
+    const double t18 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t19 = m_1 * t18;
+    const double m_2 = p->m_2;
+    const double t20 = m_2 + t19;
+    const double t21 = L * t20;
+    const double t22 = L * t21;
+    const double Theta_1 = p->Theta_1;
+    const double t23 = Theta_1 * t7;
+    const double t24 = t22 + t23;
+    const double Theta_2 = p->Theta_2;
+    const double t25 = Theta_2 * t24;
+    const double t26 = fabs(t25);
+    const double t27 = fabs(m_1);
+    const double t28 = fabs(m_2);
+    const double t29 = t27 + t28;
+    const double t30 = fabs(Theta_2);
+    const double t31 = t29 * t30;
+    const double t32 = t13 * t31;
+    const double t33 = t10 * t31;
+    const double t34 = fabs(Theta_1);
+    const double t35 = fabs(L);
+    const double t36 = t35 * t35;
+    const double t37 = t28 * t36;
+    const double t38 = t34 + t37;
+    const double t39 = t30 * t38;
+    const double t40 = t7 * t39;
+    const double t41 = t33 + t40;
+    const double t42 = t32 + t41;
+    const double t43 = t42 * 3.552713678800501e-15;
+    if (!(t26 > t43)) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    double rest = t86 - t86;
-    rest += t96 - t96;
-    rest += t110 - t110;
-    rest += t112 - t112;
-    rest += t125 - t125;
-    rest += t131 - t131;
-    rest += t143 - t143;
-    rest += t149 - t149;
+    const double t44 = 1.0 / t25;
+    const double t45 = L * Theta_2;
+    const double t46 = t5 * t4;
+    const double t47 = m_1 * t46;
+    const double t48 = t6 * t3;
+    const double t49 = t46 + t48;
+    const double t50 = m_2 * t49;
+    const double t51 = t47 + t50;
+    const double t52 = t45 * t51;
+    const double t53 = t8 * t52;
+    const double t54 = t6 * t4;
+    const double t55 = t5 * t3;
+    const double t56 = t54 - t55;
+    const double t57 = L * L;
+    const double t58 = m_2 * t57;
+    const double t59 = Theta_1 + t58;
+    const double t60 = t3 * t59;
+    const double t61 = Theta_2 * t60;
+    const double t62 = t56 * t61;
+    const double t63 = t53 - t62;
+    const double t64 = t44 * t63;
+    const double t65 = Theta_2 * t59;
+    const double t66 = t65 / t25;
+    const double t67 = t48 * t66;
+    const double t68 = m_1 * t54;
+    const double t69 = m_2 * t56;
+    const double t70 = t68 + t69;
+    const double t71 = t45 * t70;
+    const double t72 = t8 * t71;
+    const double t73 = t49 * t61;
+    const double t74 = t72 + t73;
+    const double t75 = t44 * t74;
+    const double t76 = -t75;
+    const double t77 = t55 * t66;
+    const double t78 = t45 / t25;
+    const double t79 = t20 * t78;
+    const double t80 = m_1 + m_2;
+    const double t81 = t4 * t80;
+    const double t82 = t78 * t81;
+    const double t83 = -t82;
+    const double t84 = -t79;
+    double rest = t64 - t64;
+    rest += t67 - t67;
+    rest += t76 - t76;
+    rest += t77 - t77;
+    rest += t79 - t79;
+    rest += t83 - t83;
+    rest += t84 - t84;
+    rest += t82 - t82;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    B_G_pinv[0] = t86;
-    B_G_pinv[1] = t96;
-    B_G_pinv[2] = t110;
-    B_G_pinv[3] = t112;
-    B_G_pinv[4] = t125;
-    B_G_pinv[5] = t131;
-    B_G_pinv[6] = t143;
-    B_G_pinv[7] = t149;
+    B_G_pinv[0] = t64;
+    B_G_pinv[1] = t67;
+    B_G_pinv[2] = t76;
+    B_G_pinv[3] = t77;
+    B_G_pinv[4] = t79;
+    B_G_pinv[5] = t83;
+    B_G_pinv[6] = t84;
+    B_G_pinv[7] = t82;
     return FRONT_CAR_WHEELSET_OK;
 }
 
 front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const double q[4], const front_car_wheelset_params *p, double N_BG[16]) {
-    const double theta = q[2];
-    const double t1 = fabs(theta);
     const double phi = q[3];
-    const double t2 = fabs(phi);
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
-    const double t7 = t5 * t5;
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
+    const double t7 = t3 * t3;
     const double L = p->L;
-    const double t8 = L * t6;
-    const double t9 = t3 * t8;
+    const double t4 = cosine[0];
+    const double t8 = L * t4;
+    const double t5 = sine[1];
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
-    const double t12 = t4 * t8;
+    const double t6 = cosine[1];
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double t18 = m_1 + m_2;
-    const double t19 = t9 * t18;
-    const double t20 = L * m_2;
-    const double t21 = t4 * t20;
-    const double t22 = t5 * t21;
-    const double t23 = t19 + t22;
-    const double t24 = t9 * t23;
-    const double t25 = t3 * t20;
-    const double t26 = t5 * t25;
-    const double t27 = t12 * t18;
-    const double t28 = t26 - t27;
-    const double t29 = t12 * t28;
-    const double t30 = t24 - t29;
-    const double t31 = L * L;
-    const double t32 = m_2 * t31;
-    const double Theta_1 = p->Theta_1;
-    const double t33 = Theta_1 + t32;
-    const double Theta_2 = p->Theta_2;
-    const double t34 = Theta_2 + t33;
-    const double t35 = t5 * t34;
-    const double t36 = t5 * t35;
-    const double t37 = t30 + t36;
-    const double t38 = Theta_2 * t37;
-    const double t39 = Theta_2 * t5;
-    const double t40 = t5 * t39;
-    const double t41 = Theta_2 * t40;
-    const double t42 = t38 - t41;
-    const double t43 = fabs(t42);
-    const double t44 = fabs(Theta_2);
-    const double t45 = fabs(Theta_1);
-    const double t46 = fabs(m_2);
-    const double t47 = fabs(L);
-    const double t48 = t47 * t47;
-    const double t49 = t46 * t48;
-    const double t50 = t45 + t49;
-    const double t51 = t44 + t50;
-    const double t52 = t44 * t51;
-    const double t53 = t7 * t52;
-    const double t54 = fabs(m_1);
-    const double t55 = t54 + t46;
-    const double t56 = t55 * t44;
-    const double t57 = t10 * t56;
-    const double t58 = t53 + t57;
-    const double t59 = t13 * t56;
-    const double t60 = t58 + t59;
-    const double t61 = t60 * 3.552713678800501e-15;
-    const double t62 = Theta_2 * t31;
-    const double t63 = t62 / t42;
-    const double t64 = t4 * t6;
-    const double t65 = t18 * t64;
-    const double t66 = t3 * t5;
-    const double t67 = m_2 * t66;
-    const double t68 = t65 - t67;
-    const double t69 = t64 * t68;
-    const double t70 = t63 * t69;
-    const double t71 = t4 * t5;
-    const double t72 = m_2 * t71;
-    const double t73 = t3 * t6;
-    const double t74 = t18 * t73;
-    const double t75 = t72 + t74;
-    const double t76 = t64 * t75;
-    const double t77 = t63 * t76;
-    const double t78 = L * Theta_2;
-    const double t79 = t78 / t42;
-    const double t80 = t5 * t64;
-    const double t81 = t33 * t80;
-    const double t82 = t79 * t81;
-    const double t83 = t73 * t68;
-    const double t84 = t63 * t83;
-    const double t85 = t73 * t75;
-    const double t86 = t63 * t85;
-    const double t87 = t5 * t73;
-    const double t88 = t33 * t87;
-    const double t89 = t79 * t88;
-    const double t90 = t5 * t68;
-    const double t91 = t79 * t90;
-    const double t92 = t5 * t75;
-    const double t93 = t79 * t92;
-    const double t94 = Theta_2 / t42;
-    const double t95 = t7 * t33;
-    const double t96 = t94 * t95;
-    const double t97 = t67 - t65;
-    const double t98 = t5 * t97;
-    const double t99 = t79 * t98;
-    const double t100 = -t93;
-    const double t101 = t6 * t6;
-    const double t102 = t18 * t62;
-    const double t103 = t102 / t42;
-    const double t104 = t101 * t103;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t43 > t61)) {
+    const double t18 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t19 = m_1 * t18;
+    const double m_2 = p->m_2;
+    const double t20 = m_2 + t19;
+    const double t21 = L * t20;
+    const double t22 = L * t21;
+    const double Theta_1 = p->Theta_1;
+    const double t23 = Theta_1 * t7;
+    const double t24 = t22 + t23;
+    const double Theta_2 = p->Theta_2;
+    const double t25 = Theta_2 * t24;
+    const double t26 = fabs(t25);
+    const double t27 = fabs(m_1);
+    const double t28 = fabs(m_2);
+    const double t29 = t27 + t28;
+    const double t30 = fabs(Theta_2);
+    const double t31 = t29 * t30;
+    const double t32 = t13 * t31;
+    const double t33 = t10 * t31;
+    const double t34 = fabs(Theta_1);
+    const double t35 = fabs(L);
+    const double t36 = t35 * t35;
+    const double t37 = t28 * t36;
+    const double t38 = t34 + t37;
+    const double t39 = t30 * t38;
+    const double t40 = t7 * t39;
+    const double t41 = t33 + t40;
+    const double t42 = t32 + t41;
+    const double t43 = t42 * 3.552713678800501e-15;
+    if (!(t26 > t43)) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    double rest = t70 - t70;
-    rest += t77 - t77;
-    rest += t82 - t82;
+    const double t44 = L * L;
+    const double t45 = Theta_2 * t44;
+    const double t46 = t45 / t25;
+    const double t47 = t6 * t4;
+    const double t48 = m_1 * t47;
+    const double t49 = t5 * t3;
+    const double t50 = t47 - t49;
+    const double t51 = m_2 * t50;
+    const double t52 = t48 + t51;
+    const double t53 = t47 * t52;
+    const double t54 = t46 * t53;
+    const double t55 = t5 * t4;
+    const double t56 = m_1 * t55;
+    const double t57 = t6 * t3;
+    const double t58 = t55 + t57;
+    const double t59 = m_2 * t58;
+    const double t60 = t56 + t59;
+    const double t61 = t47 * t60;
+    const double t62 = t46 * t61;
+    const double t63 = t3 * t47;
+    const double t64 = m_2 * t44;
+    const double t65 = Theta_1 + t64;
+    const double t66 = L * Theta_2;
+    const double t67 = t65 * t66;
+    const double t68 = t67 / t25;
+    const double t69 = t63 * t68;
+    const double t70 = t55 * t52;
+    const double t71 = t46 * t70;
+    const double t72 = t55 * t60;
+    const double t73 = t46 * t72;
+    const double t74 = t3 * t55;
+    const double t75 = t74 * t68;
+    const double t76 = t66 / t25;
+    const double t77 = t3 * t52;
+    const double t78 = t76 * t77;
+    const double t79 = t3 * t60;
+    const double t80 = t76 * t79;
+    const double t81 = Theta_2 * t65;
+    const double t82 = t81 / t25;
+    const double t83 = t7 * t82;
+    const double t84 = -t78;
+    const double t85 = -t80;
+    const double t86 = m_1 + m_2;
+    const double t87 = t86 * t18;
+    const double t88 = t46 * t87;
+    double rest = t54 - t54;
+    rest += t62 - t62;
+    rest += t69 - t69;
+    rest += t71 - t71;
+    rest += t73 - t73;
+    rest += t75 - t75;
+    rest += t78 - t78;
+    rest += t80 - t80;
+    rest += t83 - t83;
     rest += t84 - t84;
-    rest += t86 - t86;
-    rest += t89 - t89;
-    rest += t91 - t91;
-    rest += t93 - t93;
-    rest += t96 - t96;
-    rest += t99 - t99;
-    rest += t100 - t100;
-    rest += t104 - t104;
+    rest += t85 - t85;
+    rest += t88 - t88;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    N_BG[0] = t70;
-    N_BG[1] = t77;
-    N_BG[2] = t82;
+    N_BG[0] = t54;
+    N_BG[1] = t62;
+    N_BG[2] = t69;
     N_BG[3] = 0.0;
-    N_BG[4] = t84;
-    N_BG[5] = t86;
-    N_BG[6] = t89;
+    N_BG[4] = t71;
+    N_BG[5] = t73;
+    N_BG[6] = t75;
     N_BG[7] = 0.0;
-    N_BG[8] = t91;
-    N_BG[9] = t93;
-    N_BG[10] = t96;
+    N_BG[8] = t78;
+    N_BG[9] = t80;
+    N_BG[10] = t83;
     N_BG[11] = 0.0;
-    N_BG[12] = t99;
-    N_BG[13] = t100;
-    N_BG[14] = t104;
+    N_BG[12] = t84;
+    N_BG[13] = t85;
+    N_BG[14] = t88;
     N_BG[15] = 1.0;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -944,12 +945,15 @@ front_car_wheelset_status front_car_wheelset_control_matrix(const double q[4], c
     if (!(100000.0 >= t3)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t4, t5;
-    front_car_wheelset_sincos(t1, &t4, &t5);
-    double t6, t7;
-    front_car_wheelset_sincos(phi, &t6, &t7);
+    const double angle[2] = {t1, phi};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
+    const double t6 = sine[1];
     const double t8 = L * t6;
+    const double t5 = cosine[0];
+    const double t4 = sine[0];
     double rest = t5 - t5;
     rest += t4 - t4;
     rest += t8 - t8;
@@ -978,22 +982,29 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix(const doub
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double t18 = L * L;
     const double t19 = t6 * t18;
     const double t20 = t4 * t19;
@@ -1003,9 +1014,6 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix(const doub
     const double t24 = t23 / t14;
     const double t25 = L * t3;
     const double t26 = t25 / t14;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
     double rest = t21 - t21;
     rest += t24 - t24;
     rest += t26 - t26;
@@ -1034,41 +1042,45 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse(con
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double angle[2] = {theta, phi};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
     const double t7 = fabs(L);
-    const double t8 = t4 * t6;
-    const double t9 = t3 * t6;
-    const double t10 = t5 / L;
+    const double t5 = sine[1];
+    const double t6 = cosine[1];
+    const double t3 = sine[0];
+    const double t4 = cosine[0];
     if (!(t7 > 0.0)) {
-        const double t11 = t5 * t5;
-        const double t12 = L * t6;
-        const double t13 = t3 * t12;
+        const double t8 = t5 * t5;
+        const double t9 = L * t6;
+        const double t10 = t3 * t9;
+        const double t11 = t10 * t10;
+        const double t12 = t8 + t11;
+        const double t13 = t4 * t9;
         const double t14 = t13 * t13;
-        const double t15 = t11 + t14;
-        const double t16 = t4 * t12;
-        const double t17 = t16 * t16;
-        const double t18 = t15 + t17;
-        const double t19 = t12 * t12;
-        const double t20 = 1.0 + t19;
-        const double t21 = t20 * 1.262177448353619e-29;
-        if (!(t18 > t21)) {
+        const double t15 = t12 + t14;
+        const double t16 = t9 * t9;
+        const double t17 = 1.0 + t16;
+        const double t18 = t17 * 1.262177448353619e-29;
+        if (!(t15 > t18)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    double rest = t8 - t8;
-    rest += t9 - t9;
-    rest += t10 - t10;
+    const double t19 = t4 * t6;
+    const double t20 = t3 * t6;
+    const double t21 = t5 / L;
+    double rest = t19 - t19;
+    rest += t20 - t20;
+    rest += t21 - t21;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    M_tilde_pinv[0] = t8;
-    M_tilde_pinv[1] = t9;
-    M_tilde_pinv[2] = t10;
+    M_tilde_pinv[0] = t19;
+    M_tilde_pinv[1] = t20;
+    M_tilde_pinv[2] = t21;
     M_tilde_pinv[3] = 0.0;
     M_tilde_pinv[4] = 0.0;
     M_tilde_pinv[5] = 0.0;
@@ -1088,44 +1100,45 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double 
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double angle[2] = {theta, phi};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
+    const double t6 = cosine[1];
     const double t7 = L * t6;
+    const double t4 = cosine[0];
     const double t8 = t4 * t7;
-    const double t9 = fabs(t8);
-    const double t10 = fabs(L);
-    const double t11 = t10 * 3.552713678800501e-15;
-    const double t12 = 1.0 / t4;
-    const double t13 = t3 * t12;
-    const double t14 = t5 / t8;
-    if (!(t9 > t11)) {
-        const double t15 = t5 * t5;
-        const double t16 = t3 * t7;
-        const double t17 = t16 * t16;
-        const double t18 = t15 + t17;
-        const double t19 = t8 * t8;
-        const double t20 = t18 + t19;
-        const double t21 = t7 * t7;
-        const double t22 = 1.0 + t21;
-        const double t23 = t22 * 1.262177448353619e-29;
-        if (!(t20 > t23)) {
+    const double t9 = t8 * t8;
+    const double t10 = t7 * t7;
+    const double t11 = 1.0 + t10;
+    const double t12 = t11 * 1.262177448353619e-29;
+    const double t5 = sine[1];
+    const double t3 = sine[0];
+    if (!(t9 > t12)) {
+        const double t13 = t5 * t5;
+        const double t14 = t3 * t7;
+        const double t15 = t14 * t14;
+        const double t16 = t13 + t15;
+        const double t17 = t16 + t9;
+        if (!(t17 > t12)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    double rest = t13 - t13;
-    rest += t14 - t14;
+    const double t18 = 1.0 / t4;
+    const double t19 = t3 * t18;
+    const double t20 = t5 / t8;
+    double rest = t19 - t19;
+    rest += t20 - t20;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     F_B[0] = 1.0;
     F_B[1] = 0.0;
-    F_B[2] = t13;
+    F_B[2] = t19;
     F_B[3] = 0.0;
-    F_B[4] = t14;
+    F_B[4] = t20;
     F_B[5] = 0.0;
     F_B[6] = 0.0;
     F_B[7] = 1.0;
@@ -1143,22 +1156,29 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t18 / t19;
@@ -1183,73 +1203,69 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t35 = t5 * t6;
     const double t36 = t4 * t35;
     const double t37 = t4 * t36;
-    const double t38 = t3 * t26;
-    const double t39 = t3 * t38;
-    const double t40 = t4 * t4;
-    const double t41 = t40 * t28;
-    const double t42 = t39 + t41;
-    const double t43 = t37 * t42;
-    const double t44 = t20 * t43;
-    const double t45 = L / t19;
-    const double t46 = t6 * t4;
-    const double t47 = t3 * t46;
-    const double t48 = t47 * t42;
-    const double t49 = t45 * t48;
-    const double t50 = L * Theta_2;
-    const double t51 = t50 / t14;
-    const double t52 = t47 * t51;
-    const double t53 = t5 * t5;
+    const double t38 = t4 * t4;
+    const double t39 = t38 * t28;
+    const double t40 = t7 * t26;
+    const double t41 = t39 + t40;
+    const double t42 = t37 * t41;
+    const double t43 = t20 * t42;
+    const double t44 = L / t19;
+    const double t45 = t6 * t4;
+    const double t46 = t3 * t45;
+    const double t47 = t46 * t41;
+    const double t48 = t44 * t47;
+    const double t49 = L * Theta_2;
+    const double t50 = t49 / t14;
+    const double t51 = t46 * t50;
+    const double t52 = t5 * t5;
+    const double t53 = t4 * t52;
     const double t54 = t4 * t53;
-    const double t55 = t4 * t54;
-    const double t56 = t55 * t32;
-    const double t57 = t20 * t56;
-    const double t58 = t5 * t4;
-    const double t59 = t3 * t58;
-    const double t60 = t59 * t42;
-    const double t61 = t45 * t60;
-    const double t62 = t59 * t51;
-    const double t63 = t40 + (-2.0);
-    const double t64 = t26 * t63;
-    const double t65 = t7 * t28;
-    const double t66 = t64 + t65;
+    const double t55 = t54 * t32;
+    const double t56 = t20 * t55;
+    const double t57 = t5 * t4;
+    const double t58 = t3 * t57;
+    const double t59 = t58 * t41;
+    const double t60 = t44 * t59;
+    const double t61 = t58 * t50;
+    const double t62 = t38 + (-2.0);
+    const double t63 = t26 * t62;
+    const double t64 = t7 * t28;
+    const double t65 = t63 + t64;
+    const double t66 = t4 * t65;
     const double t67 = t4 * t66;
-    const double t68 = t4 * t67;
-    const double t69 = t26 + t68;
-    const double t70 = 1.0 / t19;
-    const double t71 = t69 * t70;
-    const double t72 = Theta_2 / t14;
-    const double t73 = t7 * t72;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
+    const double t68 = t26 + t67;
+    const double t69 = 1.0 / t19;
+    const double t70 = t68 * t69;
+    const double t71 = Theta_2 / t14;
+    const double t72 = t7 * t71;
     double rest = t34 - t34;
-    rest += t44 - t44;
-    rest += t49 - t49;
-    rest += t52 - t52;
-    rest += t57 - t57;
+    rest += t43 - t43;
+    rest += t48 - t48;
+    rest += t51 - t51;
+    rest += t56 - t56;
+    rest += t60 - t60;
     rest += t61 - t61;
-    rest += t62 - t62;
-    rest += t71 - t71;
-    rest += t73 - t73;
+    rest += t70 - t70;
+    rest += t72 - t72;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_tilde[0] = t34;
-    G_tilde[1] = t44;
-    G_tilde[2] = t49;
-    G_tilde[3] = t52;
-    G_tilde[4] = t44;
-    G_tilde[5] = t57;
-    G_tilde[6] = t61;
-    G_tilde[7] = t62;
-    G_tilde[8] = t49;
-    G_tilde[9] = t61;
-    G_tilde[10] = t71;
-    G_tilde[11] = t73;
-    G_tilde[12] = t52;
-    G_tilde[13] = t62;
-    G_tilde[14] = t73;
+    G_tilde[1] = t43;
+    G_tilde[2] = t48;
+    G_tilde[3] = t51;
+    G_tilde[4] = t43;
+    G_tilde[5] = t56;
+    G_tilde[6] = t60;
+    G_tilde[7] = t61;
+    G_tilde[8] = t48;
+    G_tilde[9] = t60;
+    G_tilde[10] = t70;
+    G_tilde[11] = t72;
+    G_tilde[12] = t51;
+    G_tilde[13] = t61;
+    G_tilde[14] = t72;
     G_tilde[15] = Theta_2;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1265,22 +1281,29 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double t18 = L * L;
     const double t19 = t14 * t14;
     const double t20 = t14 * t19;
@@ -1588,9 +1611,6 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t314 = t313 / t19;
     const double t315 = t312 * t314;
     const double t316 = 2.0 * t315;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
     double rest = t88 - t88;
     rest += t135 - t135;
     rest += t151 - t151;
@@ -1657,58 +1677,59 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix(const double q[
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t7 = L * t4;
+    const double t6 = cosine[1];
     const double t8 = t6 * t7;
-    const double t9 = fabs(t8);
-    const double t10 = fabs(L);
-    const double t11 = t10 * 3.552713678800501e-15;
-    const double t12 = L * L;
-    const double m_2 = p->m_2;
-    const double t13 = m_2 * t12;
-    const double Theta_1 = p->Theta_1;
-    const double t14 = Theta_1 + t13;
-    const double Theta_2 = p->Theta_2;
-    const double t15 = Theta_2 + t14;
-    const double m_1 = p->m_1;
-    const double t16 = m_1 + m_2;
-    const double t17 = t16 * t12;
-    const double t18 = t17 - t15;
-    const double t19 = t4 * t18;
-    const double t20 = t4 * t19;
-    const double t21 = t15 + t20;
-    const double t22 = t8 * t8;
-    const double t23 = 1.0 / t22;
-    const double t24 = t21 * t23;
-    const double t25 = t3 / t8;
-    const double t26 = Theta_2 * t25;
-    if (!(t9 > t11)) {
-        const double t27 = t3 * t3;
-        const double t28 = t5 * t7;
-        const double t29 = t28 * t28;
-        const double t30 = t27 + t29;
-        const double t31 = t30 + t22;
-        const double t32 = t7 * t7;
-        const double t33 = 1.0 + t32;
-        const double t34 = t33 * 1.262177448353619e-29;
-        if (!(t31 > t34)) {
+    const double t9 = t8 * t8;
+    const double t10 = t7 * t7;
+    const double t11 = 1.0 + t10;
+    const double t12 = t11 * 1.262177448353619e-29;
+    const double t3 = sine[0];
+    const double t5 = sine[1];
+    if (!(t9 > t12)) {
+        const double t13 = t3 * t3;
+        const double t14 = t5 * t7;
+        const double t15 = t14 * t14;
+        const double t16 = t13 + t15;
+        const double t17 = t16 + t9;
+        if (!(t17 > t12)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    double rest = t24 - t24;
-    rest += t26 - t26;
+    const double t18 = L * L;
+    const double m_2 = p->m_2;
+    const double t19 = m_2 * t18;
+    const double Theta_1 = p->Theta_1;
+    const double t20 = Theta_1 + t19;
+    const double Theta_2 = p->Theta_2;
+    const double t21 = Theta_2 + t20;
+    const double m_1 = p->m_1;
+    const double t22 = m_1 + m_2;
+    const double t23 = t22 * t18;
+    const double t24 = t23 - t21;
+    const double t25 = t4 * t24;
+    const double t26 = t4 * t25;
+    const double t27 = t21 + t26;
+    const double t28 = 1.0 / t9;
+    const double t29 = t27 * t28;
+    const double t30 = t3 / t8;
+    const double t31 = Theta_2 * t30;
+    double rest = t29 - t29;
+    rest += t31 - t31;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    G_bar[0] = t24;
-    G_bar[1] = t26;
-    G_bar[2] = t26;
+    G_bar[0] = t29;
+    G_bar[1] = t31;
+    G_bar[2] = t31;
     G_bar[3] = Theta_2;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1724,107 +1745,108 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    const double t18 = fabs(t12);
-    const double t19 = fabs(L);
-    const double t20 = t19 * 3.552713678800501e-15;
-    const double t21 = t5 * t4;
-    const double t22 = t3 * t21;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double t23 = m_1 + m_2;
-    const double t24 = L * L;
-    const double t25 = m_2 * t24;
-    const double Theta_1 = p->Theta_1;
-    const double t26 = Theta_1 + t25;
-    const double Theta_2 = p->Theta_2;
-    const double t27 = Theta_2 + t26;
-    const double t28 = t23 + t27;
-    const double t29 = t22 * t28;
-    const double t30 = t3 * t29;
-    const double t31 = t23 * t24;
-    const double t32 = t4 * t21;
-    const double t33 = t4 * t32;
-    const double t34 = t31 * t33;
-    const double t35 = t30 + t34;
-    const double t36 = L * t35;
-    const double t37 = L * t36;
-    const double t38 = t4 * t4;
-    const double t39 = t38 + (-2.0);
-    const double t40 = t21 * t39;
-    const double t41 = t27 * t40;
-    const double t42 = t37 + t41;
-    const double theta_dot = qd[2];
-    const double t43 = theta_dot * t42;
-    const double phi_dot = qd[3];
-    const double t44 = phi_dot * t6;
-    const double t45 = t3 * t44;
-    const double t46 = (-1.0) + t24;
-    const double t47 = t45 * t46;
-    const double t48 = t27 * t47;
-    const double t49 = t43 + t48;
-    const double t50 = t4 * t49;
-    const double t51 = theta_dot * t5;
-    const double t52 = t27 * t51;
-    const double t53 = t50 + t52;
-    const double t54 = t4 * t53;
-    const double t55 = t27 * t45;
-    const double t56 = t54 + t55;
-    const double t57 = t6 * t24;
-    const double t58 = t6 * t57;
-    const double t59 = t6 * t58;
-    const double t60 = t4 * t59;
-    const double t61 = t4 * t60;
-    const double t62 = t4 * t61;
-    const double t63 = t14 * t62;
-    const double t64 = 1.0 / t63;
-    const double t65 = t56 * t64;
-    const double t66 = t22 * t46;
-    const double t67 = theta_dot * t66;
-    const double t68 = t44 * t46;
-    const double t69 = t67 + t68;
-    const double t70 = t4 * t69;
-    const double t71 = t3 * t51;
-    const double t72 = t70 + t71;
-    const double t73 = t4 * t72;
-    const double t74 = t44 + t73;
-    const double t75 = t6 * t12;
-    const double t76 = t4 * t75;
-    const double t77 = t14 * t76;
-    const double t78 = Theta_2 / t77;
-    const double t79 = t74 * t78;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t18 > t20)) {
+    if (!(t13 > t17)) {
         if (!(t14 > t17)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    double rest = t65 - t65;
-    rest += t79 - t79;
+    const double t18 = t5 * t4;
+    const double t19 = t3 * t18;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double t20 = m_1 + m_2;
+    const double t21 = L * L;
+    const double t22 = m_2 * t21;
+    const double Theta_1 = p->Theta_1;
+    const double t23 = Theta_1 + t22;
+    const double Theta_2 = p->Theta_2;
+    const double t24 = Theta_2 + t23;
+    const double t25 = t20 + t24;
+    const double t26 = t19 * t25;
+    const double t27 = t3 * t26;
+    const double t28 = t20 * t21;
+    const double t29 = t4 * t18;
+    const double t30 = t4 * t29;
+    const double t31 = t28 * t30;
+    const double t32 = t27 + t31;
+    const double t33 = L * t32;
+    const double t34 = L * t33;
+    const double t35 = t4 * t4;
+    const double t36 = t35 + (-2.0);
+    const double t37 = t18 * t36;
+    const double t38 = t24 * t37;
+    const double t39 = t34 + t38;
+    const double theta_dot = qd[2];
+    const double t40 = theta_dot * t39;
+    const double phi_dot = qd[3];
+    const double t41 = phi_dot * t6;
+    const double t42 = t3 * t41;
+    const double t43 = (-1.0) + t21;
+    const double t44 = t42 * t43;
+    const double t45 = t24 * t44;
+    const double t46 = t40 + t45;
+    const double t47 = t4 * t46;
+    const double t48 = theta_dot * t5;
+    const double t49 = t24 * t48;
+    const double t50 = t47 + t49;
+    const double t51 = t4 * t50;
+    const double t52 = t24 * t42;
+    const double t53 = t51 + t52;
+    const double t54 = t6 * t21;
+    const double t55 = t6 * t54;
+    const double t56 = t6 * t55;
+    const double t57 = t4 * t56;
+    const double t58 = t4 * t57;
+    const double t59 = t4 * t58;
+    const double t60 = t14 * t59;
+    const double t61 = 1.0 / t60;
+    const double t62 = t53 * t61;
+    const double t63 = t19 * t43;
+    const double t64 = theta_dot * t63;
+    const double t65 = t41 * t43;
+    const double t66 = t64 + t65;
+    const double t67 = t4 * t66;
+    const double t68 = t3 * t48;
+    const double t69 = t67 + t68;
+    const double t70 = t4 * t69;
+    const double t71 = t41 + t70;
+    const double t72 = t6 * t12;
+    const double t73 = t4 * t72;
+    const double t74 = t14 * t73;
+    const double t75 = Theta_2 / t74;
+    const double t76 = t71 * t75;
+    double rest = t62 - t62;
+    rest += t76 - t76;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_bar[0] = t65;
+    C_bar[0] = t62;
     C_bar[1] = 0.0;
-    C_bar[2] = t79;
+    C_bar[2] = t76;
     C_bar[3] = 0.0;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1857,38 +1879,39 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix(const double
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
+    const double angle[2] = {theta, phi};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
+    const double t6 = cosine[1];
     const double t7 = L * t6;
+    const double t4 = cosine[0];
     const double t8 = t4 * t7;
-    const double t9 = fabs(t8);
-    const double t10 = fabs(L);
-    const double t11 = t10 * 3.552713678800501e-15;
-    const double t12 = t4 * t6;
-    const double t13 = 1.0 / t12;
-    if (!(t9 > t11)) {
-        const double t14 = t5 * t5;
-        const double t15 = t3 * t7;
-        const double t16 = t15 * t15;
-        const double t17 = t14 + t16;
-        const double t18 = t8 * t8;
-        const double t19 = t17 + t18;
-        const double t20 = t7 * t7;
-        const double t21 = 1.0 + t20;
-        const double t22 = t21 * 1.262177448353619e-29;
-        if (!(t19 > t22)) {
+    const double t9 = t8 * t8;
+    const double t10 = t7 * t7;
+    const double t11 = 1.0 + t10;
+    const double t12 = t11 * 1.262177448353619e-29;
+    const double t5 = sine[1];
+    const double t3 = sine[0];
+    if (!(t9 > t12)) {
+        const double t13 = t5 * t5;
+        const double t14 = t3 * t7;
+        const double t15 = t14 * t14;
+        const double t16 = t13 + t15;
+        const double t17 = t16 + t9;
+        if (!(t17 > t12)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    double rest = t13 - t13;
+    const double t18 = t4 * t6;
+    const double t19 = 1.0 / t18;
+    double rest = t19 - t19;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    M_bar[0] = t13;
+    M_bar[0] = t19;
     M_bar[1] = 0.0;
     M_bar[2] = 0.0;
     M_bar[3] = 1.0;
@@ -1906,22 +1929,29 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double t18 = L / t14;
     const double x_dot = qd[0];
     const double t19 = x_dot * t6;
@@ -1942,9 +1972,6 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
     const double t32 = 1.0 / t14;
     const double t33 = t3 * t25;
     const double t34 = t32 * t33;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
     const double phi_dot = qd[3];
     double rest = t28 - t28;
     rest += t31 - t31;
@@ -1971,22 +1998,29 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double y_ddot = qdd[1];
     const double t18 = y_ddot * t6;
     const double t19 = t14 * t18;
@@ -2078,9 +2112,6 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t99 = t14 * t98;
     const double t100 = t96 + t99;
     const double t101 = t89 * t100;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
     const double phi_ddot = qdd[3];
     double rest = t59 - t59;
     rest += t88 - t88;
@@ -2127,75 +2158,60 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics(const double q[4],
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
-    const double L = p->L;
-    const double t7 = fabs(L);
-    const double t8 = 1.0 / L;
-    const double y_ddot = qdd[1];
-    const double t9 = y_ddot * t6;
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double t7 = m_1 + m_2;
     const double x_ddot = qdd[0];
-    const double t10 = x_ddot * t5;
-    const double t11 = t9 - t10;
-    const double t12 = t3 * t11;
+    const double t6 = cosine[1];
+    const double t8 = x_ddot * t6;
+    const double y_ddot = qdd[1];
+    const double t5 = sine[1];
+    const double t9 = y_ddot * t5;
+    const double t10 = t8 + t9;
+    const double t11 = t7 * t10;
+    const double L = p->L;
+    const double t12 = L * m_2;
     const double theta_dot = qd[2];
     const double t13 = theta_dot * theta_dot;
-    const double t14 = t4 * t13;
-    const double t15 = L * t14;
-    const double t16 = t12 - t15;
-    const double m_2 = p->m_2;
-    const double t17 = m_2 * t16;
-    const double m_1 = p->m_1;
-    const double t18 = m_1 + m_2;
-    const double t19 = x_ddot * t6;
-    const double t20 = y_ddot * t5;
-    const double t21 = t19 + t20;
-    const double t22 = t4 * t21;
-    const double t23 = t18 * t22;
-    const double t24 = t17 + t23;
-    const double t25 = L * t24;
-    const double t26 = L * L;
-    const double t27 = m_2 * t26;
+    const double t14 = t12 * t13;
+    const double t15 = t11 - t14;
+    const double t4 = cosine[0];
+    const double t16 = t4 * t15;
+    const double t17 = 1.0 / L;
+    const double t18 = y_ddot * t6;
+    const double t19 = x_ddot * t5;
+    const double t20 = t18 - t19;
+    const double t21 = m_2 * t20;
+    const double t22 = L * t21;
+    const double t23 = L * L;
+    const double t24 = m_2 * t23;
     const double Theta_1 = p->Theta_1;
-    const double t28 = Theta_1 + t27;
+    const double t25 = Theta_1 + t24;
     const double Theta_2 = p->Theta_2;
-    const double t29 = Theta_2 + t28;
+    const double t26 = Theta_2 + t25;
     const double theta_ddot = qdd[2];
-    const double t30 = theta_ddot * t29;
+    const double t27 = theta_ddot * t26;
     const double phi_ddot = qdd[3];
-    const double t31 = phi_ddot * Theta_2;
-    const double t32 = t30 + t31;
-    const double t33 = t3 * t32;
-    const double t34 = t25 + t33;
-    const double t35 = t8 * t34;
-    const double t36 = theta_ddot + phi_ddot;
-    const double t37 = Theta_2 * t36;
-    if (!(t7 > 0.0)) {
-        const double t38 = t3 * t3;
-        const double t39 = L * t4;
-        const double t40 = t5 * t39;
-        const double t41 = t40 * t40;
-        const double t42 = t38 + t41;
-        const double t43 = t6 * t39;
-        const double t44 = t43 * t43;
-        const double t45 = t42 + t44;
-        const double t46 = t39 * t39;
-        const double t47 = 1.0 + t46;
-        const double t48 = t47 * 1.262177448353619e-29;
-        if (!(t45 > t48)) {
-            return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-        }
-        return FRONT_CAR_WHEELSET_ACTUATION_RANK;
-    }
-    double rest = t35 - t35;
-    rest += t37 - t37;
+    const double t28 = phi_ddot * Theta_2;
+    const double t29 = t27 + t28;
+    const double t30 = t22 + t29;
+    const double t31 = t17 * t30;
+    const double t3 = sine[0];
+    const double t32 = t3 * t31;
+    const double t33 = t16 + t32;
+    const double t34 = theta_ddot + phi_ddot;
+    const double t35 = Theta_2 * t34;
+    double rest = t33 - t33;
+    rest += t35 - t35;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    u[0] = t35;
-    u[1] = t37;
+    u[0] = t33;
+    u[1] = t35;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2223,16 +2239,19 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity(const double q[4]
     if (!(100000.0 >= t3)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t4, t5;
-    front_car_wheelset_sincos(t1, &t4, &t5);
-    double t6, t7;
-    front_car_wheelset_sincos(phi, &t6, &t7);
+    const double angle[2] = {t1, phi};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
     const double x_dot = qd[0];
+    const double t5 = cosine[0];
     const double t8 = x_dot * t5;
     const double y_dot = qd[1];
+    const double t4 = sine[0];
     const double t9 = y_dot * t4;
     const double t10 = t8 + t9;
     const double L = p->L;
+    const double t6 = sine[1];
     const double t11 = L * t6;
     const double theta_dot = qd[2];
     const double t12 = theta_dot * t11;
@@ -2254,58 +2273,61 @@ front_car_wheelset_status front_car_wheelset_actuator_mass_matrix(const double q
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     front_car_wheelset_sincos(phi, &t2, &t3);
     const double L = p->L;
     const double t4 = fabs(L);
-    const double t5 = L * L;
-    const double m_2 = p->m_2;
-    const double t6 = m_2 * t5;
-    const double Theta_1 = p->Theta_1;
-    const double t7 = Theta_1 + t6;
-    const double Theta_2 = p->Theta_2;
-    const double t8 = Theta_2 + t7;
-    const double t9 = t2 * t8;
-    const double t10 = t2 * t9;
-    const double t11 = t3 * t3;
-    const double m_1 = p->m_1;
-    const double t12 = m_1 + m_2;
-    const double t13 = t12 * t5;
-    const double t14 = t11 * t13;
-    const double t15 = t10 + t14;
-    const double t16 = 1.0 / t5;
-    const double t17 = t15 * t16;
-    const double t18 = t2 / L;
-    const double t19 = Theta_2 * t18;
     const double theta = q[2];
     if (!(t4 > 0.0)) {
-        const double t20 = t2 * t2;
-        double t21, t22;
-        front_car_wheelset_sincos(theta, &t21, &t22);
-        const double t23 = L * t3;
-        const double t24 = t21 * t23;
-        const double t25 = t24 * t24;
-        const double t26 = t20 + t25;
-        const double t27 = t22 * t23;
-        const double t28 = t27 * t27;
-        const double t29 = t26 + t28;
-        const double t30 = t23 * t23;
-        const double t31 = 1.0 + t30;
-        const double t32 = t31 * 1.262177448353619e-29;
-        if (!(t29 > t32)) {
+        const double t5 = t2 * t2;
+        double t6;
+        double t7;
+        front_car_wheelset_sincos(theta, &t6, &t7);
+        const double t8 = L * t3;
+        const double t9 = t6 * t8;
+        const double t10 = t9 * t9;
+        const double t11 = t5 + t10;
+        const double t12 = t7 * t8;
+        const double t13 = t12 * t12;
+        const double t14 = t11 + t13;
+        const double t15 = t8 * t8;
+        const double t16 = 1.0 + t15;
+        const double t17 = t16 * 1.262177448353619e-29;
+        const double t18 = fabs(theta);
+        if (!(100000.0 >= t18)) {
+            return FRONT_CAR_WHEELSET_ANGLE_RANGE;
+        }
+        if (!(t14 > t17)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    double rest = t17 - t17;
-    rest += t19 - t19;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double t19 = m_1 + m_2;
+    const double t20 = t3 * t3;
+    const double t21 = t19 * t20;
+    const double t22 = t2 / L;
+    const double t23 = L * L;
+    const double t24 = m_2 * t23;
+    const double Theta_1 = p->Theta_1;
+    const double t25 = Theta_1 + t24;
+    const double Theta_2 = p->Theta_2;
+    const double t26 = Theta_2 + t25;
+    const double t27 = t26 * t22;
+    const double t28 = t22 * t27;
+    const double t29 = t21 + t28;
+    const double t30 = Theta_2 * t22;
+    double rest = t29 - t29;
+    rest += t30 - t30;
     rest += Theta_2 - Theta_2;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    G_nu[0] = t17;
-    G_nu[1] = t19;
-    G_nu[2] = t19;
+    G_nu[0] = t29;
+    G_nu[1] = t30;
+    G_nu[2] = t30;
     G_nu[3] = Theta_2;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -2321,23 +2343,36 @@ front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], co
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
+    if (!(t14 > t17)) {
+        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+    }
     const double t18 = fabs(L);
+    if (!(t18 > 0.0)) {
+        if (!(t14 > t17)) {
+            return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
+        }
+        return FRONT_CAR_WHEELSET_ACTUATION_RANK;
+    }
     const double t19 = L * L;
     const double t20 = 1.0 / t19;
     const double phi_dot = qd[3];
@@ -2379,15 +2414,6 @@ front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], co
     const double t49 = t21 / L;
     const double t50 = t49 * t40;
     const double t51 = Theta_2 * t50;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-    }
-    if (!(t18 > 0.0)) {
-        if (!(t14 > t17)) {
-            return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
-        }
-        return FRONT_CAR_WHEELSET_ACTUATION_RANK;
-    }
     double rest = t48 - t48;
     rest += t51 - t51;
     if (!(rest >= 0.0)) {
@@ -2399,208 +2425,199 @@ front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], co
 }
 
 front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_params *p, double qdd[4]) {
-    const double theta = q[2];
-    const double t1 = fabs(theta);
     const double phi = q[3];
-    const double t2 = fabs(phi);
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(theta, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(phi, &t5, &t6);
-    const double t7 = t5 * t5;
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
+    const double t7 = t3 * t3;
     const double L = p->L;
-    const double t8 = L * t6;
-    const double t9 = t3 * t8;
+    const double t4 = cosine[0];
+    const double t8 = L * t4;
+    const double t5 = sine[1];
+    const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
-    const double t12 = t4 * t8;
+    const double t6 = cosine[1];
+    const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double t18 = m_1 + m_2;
-    const double t19 = t9 * t18;
-    const double t20 = L * m_2;
-    const double t21 = t4 * t20;
-    const double t22 = t5 * t21;
-    const double t23 = t19 + t22;
-    const double t24 = t9 * t23;
-    const double t25 = t3 * t20;
-    const double t26 = t5 * t25;
-    const double t27 = t12 * t18;
-    const double t28 = t26 - t27;
-    const double t29 = t12 * t28;
-    const double t30 = t24 - t29;
-    const double t31 = L * L;
-    const double t32 = m_2 * t31;
-    const double Theta_1 = p->Theta_1;
-    const double t33 = Theta_1 + t32;
-    const double Theta_2 = p->Theta_2;
-    const double t34 = Theta_2 + t33;
-    const double t35 = t5 * t34;
-    const double t36 = t5 * t35;
-    const double t37 = t30 + t36;
-    const double t38 = Theta_2 * t37;
-    const double t39 = Theta_2 * t5;
-    const double t40 = t5 * t39;
-    const double t41 = Theta_2 * t40;
-    const double t42 = t38 - t41;
-    const double t43 = fabs(t42);
-    const double t44 = fabs(Theta_2);
-    const double t45 = fabs(Theta_1);
-    const double t46 = fabs(m_2);
-    const double t47 = fabs(L);
-    const double t48 = t47 * t47;
-    const double t49 = t46 * t48;
-    const double t50 = t45 + t49;
-    const double t51 = t44 + t50;
-    const double t52 = t44 * t51;
-    const double t53 = t7 * t52;
-    const double t54 = fabs(m_1);
-    const double t55 = t54 + t46;
-    const double t56 = t55 * t44;
-    const double t57 = t10 * t56;
-    const double t58 = t53 + t57;
-    const double t59 = t13 * t56;
-    const double t60 = t58 + t59;
-    const double t61 = t60 * 3.552713678800501e-15;
-    const double t62 = 1.0 / t42;
-    const double t63 = Theta_2 * t12;
-    const double t64 = t12 * t63;
-    const double theta_dot = qd[2];
-    const double t65 = theta_dot * t20;
-    const double t66 = theta_dot * t4;
-    const double t67 = t65 * t66;
-    const double t68 = t4 * t6;
-    const double t69 = t3 * t5;
-    const double t70 = t68 - t69;
-    const double K_f = u[0];
-    const double t71 = K_f * t70;
-    const double t72 = t67 + t71;
-    const double t73 = theta_dot * t3;
-    const double y_dot = qd[1];
-    const double t74 = y_dot * t73;
-    const double x_dot = qd[0];
-    const double t75 = x_dot * t66;
-    const double t76 = t74 + t75;
-    const double t77 = 1.0 / t14;
-    const double t78 = t8 * t9;
-    const double t79 = t5 * t70;
-    const double t80 = t78 - t79;
-    const double t81 = t77 * t80;
-    const double t82 = t76 * t81;
-    const double t83 = t4 * t5;
-    const double t84 = t77 * t83;
-    const double phi_dot = qd[3];
-    const double t85 = phi_dot * t5;
-    const double t86 = L * t85;
-    const double t87 = theta_dot * t86;
-    const double t88 = theta_dot + phi_dot;
-    const double t89 = t88 * t70;
-    const double t90 = x_dot * t89;
-    const double t91 = t3 * t6;
-    const double t92 = t91 + t83;
-    const double t93 = t88 * t92;
-    const double t94 = y_dot * t93;
-    const double t95 = t90 + t94;
-    const double t96 = t87 + t95;
-    const double t97 = t84 * t96;
-    const double t98 = t82 + t97;
-    const double t99 = t18 * t98;
-    const double t100 = t8 * t77;
-    const double t101 = t100 * t96;
-    const double t102 = t6 * t8;
-    const double t103 = t77 * t102;
-    const double t104 = t76 * t103;
-    const double t105 = t101 - t104;
-    const double t106 = t25 * t105;
-    const double t107 = t99 + t106;
-    const double t108 = t72 + t107;
-    const double t109 = t64 * t108;
-    const double t110 = t9 * t63;
-    const double t111 = t65 * t73;
-    const double t112 = K_f * t92;
-    const double t113 = t111 + t112;
-    const double t114 = t8 * t12;
-    const double t115 = t5 * t92;
-    const double t116 = t114 + t115;
-    const double t117 = t77 * t116;
-    const double t118 = t76 * t117;
-    const double t119 = t77 * t69;
-    const double t120 = t119 * t96;
-    const double t121 = t118 - t120;
-    const double t122 = t18 * t121;
-    const double t123 = t21 * t105;
-    const double t124 = t122 + t123;
-    const double t125 = t113 - t124;
-    const double t126 = t110 * t125;
-    const double t127 = t109 + t126;
-    const double t128 = t5 * t63;
-    const double t129 = L * t5;
-    const double t130 = K_f * t129;
-    const double t131 = t20 * t76;
-    const double t132 = t34 * t105;
-    const double t133 = t131 + t132;
-    const double t134 = t130 - t133;
-    const double t135 = t128 * t134;
-    const double t136 = t127 + t135;
-    const double t137 = Theta_2 * t105;
-    const double T = u[1];
-    const double t138 = T - t137;
-    const double t139 = t128 * t138;
-    const double t140 = t136 - t139;
-    const double t141 = t62 * t140;
-    const double t142 = t141 - t98;
-    const double t143 = t110 * t108;
-    const double t144 = Theta_2 * t9;
-    const double t145 = t9 * t144;
-    const double t146 = t145 * t125;
-    const double t147 = t143 + t146;
-    const double t148 = t5 * t144;
-    const double t149 = t148 * t134;
-    const double t150 = t147 + t149;
-    const double t151 = t148 * t138;
-    const double t152 = t150 - t151;
-    const double t153 = t62 * t152;
-    const double t154 = t121 + t153;
-    const double t155 = t128 * t108;
-    const double t156 = t148 * t125;
-    const double t157 = t155 + t156;
-    const double t158 = t40 * t134;
-    const double t159 = t157 + t158;
-    const double t160 = t40 * t138;
-    const double t161 = t159 - t160;
-    const double t162 = t62 * t161;
-    const double t163 = t105 + t162;
-    const double t164 = t37 * t138;
-    const double t165 = t164 - t159;
-    const double t166 = t62 * t165;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t43 > t61)) {
+    const double t18 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t19 = m_1 * t18;
+    const double m_2 = p->m_2;
+    const double t20 = m_2 + t19;
+    const double t21 = L * t20;
+    const double t22 = L * t21;
+    const double Theta_1 = p->Theta_1;
+    const double t23 = Theta_1 * t7;
+    const double t24 = t22 + t23;
+    const double Theta_2 = p->Theta_2;
+    const double t25 = Theta_2 * t24;
+    const double t26 = fabs(t25);
+    const double t27 = fabs(m_1);
+    const double t28 = fabs(m_2);
+    const double t29 = t27 + t28;
+    const double t30 = fabs(Theta_2);
+    const double t31 = t29 * t30;
+    const double t32 = t13 * t31;
+    const double t33 = t10 * t31;
+    const double t34 = fabs(Theta_1);
+    const double t35 = fabs(L);
+    const double t36 = t35 * t35;
+    const double t37 = t28 * t36;
+    const double t38 = t34 + t37;
+    const double t39 = t30 * t38;
+    const double t40 = t7 * t39;
+    const double t41 = t33 + t40;
+    const double t42 = t32 + t41;
+    const double t43 = t42 * 3.552713678800501e-15;
+    if (!(t26 > t43)) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    double rest = t142 - t142;
-    rest += t154 - t154;
-    rest += t163 - t163;
-    rest += t166 - t166;
+    const double t44 = 1.0 / t25;
+    const double theta_dot = qd[2];
+    const double t45 = theta_dot * t5;
+    const double y_dot = qd[1];
+    const double t46 = y_dot * t45;
+    const double t47 = theta_dot * t6;
+    const double x_dot = qd[0];
+    const double t48 = x_dot * t47;
+    const double t49 = t46 + t48;
+    const double t50 = t8 * t49;
+    const double t51 = L * Theta_2;
+    const double t52 = t5 * t4;
+    const double t53 = m_1 * t52;
+    const double t54 = t6 * t3;
+    const double t55 = t52 + t54;
+    const double t56 = m_2 * t55;
+    const double t57 = t53 + t56;
+    const double t58 = t51 * t57;
+    const double t59 = t50 * t58;
+    const double t60 = L * L;
+    const double t61 = m_2 * t60;
+    const double t62 = Theta_1 + t61;
+    const double t63 = t3 * t62;
+    const double t64 = Theta_2 * t63;
+    const double phi_dot = qd[3];
+    const double t65 = phi_dot * t3;
+    const double t66 = L * t65;
+    const double t67 = theta_dot * t66;
+    const double t68 = theta_dot + phi_dot;
+    const double t69 = t6 * t4;
+    const double t70 = t5 * t3;
+    const double t71 = t69 - t70;
+    const double t72 = t68 * t71;
+    const double t73 = x_dot * t72;
+    const double t74 = t68 * t55;
+    const double t75 = y_dot * t74;
+    const double t76 = t73 + t75;
+    const double t77 = t67 + t76;
+    const double t78 = t6 * t77;
+    const double t79 = t49 * t71;
+    const double t80 = t78 - t79;
+    const double t81 = t64 * t80;
+    const double t82 = t59 + t81;
+    const double t83 = t44 * t82;
+    const double T = u[1];
+    const double t84 = T * t3;
+    const double t85 = Theta_2 * t84;
+    const double t86 = L * t3;
+    const double K_f = u[0];
+    const double t87 = K_f * t86;
+    const double t88 = t3 * t87;
+    const double t89 = L * m_2;
+    const double t90 = theta_dot * t89;
+    const double t91 = t90 * t47;
+    const double t92 = K_f * t71;
+    const double t93 = t91 + t92;
+    const double t94 = t12 * t93;
+    const double t95 = t90 * t45;
+    const double t96 = K_f * t55;
+    const double t97 = t95 + t96;
+    const double t98 = t9 * t97;
+    const double t99 = t94 + t98;
+    const double t100 = t88 + t99;
+    const double t101 = Theta_2 * t100;
+    const double t102 = t85 - t101;
+    const double t103 = t12 * t102;
+    const double t104 = t44 * t103;
+    const double t105 = t83 + t104;
+    const double t106 = -t105;
+    const double t107 = t5 * t77;
+    const double t108 = t49 * t55;
+    const double t109 = t107 - t108;
+    const double t110 = t64 * t109;
+    const double t111 = m_1 * t69;
+    const double t112 = m_2 * t71;
+    const double t113 = t111 + t112;
+    const double t114 = t51 * t113;
+    const double t115 = t50 * t114;
+    const double t116 = t110 - t115;
+    const double t117 = t44 * t116;
+    const double t118 = t9 * t102;
+    const double t119 = t44 * t118;
+    const double t120 = t117 + t119;
+    const double t121 = -t120;
+    const double t122 = t79 - t78;
+    const double t123 = t114 * t122;
+    const double t124 = t58 * t109;
+    const double t125 = t123 - t124;
+    const double t126 = t44 * t125;
+    const double t127 = t3 * t102;
+    const double t128 = t44 * t127;
+    const double t129 = t126 + t128;
+    const double t130 = -t129;
+    const double t131 = m_1 + m_2;
+    const double t132 = T * t12;
+    const double t133 = t131 * t132;
+    const double t134 = t5 * t89;
+    const double t135 = t134 * t84;
+    const double t136 = t133 - t135;
+    const double t137 = t12 * t136;
+    const double t138 = T * t9;
+    const double t139 = t131 * t138;
+    const double t140 = t6 * t89;
+    const double t141 = t140 * t84;
+    const double t142 = t139 + t141;
+    const double t143 = t9 * t142;
+    const double t144 = t137 + t143;
+    const double t145 = Theta_2 + t62;
+    const double t146 = t145 * t84;
+    const double t147 = t146 - t101;
+    const double t148 = t3 * t147;
+    const double t149 = t144 + t148;
+    const double t150 = t44 * t149;
+    const double t151 = t124 - t123;
+    const double t152 = t44 * t151;
+    const double t153 = t150 - t152;
+    double rest = t106 - t106;
+    rest += t121 - t121;
+    rest += t130 - t130;
+    rest += t153 - t153;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    qdd[0] = t142;
-    qdd[1] = t154;
-    qdd[2] = t163;
-    qdd[3] = t166;
+    qdd[0] = t106;
+    qdd[1] = t121;
+    qdd[2] = t130;
+    qdd[3] = t153;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2615,264 +2632,184 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t8 = L * t4;
+    const double t5 = sine[1];
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
+    const double t6 = cosine[1];
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double t18 = m_1 + m_2;
-    const double t19 = t9 * t18;
-    const double t20 = L * m_2;
-    const double t21 = t6 * t20;
-    const double t22 = t3 * t21;
-    const double t23 = t19 + t22;
-    const double t24 = t9 * t23;
-    const double t25 = t5 * t20;
-    const double t26 = t3 * t25;
-    const double t27 = t12 * t18;
-    const double t28 = t26 - t27;
-    const double t29 = t12 * t28;
-    const double t30 = t24 - t29;
-    const double t31 = L * L;
-    const double t32 = m_2 * t31;
-    const double Theta_1 = p->Theta_1;
-    const double t33 = Theta_1 + t32;
-    const double Theta_2 = p->Theta_2;
-    const double t34 = Theta_2 + t33;
-    const double t35 = t3 * t34;
-    const double t36 = t3 * t35;
-    const double t37 = t30 + t36;
-    const double t38 = Theta_2 * t37;
-    const double t39 = Theta_2 * t3;
-    const double t40 = t3 * t39;
-    const double t41 = Theta_2 * t40;
-    const double t42 = t38 - t41;
-    const double t43 = fabs(t42);
-    const double t44 = fabs(Theta_2);
-    const double t45 = fabs(Theta_1);
-    const double t46 = fabs(m_2);
-    const double t47 = fabs(L);
-    const double t48 = t47 * t47;
-    const double t49 = t46 * t48;
-    const double t50 = t45 + t49;
-    const double t51 = t44 + t50;
-    const double t52 = t44 * t51;
-    const double t53 = t7 * t52;
-    const double t54 = fabs(m_1);
-    const double t55 = t54 + t46;
-    const double t56 = t55 * t44;
-    const double t57 = t10 * t56;
-    const double t58 = t53 + t57;
-    const double t59 = t13 * t56;
-    const double t60 = t58 + t59;
-    const double t61 = t60 * 3.552713678800501e-15;
-    const double t62 = 1.0 / t14;
-    const double t63 = t8 * t9;
-    const double t64 = t6 * t4;
-    const double t65 = t5 * t3;
-    const double t66 = t64 - t65;
-    const double t67 = t3 * t66;
-    const double t68 = t63 - t67;
-    const double t69 = t62 * t68;
-    const double t70 = Theta_2 * t12;
-    const double t71 = t12 * t70;
-    const double t72 = t18 * t71;
-    const double t73 = t3 * t70;
-    const double t74 = t25 * t73;
-    const double t75 = t72 - t74;
-    const double t76 = 1.0 / t42;
-    const double t77 = t75 * t76;
-    const double t78 = 1.0 - t77;
-    const double t79 = t69 * t78;
-    const double t80 = t8 * t12;
-    const double t81 = t5 * t4;
-    const double t82 = t6 * t3;
-    const double t83 = t81 + t82;
-    const double t84 = t3 * t83;
-    const double t85 = t80 + t84;
-    const double t86 = t62 * t85;
-    const double t87 = t9 * t70;
-    const double t88 = t18 * t87;
-    const double t89 = t21 * t73;
-    const double t90 = t88 + t89;
-    const double t91 = t76 * t90;
-    const double t92 = t86 * t91;
-    const double t93 = t79 + t92;
-    const double t94 = t4 * t8;
-    const double t95 = t62 * t94;
-    const double t96 = t34 * t73;
-    const double t97 = Theta_2 * t73;
-    const double t98 = t96 - t97;
-    const double t99 = t76 * t98;
-    const double t100 = t95 * t99;
-    const double t101 = t93 - t100;
-    const double theta_dot = qd[2];
-    const double t102 = theta_dot * t20;
-    const double t103 = theta_dot * t6;
-    const double t104 = t102 * t103;
-    const double t105 = theta_dot * t5;
-    const double y_dot = qd[1];
-    const double t106 = y_dot * t105;
-    const double x_dot = qd[0];
-    const double t107 = x_dot * t103;
-    const double t108 = t106 + t107;
-    const double t109 = t108 * t69;
-    const double t110 = t62 * t82;
-    const double phi_dot = qd[3];
-    const double t111 = phi_dot * t3;
-    const double t112 = L * t111;
-    const double t113 = theta_dot * t112;
-    const double t114 = theta_dot + phi_dot;
-    const double t115 = t114 * t66;
-    const double t116 = x_dot * t115;
-    const double t117 = t114 * t83;
-    const double t118 = y_dot * t117;
-    const double t119 = t116 + t118;
-    const double t120 = t113 + t119;
-    const double t121 = t110 * t120;
-    const double t122 = t109 + t121;
-    const double t123 = t18 * t122;
-    const double t124 = t8 * t62;
-    const double t125 = t124 * t120;
-    const double t126 = t108 * t95;
-    const double t127 = t125 - t126;
-    const double t128 = t25 * t127;
-    const double t129 = t123 + t128;
-    const double t130 = t104 + t129;
-    const double t131 = t101 * t130;
-    const double t132 = Theta_2 * t9;
-    const double t133 = t3 * t132;
-    const double t134 = t34 * t133;
-    const double t135 = Theta_2 * t133;
-    const double t136 = t134 - t135;
-    const double t137 = t76 * t136;
-    const double t138 = t95 * t137;
-    const double t139 = t25 * t133;
-    const double t140 = t88 - t139;
-    const double t141 = t76 * t140;
-    const double t142 = t69 * t141;
-    const double t143 = t9 * t132;
-    const double t144 = t18 * t143;
-    const double t145 = t74 + t144;
-    const double t146 = t145 * t76;
-    const double t147 = 1.0 - t146;
-    const double t148 = t86 * t147;
-    const double t149 = t142 + t148;
-    const double t150 = t138 + t149;
-    const double t151 = t102 * t105;
-    const double t152 = t62 * t65;
-    const double t153 = t152 * t120;
-    const double t154 = t108 * t86;
-    const double t155 = t153 - t154;
-    const double t156 = t18 * t155;
-    const double t157 = t126 - t125;
-    const double t158 = t21 * t157;
-    const double t159 = t156 + t158;
-    const double t160 = t151 + t159;
-    const double t161 = t150 * t160;
-    const double t162 = t131 - t161;
-    const double t163 = t34 * t40;
-    const double t164 = t163 - t41;
-    const double t165 = t164 * t76;
-    const double t166 = 1.0 - t165;
-    const double t167 = t95 * t166;
-    const double t168 = t25 * t40;
-    const double t169 = t18 * t73;
-    const double t170 = t168 - t169;
-    const double t171 = t76 * t170;
-    const double t172 = t69 * t171;
-    const double t173 = t18 * t133;
-    const double t174 = t21 * t40;
-    const double t175 = t173 + t174;
-    const double t176 = t76 * t175;
-    const double t177 = t86 * t176;
-    const double t178 = t172 + t177;
-    const double t179 = t167 + t178;
-    const double t180 = t34 * t157;
-    const double t181 = t20 * t108;
-    const double t182 = t180 - t181;
-    const double t183 = t179 * t182;
-    const double t184 = t162 + t183;
-    const double t185 = t169 - t168;
-    const double t186 = t76 * t185;
-    const double t187 = t69 * t186;
-    const double t188 = t187 - t177;
-    const double t189 = t188 - t167;
-    const double t190 = Theta_2 * t157;
-    const double t191 = t189 * t190;
-    const double t192 = t184 + t191;
-    const double t193 = t66 * t101;
-    const double t194 = t83 * t150;
-    const double t195 = t193 - t194;
-    const double t196 = L * t3;
-    const double t197 = t196 * t179;
-    const double t198 = t195 + t197;
-    const double K_f = u[0];
-    const double t199 = K_f * t198;
-    const double T = u[1];
-    const double t200 = T * t189;
-    const double t201 = t199 + t200;
-    const double t202 = t192 + t201;
-    const double t203 = t110 * t78;
-    const double t204 = t152 * t91;
-    const double t205 = t203 - t204;
-    const double t206 = t124 * t99;
-    const double t207 = t205 + t206;
-    const double t208 = t207 * t130;
-    const double t209 = t152 * t147;
-    const double t210 = t110 * t141;
-    const double t211 = t209 - t210;
-    const double t212 = t124 * t137;
-    const double t213 = t211 + t212;
-    const double t214 = t213 * t160;
-    const double t215 = t208 + t214;
-    const double t216 = t110 * t171;
-    const double t217 = t152 * t176;
-    const double t218 = t216 - t217;
-    const double t219 = t124 * t166;
-    const double t220 = t218 - t219;
-    const double t221 = t220 * t182;
-    const double t222 = t215 + t221;
-    const double t223 = t110 * t186;
-    const double t224 = t217 + t223;
-    const double t225 = t219 + t224;
-    const double t226 = t225 * t190;
-    const double t227 = t222 + t226;
-    const double t228 = T * t225;
-    const double t229 = t196 * t220;
-    const double t230 = t66 * t207;
-    const double t231 = t83 * t213;
-    const double t232 = t230 + t231;
-    const double t233 = t229 + t232;
-    const double t234 = K_f * t233;
-    const double t235 = t228 + t234;
-    const double t236 = t227 + t235;
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t43 > t61)) {
+    const double t18 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t19 = m_1 * t18;
+    const double m_2 = p->m_2;
+    const double t20 = m_2 + t19;
+    const double t21 = L * t20;
+    const double t22 = L * t21;
+    const double Theta_1 = p->Theta_1;
+    const double t23 = Theta_1 * t7;
+    const double t24 = t22 + t23;
+    const double Theta_2 = p->Theta_2;
+    const double t25 = Theta_2 * t24;
+    const double t26 = fabs(t25);
+    const double t27 = fabs(m_1);
+    const double t28 = fabs(m_2);
+    const double t29 = t27 + t28;
+    const double t30 = fabs(Theta_2);
+    const double t31 = t29 * t30;
+    const double t32 = t13 * t31;
+    const double t33 = t10 * t31;
+    const double t34 = fabs(Theta_1);
+    const double t35 = fabs(L);
+    const double t36 = t35 * t35;
+    const double t37 = t28 * t36;
+    const double t38 = t34 + t37;
+    const double t39 = t30 * t38;
+    const double t40 = t7 * t39;
+    const double t41 = t33 + t40;
+    const double t42 = t32 + t41;
+    const double t43 = t42 * 3.552713678800501e-15;
+    if (!(t26 > t43)) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    double rest = t202 - t202;
-    rest += t236 - t236;
+    const double t44 = 1.0 / t25;
+    const double t45 = L * Theta_2;
+    const double t46 = t5 * t4;
+    const double t47 = m_1 * t46;
+    const double t48 = t6 * t3;
+    const double t49 = t46 + t48;
+    const double t50 = m_2 * t49;
+    const double t51 = t47 + t50;
+    const double t52 = t45 * t51;
+    const double t53 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t54 = theta_dot * t53;
+    const double t55 = theta_dot * t6;
+    const double t56 = t54 * t55;
+    const double t57 = t6 * t4;
+    const double t58 = t5 * t3;
+    const double t59 = t57 - t58;
+    const double K_f = u[0];
+    const double t60 = K_f * t59;
+    const double t61 = t56 + t60;
+    const double t62 = m_1 + m_2;
+    const double t63 = theta_dot * t5;
+    const double y_dot = qd[1];
+    const double t64 = y_dot * t63;
+    const double x_dot = qd[0];
+    const double t65 = x_dot * t55;
+    const double t66 = t64 + t65;
+    const double t67 = t8 * t66;
+    const double t68 = t67 * t52;
+    const double t69 = L * L;
+    const double t70 = m_2 * t69;
+    const double t71 = Theta_1 + t70;
+    const double t72 = t3 * t71;
+    const double t73 = Theta_2 * t72;
+    const double phi_dot = qd[3];
+    const double t74 = phi_dot * t3;
+    const double t75 = L * t74;
+    const double t76 = theta_dot * t75;
+    const double t77 = theta_dot + phi_dot;
+    const double t78 = t77 * t59;
+    const double t79 = x_dot * t78;
+    const double t80 = t77 * t49;
+    const double t81 = y_dot * t80;
+    const double t82 = t79 + t81;
+    const double t83 = t76 + t82;
+    const double t84 = t6 * t83;
+    const double t85 = t66 * t59;
+    const double t86 = t84 - t85;
+    const double t87 = t73 * t86;
+    const double t88 = t68 + t87;
+    const double t89 = t44 * t88;
+    const double t90 = t62 * t89;
+    const double t91 = t5 * t53;
+    const double t92 = m_1 * t57;
+    const double t93 = m_2 * t59;
+    const double t94 = t92 + t93;
+    const double t95 = t45 * t94;
+    const double t96 = t85 - t84;
+    const double t97 = t95 * t96;
+    const double t98 = t5 * t83;
+    const double t99 = t66 * t49;
+    const double t100 = t98 - t99;
+    const double t101 = t52 * t100;
+    const double t102 = t97 - t101;
+    const double t103 = t44 * t102;
+    const double t104 = t91 * t103;
+    const double t105 = t90 - t104;
+    const double t106 = t61 + t105;
+    const double t107 = t52 * t106;
+    const double t108 = t54 * t63;
+    const double t109 = K_f * t49;
+    const double t110 = t108 + t109;
+    const double t111 = t73 * t100;
+    const double t112 = t67 * t95;
+    const double t113 = t111 - t112;
+    const double t114 = t44 * t113;
+    const double t115 = t62 * t114;
+    const double t116 = t6 * t53;
+    const double t117 = t116 * t103;
+    const double t118 = t115 + t117;
+    const double t119 = t110 + t118;
+    const double t120 = t95 * t119;
+    const double t121 = t107 - t120;
+    const double t122 = t8 * t121;
+    const double T = u[1];
+    const double t123 = T * t95;
+    const double t124 = L * t3;
+    const double t125 = K_f * t124;
+    const double t126 = Theta_2 + t71;
+    const double t127 = t126 * t103;
+    const double t128 = t53 * t66;
+    const double t129 = t127 - t128;
+    const double t130 = t101 - t97;
+    const double t131 = t44 * t130;
+    const double t132 = Theta_2 * t131;
+    const double t133 = t129 + t132;
+    const double t134 = t125 + t133;
+    const double t135 = t95 * t134;
+    const double t136 = t123 - t135;
+    const double t137 = t73 * t106;
+    const double t138 = t136 + t137;
+    const double t139 = t59 * t138;
+    const double t140 = t122 - t139;
+    const double t141 = T * t52;
+    const double t142 = t52 * t134;
+    const double t143 = t141 - t142;
+    const double t144 = t73 * t119;
+    const double t145 = t143 + t144;
+    const double t146 = t49 * t145;
+    const double t147 = t140 - t146;
+    const double t148 = t44 * t147;
+    const double t149 = t6 * t138;
+    const double t150 = t5 * t145;
+    const double t151 = t149 + t150;
+    const double t152 = t44 * t151;
+    double rest = t148 - t148;
+    rest += t152 - t152;
     if (!(rest >= 0.0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t202;
-    lambda_B[1] = t236;
+    lambda_B[0] = t148;
+    lambda_B[1] = t152;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2882,7 +2819,8 @@ front_car_wheelset_status front_car_wheelset_energy(const double q[4], const dou
     if (!(100000.0 >= t1)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     front_car_wheelset_sincos(theta, &t2, &t3);
     const double m_1 = p->m_1;
     const double m_2 = p->m_2;
@@ -2938,22 +2876,26 @@ front_car_wheelset_status front_car_wheelset_singularity(const double q[4], cons
     if (!(100000.0 >= t2)) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    double t3, t4;
-    front_car_wheelset_sincos(phi, &t3, &t4);
-    double t5, t6;
-    front_car_wheelset_sincos(theta, &t5, &t6);
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_wheelset_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
+    const double t4 = cosine[0];
     const double t7 = L * t4;
     const double t8 = -t7;
     const double t9 = t7 * t7;
     const double t10 = 1.0 + t9;
     const double t11 = sqrt(t10);
-    const double t12 = t11 != 0.0 ? t8 / t11 : 0.0;
+    const double t12 = (t11 != 0.0) ? (t8 / t11) : 0.0;
     const double t13 = t12 * t12;
+    const double t5 = sine[1];
     const double t14 = t5 * t4;
+    const double t6 = cosine[1];
+    const double t3 = sine[0];
     const double t15 = t6 * t3;
     const double t16 = t14 + t15;
-    const double t17 = t11 != 0.0 ? t16 / t11 : 0.0;
+    const double t17 = (t11 != 0.0) ? (t16 / t11) : 0.0;
     const double t18 = t6 * t6;
     const double t19 = t18 * t17;
     const double t20 = t17 * t19;
@@ -2962,7 +2904,7 @@ front_car_wheelset_status front_car_wheelset_singularity(const double q[4], cons
     const double t23 = t5 * t3;
     const double t24 = t22 - t23;
     const double t25 = -t24;
-    const double t26 = t11 != 0.0 ? t25 / t11 : 0.0;
+    const double t26 = (t11 != 0.0) ? (t25 / t11) : 0.0;
     const double t27 = t5 * t26;
     const double t28 = t6 * t17;
     const double t29 = 2.0 * t28;
@@ -2985,10 +2927,10 @@ front_car_wheelset_status front_car_wheelset_singularity(const double q[4], cons
     const double t46 = t35 * t35;
     const double t47 = t45 + t46;
     const double t48 = t44 + t47;
-    const double t49 = t48 != 0.0 ? t43 / t48 : 0.0;
+    const double t49 = (t48 != 0.0) ? (t43 / t48) : 0.0;
     const double t50 = t34 * t34;
     const double t51 = 1.0 + t50;
-    const double t52 = t51 != 0.0 ? t49 / t51 : 0.0;
+    const double t52 = (t51 != 0.0) ? (t49 / t51) : 0.0;
     double rest = t33 - t33;
     rest += t52 - t52;
     if (!(rest >= 0.0)) {

@@ -23,31 +23,31 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     17      1      0      2      0
 nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               42     93      2      0      2      0
-weighted_nullspace_projector         19     68      4      0      2      0
+weighted_pseudoinverse               17     49      3      0      2      0
+weighted_nullspace_projector         15     55      4      0      2      0
 control_matrix                        1      1      0      0      2      0
 projected_control_matrix              3     14      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
-orthogonal_complement                 0      4      2      0      2      0
-projected_mass_matrix                12     50      5      0      2      0
+orthogonal_complement                 1      6      2      0      2      0
+projected_mass_matrix                12     49      5      0      2      0
 projected_coriolis_matrix            81    224      5      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
-minimal_mass_matrix                   5     11      2      0      2      0
-minimal_coriolis_matrix              17     52      2      0      2      0
+minimal_mass_matrix                   6     12      2      0      2      0
+minimal_coriolis_matrix              17     51      2      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
-minimal_control_matrix                0      4      1      0      2      0
+minimal_control_matrix                1      6      1      0      2      0
 admissible_velocity                   5     21      2      0      2      0
 admissible_acceleration              17     76      2      0      2      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                     10     19      1      0      2      0
+inverse_dynamics                     10     18      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
-actuator_mass_matrix                  4      9      2      0      1      0
+actuator_mass_matrix                  4      7      1      0      1      0
 actuator_bias                        12     30      2      0      2      0
-forward_dynamics                     49    103      2      0      2      0
-multipliers                          76    146      2      0      2      0
+forward_dynamics                     41     96      1      0      2      0
+multipliers                          44     95      1      0      2      0
 energy                                8     17      0      0      1      0
 singularity                          12     26      5      1      2      0
 (changes of sign are not counted)
@@ -67,7 +67,9 @@ import os
 import platform
 import shutil
 import subprocess
+import sys
 import tempfile
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -460,6 +462,7 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = 1.0 / t14
         t19 = t8 * t9
         t20 = t6 * t4
@@ -483,7 +486,6 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t38 = t36 * t37
         t39 = t4 * t36
         t40 = -t39
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t25,
             t27,
@@ -524,6 +526,7 @@ def nullspace_projector(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = 1.0 / t14
         t19 = t13 * t18
         t20 = t9 * t12
@@ -534,7 +537,6 @@ def nullspace_projector(q, p=PARAMETERS):
         t25 = t5 * t9
         t26 = t18 * t25
         t27 = t7 * t18
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t19,
             t21,
@@ -586,6 +588,7 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L * L
         t19 = t14 * t14
         t20 = t18 / t19
@@ -653,7 +656,6 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t82 = t3 * t81
         t83 = t20 * t82
         t84 = 2.0 * t83
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t34,
             t52,
@@ -706,149 +708,84 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = m_1 + m_2
-        t19 = t9 * t18
-        t20 = L * m_2
-        t21 = t6 * t20
-        t22 = t3 * t21
-        t23 = t19 + t22
-        t24 = t9 * t23
-        t25 = t5 * t20
-        t26 = t3 * t25
-        t27 = t12 * t18
-        t28 = t26 - t27
-        t29 = t12 * t28
-        t30 = t24 - t29
-        t31 = L * L
-        t32 = m_2 * t31
-        t33 = Theta_1 + t32
-        t34 = Theta_2 + t33
-        t35 = t3 * t34
-        t36 = t3 * t35
-        t37 = t30 + t36
-        t38 = Theta_2 * t37
-        t39 = Theta_2 * t3
-        t40 = t3 * t39
-        t41 = Theta_2 * t40
-        t42 = t38 - t41
-        t43 = np.abs(t42)
-        t44 = np.abs(Theta_2)
-        t45 = np.abs(Theta_1)
-        t46 = np.abs(m_2)
-        t47 = np.abs(L)
-        t48 = t47 * t47
-        t49 = t46 * t48
-        t50 = t45 + t49
-        t51 = t44 + t50
-        t52 = t44 * t51
-        t53 = t7 * t52
-        t54 = np.abs(m_1)
-        t55 = t54 + t46
-        t56 = t55 * t44
-        t57 = t10 * t56
-        t58 = t53 + t57
-        t59 = t13 * t56
-        t60 = t58 + t59
-        t61 = t60 * 3.552713678800501e-15
-        t62 = t6 * t3
-        t63 = Theta_2 + t32
-        t64 = t18 + t63
-        t65 = t64 - t34
-        t66 = t4 * t65
-        t67 = t4 * t66
-        t68 = m_2 * t7
-        t69 = t67 + t68
-        t70 = t62 * t69
-        t71 = Theta_2 * t70
-        t72 = t5 * t4
-        t73 = t72 * t42
-        t74 = t71 + t73
-        t75 = L * t74
-        t76 = L * t75
-        t77 = t62 * t42
-        t78 = t76 - t77
-        t79 = t4 * t78
-        t80 = t5 * t3
-        t81 = t3 * t80
-        t82 = t42 * t81
-        t83 = t79 + t82
-        t84 = t14 * t42
-        t85 = 1.0 / t84
-        t86 = t83 * t85
-        t87 = L * Theta_2
-        t88 = t4 * t4
-        t89 = Theta_2 + t18
-        t90 = t34 - t89
-        t91 = t88 * t90
-        t92 = t87 * t91
-        t93 = L * t92
-        t94 = t42 + t93
-        t95 = t62 * t94
-        t96 = t85 * t95
-        t97 = t80 * t69
-        t98 = Theta_2 * t97
-        t99 = t6 * t4
-        t100 = t99 * t42
-        t101 = t98 - t100
-        t102 = L * t101
-        t103 = L * t102
-        t104 = t80 * t42
-        t105 = t103 - t104
-        t106 = t4 * t105
-        t107 = t3 * t62
-        t108 = t42 * t107
-        t109 = t106 - t108
-        t110 = t85 * t109
-        t111 = t80 * t94
-        t112 = t85 * t111
-        t113 = t3 * t65
-        t114 = t3 * t113
-        t115 = t88 + (-2.0)
-        t116 = m_2 * t115
-        t117 = t114 + t116
-        t118 = t4 * t117
-        t119 = t4 * t118
-        t120 = m_2 + t119
-        t121 = Theta_2 * t120
-        t122 = t88 * t42
-        t123 = t121 + t122
-        t124 = L / t84
-        t125 = t123 * t124
-        t126 = t7 * t90
-        t127 = Theta_2 * t126
-        t128 = t41 - t38
-        t129 = t127 + t128
-        t130 = t4 * t129
-        t131 = t124 * t130
-        t132 = t34 - t64
-        t133 = t3 * t132
-        t134 = t3 * t133
-        t135 = 2.0 - t88
-        t136 = m_2 * t135
-        t137 = t134 + t136
-        t138 = t4 * t137
-        t139 = t4 * t138
-        t140 = t139 - m_2
-        t141 = Theta_2 * t140
-        t142 = t141 - t122
-        t143 = t124 * t142
-        t144 = t89 - t34
-        t145 = t7 * t144
-        t146 = Theta_2 * t145
-        t147 = t42 + t146
-        t148 = t4 * t147
-        t149 = t124 * t148
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t43 > t61), 5)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = Theta_1 * t7
+        t24 = t22 + t23
+        t25 = Theta_2 * t24
+        t26 = np.abs(t25)
+        t27 = np.abs(m_1)
+        t28 = np.abs(m_2)
+        t29 = t27 + t28
+        t30 = np.abs(Theta_2)
+        t31 = t29 * t30
+        t32 = t13 * t31
+        t33 = t10 * t31
+        t34 = np.abs(Theta_1)
+        t35 = np.abs(L)
+        t36 = t35 * t35
+        t37 = t28 * t36
+        t38 = t34 + t37
+        t39 = t30 * t38
+        t40 = t7 * t39
+        t41 = t33 + t40
+        t42 = t32 + t41
+        t43 = t42 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t44 = 1.0 / t25
+        t45 = L * Theta_2
+        t46 = t5 * t4
+        t47 = m_1 * t46
+        t48 = t6 * t3
+        t49 = t46 + t48
+        t50 = m_2 * t49
+        t51 = t47 + t50
+        t52 = t45 * t51
+        t53 = t8 * t52
+        t54 = t6 * t4
+        t55 = t5 * t3
+        t56 = t54 - t55
+        t57 = L * L
+        t58 = m_2 * t57
+        t59 = Theta_1 + t58
+        t60 = t3 * t59
+        t61 = Theta_2 * t60
+        t62 = t56 * t61
+        t63 = t53 - t62
+        t64 = t44 * t63
+        t65 = Theta_2 * t59
+        t66 = t65 / t25
+        t67 = t48 * t66
+        t68 = m_1 * t54
+        t69 = m_2 * t56
+        t70 = t68 + t69
+        t71 = t45 * t70
+        t72 = t8 * t71
+        t73 = t49 * t61
+        t74 = t72 + t73
+        t75 = t44 * t74
+        t76 = -t75
+        t77 = t55 * t66
+        t78 = t45 / t25
+        t79 = t20 * t78
+        t80 = m_1 + m_2
+        t81 = t4 * t80
+        t82 = t78 * t81
+        t83 = -t82
+        t84 = -t79
         entries = (
-            t86,
-            t96,
-            t110,
-            t112,
-            t125,
-            t131,
-            t143,
-            t149,
+            t64,
+            t67,
+            t76,
+            t77,
+            t79,
+            t83,
+            t84,
+            t82,
         )
         return _result("weighted_pseudoinverse", status, batch, (4, 2), entries)
 
@@ -867,128 +804,112 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(theta)
-        t2 = np.abs(phi)
+        t1 = np.abs(phi)
+        t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(theta)
-        t5, t6 = _sincos(phi)
-        t7 = t5 * t5
-        t8 = L * t6
-        t9 = t3 * t8
+        t3, t4 = _sincos(phi)
+        t5, t6 = _sincos(theta)
+        t7 = t3 * t3
+        t8 = L * t4
+        t9 = t5 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t4 * t8
+        t12 = t6 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = m_1 + m_2
-        t19 = t9 * t18
-        t20 = L * m_2
-        t21 = t4 * t20
-        t22 = t5 * t21
-        t23 = t19 + t22
-        t24 = t9 * t23
-        t25 = t3 * t20
-        t26 = t5 * t25
-        t27 = t12 * t18
-        t28 = t26 - t27
-        t29 = t12 * t28
-        t30 = t24 - t29
-        t31 = L * L
-        t32 = m_2 * t31
-        t33 = Theta_1 + t32
-        t34 = Theta_2 + t33
-        t35 = t5 * t34
-        t36 = t5 * t35
-        t37 = t30 + t36
-        t38 = Theta_2 * t37
-        t39 = Theta_2 * t5
-        t40 = t5 * t39
-        t41 = Theta_2 * t40
-        t42 = t38 - t41
-        t43 = np.abs(t42)
-        t44 = np.abs(Theta_2)
-        t45 = np.abs(Theta_1)
-        t46 = np.abs(m_2)
-        t47 = np.abs(L)
-        t48 = t47 * t47
-        t49 = t46 * t48
-        t50 = t45 + t49
-        t51 = t44 + t50
-        t52 = t44 * t51
-        t53 = t7 * t52
-        t54 = np.abs(m_1)
-        t55 = t54 + t46
-        t56 = t55 * t44
-        t57 = t10 * t56
-        t58 = t53 + t57
-        t59 = t13 * t56
-        t60 = t58 + t59
-        t61 = t60 * 3.552713678800501e-15
-        t62 = Theta_2 * t31
-        t63 = t62 / t42
-        t64 = t4 * t6
-        t65 = t18 * t64
-        t66 = t3 * t5
-        t67 = m_2 * t66
-        t68 = t65 - t67
-        t69 = t64 * t68
-        t70 = t63 * t69
-        t71 = t4 * t5
-        t72 = m_2 * t71
-        t73 = t3 * t6
-        t74 = t18 * t73
-        t75 = t72 + t74
-        t76 = t64 * t75
-        t77 = t63 * t76
-        t78 = L * Theta_2
-        t79 = t78 / t42
-        t80 = t5 * t64
-        t81 = t33 * t80
-        t82 = t79 * t81
-        t83 = t73 * t68
-        t84 = t63 * t83
-        t85 = t73 * t75
-        t86 = t63 * t85
-        t87 = t5 * t73
-        t88 = t33 * t87
-        t89 = t79 * t88
-        t90 = t5 * t68
-        t91 = t79 * t90
-        t92 = t5 * t75
-        t93 = t79 * t92
-        t94 = Theta_2 / t42
-        t95 = t7 * t33
-        t96 = t94 * t95
-        t97 = t67 - t65
-        t98 = t5 * t97
-        t99 = t79 * t98
-        t100 = -t93
-        t101 = t6 * t6
-        t102 = t18 * t62
-        t103 = t102 / t42
-        t104 = t101 * t103
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t43 > t61), 5)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = Theta_1 * t7
+        t24 = t22 + t23
+        t25 = Theta_2 * t24
+        t26 = np.abs(t25)
+        t27 = np.abs(m_1)
+        t28 = np.abs(m_2)
+        t29 = t27 + t28
+        t30 = np.abs(Theta_2)
+        t31 = t29 * t30
+        t32 = t13 * t31
+        t33 = t10 * t31
+        t34 = np.abs(Theta_1)
+        t35 = np.abs(L)
+        t36 = t35 * t35
+        t37 = t28 * t36
+        t38 = t34 + t37
+        t39 = t30 * t38
+        t40 = t7 * t39
+        t41 = t33 + t40
+        t42 = t32 + t41
+        t43 = t42 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t44 = L * L
+        t45 = Theta_2 * t44
+        t46 = t45 / t25
+        t47 = t6 * t4
+        t48 = m_1 * t47
+        t49 = t5 * t3
+        t50 = t47 - t49
+        t51 = m_2 * t50
+        t52 = t48 + t51
+        t53 = t47 * t52
+        t54 = t46 * t53
+        t55 = t5 * t4
+        t56 = m_1 * t55
+        t57 = t6 * t3
+        t58 = t55 + t57
+        t59 = m_2 * t58
+        t60 = t56 + t59
+        t61 = t47 * t60
+        t62 = t46 * t61
+        t63 = t3 * t47
+        t64 = m_2 * t44
+        t65 = Theta_1 + t64
+        t66 = L * Theta_2
+        t67 = t65 * t66
+        t68 = t67 / t25
+        t69 = t63 * t68
+        t70 = t55 * t52
+        t71 = t46 * t70
+        t72 = t55 * t60
+        t73 = t46 * t72
+        t74 = t3 * t55
+        t75 = t74 * t68
+        t76 = t66 / t25
+        t77 = t3 * t52
+        t78 = t76 * t77
+        t79 = t3 * t60
+        t80 = t76 * t79
+        t81 = Theta_2 * t65
+        t82 = t81 / t25
+        t83 = t7 * t82
+        t84 = -t78
+        t85 = -t80
+        t86 = m_1 + m_2
+        t87 = t86 * t18
+        t88 = t46 * t87
         entries = (
-            t70,
-            t77,
-            t82,
+            t54,
+            t62,
+            t69,
+            0.0,
+            t71,
+            t73,
+            t75,
+            0.0,
+            t78,
+            t80,
+            t83,
             0.0,
             t84,
-            t86,
-            t89,
-            0.0,
-            t91,
-            t93,
-            t96,
-            0.0,
-            t99,
-            t100,
-            t104,
+            t85,
+            t88,
             1.0,
         )
         return _result("weighted_nullspace_projector", status, batch, (4, 4), entries)
@@ -1052,6 +973,7 @@ def projected_control_matrix(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L * L
         t19 = t6 * t18
         t20 = t4 * t19
@@ -1061,7 +983,6 @@ def projected_control_matrix(q, p=PARAMETERS):
         t24 = t23 / t14
         t25 = L * t3
         t26 = t25 / t14
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t21,
             0.0,
@@ -1092,28 +1013,28 @@ def projected_control_pseudoinverse(q, p=PARAMETERS):
         t3, t4 = _sincos(theta)
         t5, t6 = _sincos(phi)
         t7 = np.abs(L)
-        t8 = t4 * t6
-        t9 = t3 * t6
-        t10 = t5 / L
         _failed_ = ~np.asarray(t7 > 0.0)
         if np.any(_failed_ & (status == 0)):
-            t11 = t5 * t5
-            t12 = L * t6
-            t13 = t3 * t12
+            t8 = t5 * t5
+            t9 = L * t6
+            t10 = t3 * t9
+            t11 = t10 * t10
+            t12 = t8 + t11
+            t13 = t4 * t9
             t14 = t13 * t13
-            t15 = t11 + t14
-            t16 = t4 * t12
-            t17 = t16 * t16
-            t18 = t15 + t17
-            t19 = t12 * t12
-            t20 = 1.0 + t19
-            t21 = t20 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t18 > t21), 2)
+            t15 = t12 + t14
+            t16 = t9 * t9
+            t17 = 1.0 + t16
+            t18 = t17 * 1.262177448353619e-29
+            status = _first(status, _failed_ & ~np.asarray(t15 > t18), 2)
             status = _first(status, _failed_, 3)
+        t19 = t4 * t6
+        t20 = t3 * t6
+        t21 = t5 / L
         entries = (
-            t8,
-            t9,
-            t10,
+            t19,
+            t20,
+            t21,
             0.0,
             0.0,
             0.0,
@@ -1141,31 +1062,28 @@ def orthogonal_complement(q, p=PARAMETERS):
         t5, t6 = _sincos(phi)
         t7 = L * t6
         t8 = t4 * t7
-        t9 = np.abs(t8)
-        t10 = np.abs(L)
-        t11 = t10 * 3.552713678800501e-15
-        t12 = 1.0 / t4
-        t13 = t3 * t12
-        t14 = t5 / t8
-        _failed_ = ~np.asarray(t9 > t11)
+        t9 = t8 * t8
+        t10 = t7 * t7
+        t11 = 1.0 + t10
+        t12 = t11 * 1.262177448353619e-29
+        _failed_ = ~np.asarray(t9 > t12)
         if np.any(_failed_ & (status == 0)):
-            t15 = t5 * t5
-            t16 = t3 * t7
-            t17 = t16 * t16
-            t18 = t15 + t17
-            t19 = t8 * t8
-            t20 = t18 + t19
-            t21 = t7 * t7
-            t22 = 1.0 + t21
-            t23 = t22 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t20 > t23), 2)
+            t13 = t5 * t5
+            t14 = t3 * t7
+            t15 = t14 * t14
+            t16 = t13 + t15
+            t17 = t16 + t9
+            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
+        t18 = 1.0 / t4
+        t19 = t3 * t18
+        t20 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t13,
+            t19,
             0.0,
-            t14,
+            t20,
             0.0,
             0.0,
             1.0,
@@ -1204,6 +1122,7 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L * L
         t19 = t14 * t14
         t20 = t18 / t19
@@ -1224,59 +1143,57 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t35 = t5 * t6
         t36 = t4 * t35
         t37 = t4 * t36
-        t38 = t3 * t26
-        t39 = t3 * t38
-        t40 = t4 * t4
-        t41 = t40 * t28
-        t42 = t39 + t41
-        t43 = t37 * t42
-        t44 = t20 * t43
-        t45 = L / t19
-        t46 = t6 * t4
-        t47 = t3 * t46
-        t48 = t47 * t42
-        t49 = t45 * t48
-        t50 = L * Theta_2
-        t51 = t50 / t14
-        t52 = t47 * t51
-        t53 = t5 * t5
+        t38 = t4 * t4
+        t39 = t38 * t28
+        t40 = t7 * t26
+        t41 = t39 + t40
+        t42 = t37 * t41
+        t43 = t20 * t42
+        t44 = L / t19
+        t45 = t6 * t4
+        t46 = t3 * t45
+        t47 = t46 * t41
+        t48 = t44 * t47
+        t49 = L * Theta_2
+        t50 = t49 / t14
+        t51 = t46 * t50
+        t52 = t5 * t5
+        t53 = t4 * t52
         t54 = t4 * t53
-        t55 = t4 * t54
-        t56 = t55 * t32
-        t57 = t20 * t56
-        t58 = t5 * t4
-        t59 = t3 * t58
-        t60 = t59 * t42
-        t61 = t45 * t60
-        t62 = t59 * t51
-        t63 = t40 + (-2.0)
-        t64 = t26 * t63
-        t65 = t7 * t28
-        t66 = t64 + t65
+        t55 = t54 * t32
+        t56 = t20 * t55
+        t57 = t5 * t4
+        t58 = t3 * t57
+        t59 = t58 * t41
+        t60 = t44 * t59
+        t61 = t58 * t50
+        t62 = t38 + (-2.0)
+        t63 = t26 * t62
+        t64 = t7 * t28
+        t65 = t63 + t64
+        t66 = t4 * t65
         t67 = t4 * t66
-        t68 = t4 * t67
-        t69 = t26 + t68
-        t70 = 1.0 / t19
-        t71 = t69 * t70
-        t72 = Theta_2 / t14
-        t73 = t7 * t72
-        status = _first(status, ~np.asarray(t14 > t17), 2)
+        t68 = t26 + t67
+        t69 = 1.0 / t19
+        t70 = t68 * t69
+        t71 = Theta_2 / t14
+        t72 = t7 * t71
         entries = (
             t34,
-            t44,
-            t49,
-            t52,
-            t44,
-            t57,
+            t43,
+            t48,
+            t51,
+            t43,
+            t56,
+            t60,
             t61,
-            t62,
-            t49,
+            t48,
+            t60,
+            t70,
+            t72,
+            t51,
             t61,
-            t71,
-            t73,
-            t52,
-            t62,
-            t73,
+            t72,
             Theta_2,
         )
         return _result("projected_mass_matrix", status, batch, (4, 4), entries)
@@ -1318,6 +1235,7 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L * L
         t19 = t14 * t14
         t20 = t14 * t19
@@ -1617,7 +1535,6 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t314 = t313 / t19
         t315 = t312 * t314
         t316 = 2.0 * t315
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t88,
             t135,
@@ -1694,40 +1611,37 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t5, t6 = _sincos(theta)
         t7 = L * t4
         t8 = t6 * t7
-        t9 = np.abs(t8)
-        t10 = np.abs(L)
-        t11 = t10 * 3.552713678800501e-15
-        t12 = L * L
-        t13 = m_2 * t12
-        t14 = Theta_1 + t13
-        t15 = Theta_2 + t14
-        t16 = m_1 + m_2
-        t17 = t16 * t12
-        t18 = t17 - t15
-        t19 = t4 * t18
-        t20 = t4 * t19
-        t21 = t15 + t20
-        t22 = t8 * t8
-        t23 = 1.0 / t22
-        t24 = t21 * t23
-        t25 = t3 / t8
-        t26 = Theta_2 * t25
-        _failed_ = ~np.asarray(t9 > t11)
+        t9 = t8 * t8
+        t10 = t7 * t7
+        t11 = 1.0 + t10
+        t12 = t11 * 1.262177448353619e-29
+        _failed_ = ~np.asarray(t9 > t12)
         if np.any(_failed_ & (status == 0)):
-            t27 = t3 * t3
-            t28 = t5 * t7
-            t29 = t28 * t28
-            t30 = t27 + t29
-            t31 = t30 + t22
-            t32 = t7 * t7
-            t33 = 1.0 + t32
-            t34 = t33 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t31 > t34), 2)
+            t13 = t3 * t3
+            t14 = t5 * t7
+            t15 = t14 * t14
+            t16 = t13 + t15
+            t17 = t16 + t9
+            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
+        t18 = L * L
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = Theta_2 + t20
+        t22 = m_1 + m_2
+        t23 = t22 * t18
+        t24 = t23 - t21
+        t25 = t4 * t24
+        t26 = t4 * t25
+        t27 = t21 + t26
+        t28 = 1.0 / t9
+        t29 = t27 * t28
+        t30 = t3 / t8
+        t31 = Theta_2 * t30
         entries = (
-            t24,
-            t26,
-            t26,
+            t29,
+            t31,
+            t31,
             Theta_2,
         )
         return _result("minimal_mass_matrix", status, batch, (2, 2), entries)
@@ -1767,77 +1681,74 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = np.abs(t12)
-        t19 = np.abs(L)
-        t20 = t19 * 3.552713678800501e-15
-        t21 = t5 * t4
-        t22 = t3 * t21
-        t23 = m_1 + m_2
-        t24 = L * L
-        t25 = m_2 * t24
-        t26 = Theta_1 + t25
-        t27 = Theta_2 + t26
-        t28 = t23 + t27
-        t29 = t22 * t28
-        t30 = t3 * t29
-        t31 = t23 * t24
-        t32 = t4 * t21
-        t33 = t4 * t32
-        t34 = t31 * t33
-        t35 = t30 + t34
-        t36 = L * t35
-        t37 = L * t36
-        t38 = t4 * t4
-        t39 = t38 + (-2.0)
-        t40 = t21 * t39
-        t41 = t27 * t40
-        t42 = t37 + t41
-        t43 = theta_dot * t42
-        t44 = phi_dot * t6
-        t45 = t3 * t44
-        t46 = (-1.0) + t24
-        t47 = t45 * t46
-        t48 = t27 * t47
-        t49 = t43 + t48
-        t50 = t4 * t49
-        t51 = theta_dot * t5
-        t52 = t27 * t51
-        t53 = t50 + t52
-        t54 = t4 * t53
-        t55 = t27 * t45
-        t56 = t54 + t55
-        t57 = t6 * t24
-        t58 = t6 * t57
-        t59 = t6 * t58
-        t60 = t4 * t59
-        t61 = t4 * t60
-        t62 = t4 * t61
-        t63 = t14 * t62
-        t64 = 1.0 / t63
-        t65 = t56 * t64
-        t66 = t22 * t46
-        t67 = theta_dot * t66
-        t68 = t44 * t46
-        t69 = t67 + t68
-        t70 = t4 * t69
-        t71 = t3 * t51
-        t72 = t70 + t71
-        t73 = t4 * t72
-        t74 = t44 + t73
-        t75 = t6 * t12
-        t76 = t4 * t75
-        t77 = t14 * t76
-        t78 = Theta_2 / t77
-        t79 = t74 * t78
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        _failed_ = ~np.asarray(t18 > t20)
+        _failed_ = ~np.asarray(t13 > t17)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 2)
+        t18 = t5 * t4
+        t19 = t3 * t18
+        t20 = m_1 + m_2
+        t21 = L * L
+        t22 = m_2 * t21
+        t23 = Theta_1 + t22
+        t24 = Theta_2 + t23
+        t25 = t20 + t24
+        t26 = t19 * t25
+        t27 = t3 * t26
+        t28 = t20 * t21
+        t29 = t4 * t18
+        t30 = t4 * t29
+        t31 = t28 * t30
+        t32 = t27 + t31
+        t33 = L * t32
+        t34 = L * t33
+        t35 = t4 * t4
+        t36 = t35 + (-2.0)
+        t37 = t18 * t36
+        t38 = t24 * t37
+        t39 = t34 + t38
+        t40 = theta_dot * t39
+        t41 = phi_dot * t6
+        t42 = t3 * t41
+        t43 = (-1.0) + t21
+        t44 = t42 * t43
+        t45 = t24 * t44
+        t46 = t40 + t45
+        t47 = t4 * t46
+        t48 = theta_dot * t5
+        t49 = t24 * t48
+        t50 = t47 + t49
+        t51 = t4 * t50
+        t52 = t24 * t42
+        t53 = t51 + t52
+        t54 = t6 * t21
+        t55 = t6 * t54
+        t56 = t6 * t55
+        t57 = t4 * t56
+        t58 = t4 * t57
+        t59 = t4 * t58
+        t60 = t14 * t59
+        t61 = 1.0 / t60
+        t62 = t53 * t61
+        t63 = t19 * t43
+        t64 = theta_dot * t63
+        t65 = t41 * t43
+        t66 = t64 + t65
+        t67 = t4 * t66
+        t68 = t3 * t48
+        t69 = t67 + t68
+        t70 = t4 * t69
+        t71 = t41 + t70
+        t72 = t6 * t12
+        t73 = t4 * t72
+        t74 = t14 * t73
+        t75 = Theta_2 / t74
+        t76 = t71 * t75
         entries = (
-            t65,
+            t62,
             0.0,
-            t79,
+            t76,
             0.0,
         )
         return _result("minimal_coriolis_matrix", status, batch, (2, 2), entries)
@@ -1890,26 +1801,23 @@ def minimal_control_matrix(q, p=PARAMETERS):
         t5, t6 = _sincos(phi)
         t7 = L * t6
         t8 = t4 * t7
-        t9 = np.abs(t8)
-        t10 = np.abs(L)
-        t11 = t10 * 3.552713678800501e-15
-        t12 = t4 * t6
-        t13 = 1.0 / t12
-        _failed_ = ~np.asarray(t9 > t11)
+        t9 = t8 * t8
+        t10 = t7 * t7
+        t11 = 1.0 + t10
+        t12 = t11 * 1.262177448353619e-29
+        _failed_ = ~np.asarray(t9 > t12)
         if np.any(_failed_ & (status == 0)):
-            t14 = t5 * t5
-            t15 = t3 * t7
-            t16 = t15 * t15
-            t17 = t14 + t16
-            t18 = t8 * t8
-            t19 = t17 + t18
-            t20 = t7 * t7
-            t21 = 1.0 + t20
-            t22 = t21 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t19 > t22), 2)
+            t13 = t5 * t5
+            t14 = t3 * t7
+            t15 = t14 * t14
+            t16 = t13 + t15
+            t17 = t16 + t9
+            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
+        t18 = t4 * t6
+        t19 = 1.0 / t18
         entries = (
-            t13,
+            t19,
             0.0,
             0.0,
             1.0,
@@ -1949,6 +1857,7 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L / t14
         t19 = x_dot * t6
         t20 = y_dot * t5
@@ -1966,7 +1875,6 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t32 = 1.0 / t14
         t33 = t3 * t25
         t34 = t32 * t33
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t28,
             t31,
@@ -2013,6 +1921,7 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = y_ddot * t6
         t19 = t14 * t18
         t20 = t14 * t19
@@ -2097,7 +2006,6 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t99 = t14 * t98
         t100 = t96 + t99
         t101 = t89 * t100
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t59,
             t88,
@@ -2154,55 +2062,38 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(phi)
         t5, t6 = _sincos(theta)
-        t7 = np.abs(L)
-        t8 = 1.0 / L
-        t9 = y_ddot * t6
-        t10 = x_ddot * t5
-        t11 = t9 - t10
-        t12 = t3 * t11
+        t7 = m_1 + m_2
+        t8 = x_ddot * t6
+        t9 = y_ddot * t5
+        t10 = t8 + t9
+        t11 = t7 * t10
+        t12 = L * m_2
         t13 = theta_dot * theta_dot
-        t14 = t4 * t13
-        t15 = L * t14
-        t16 = t12 - t15
-        t17 = m_2 * t16
-        t18 = m_1 + m_2
-        t19 = x_ddot * t6
-        t20 = y_ddot * t5
-        t21 = t19 + t20
-        t22 = t4 * t21
-        t23 = t18 * t22
-        t24 = t17 + t23
-        t25 = L * t24
-        t26 = L * L
-        t27 = m_2 * t26
-        t28 = Theta_1 + t27
-        t29 = Theta_2 + t28
-        t30 = theta_ddot * t29
-        t31 = phi_ddot * Theta_2
-        t32 = t30 + t31
-        t33 = t3 * t32
-        t34 = t25 + t33
-        t35 = t8 * t34
-        t36 = theta_ddot + phi_ddot
-        t37 = Theta_2 * t36
-        _failed_ = ~np.asarray(t7 > 0.0)
-        if np.any(_failed_ & (status == 0)):
-            t38 = t3 * t3
-            t39 = L * t4
-            t40 = t5 * t39
-            t41 = t40 * t40
-            t42 = t38 + t41
-            t43 = t6 * t39
-            t44 = t43 * t43
-            t45 = t42 + t44
-            t46 = t39 * t39
-            t47 = 1.0 + t46
-            t48 = t47 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t45 > t48), 2)
-            status = _first(status, _failed_, 3)
+        t14 = t12 * t13
+        t15 = t11 - t14
+        t16 = t4 * t15
+        t17 = 1.0 / L
+        t18 = y_ddot * t6
+        t19 = x_ddot * t5
+        t20 = t18 - t19
+        t21 = m_2 * t20
+        t22 = L * t21
+        t23 = L * L
+        t24 = m_2 * t23
+        t25 = Theta_1 + t24
+        t26 = Theta_2 + t25
+        t27 = theta_ddot * t26
+        t28 = phi_ddot * Theta_2
+        t29 = t27 + t28
+        t30 = t22 + t29
+        t31 = t17 * t30
+        t32 = t3 * t31
+        t33 = t16 + t32
+        t34 = theta_ddot + phi_ddot
+        t35 = Theta_2 * t34
         entries = (
+            t33,
             t35,
-            t37,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -2278,41 +2169,40 @@ def actuator_mass_matrix(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = np.abs(L)
-        t5 = L * L
-        t6 = m_2 * t5
-        t7 = Theta_1 + t6
-        t8 = Theta_2 + t7
-        t9 = t2 * t8
-        t10 = t2 * t9
-        t11 = t3 * t3
-        t12 = m_1 + m_2
-        t13 = t12 * t5
-        t14 = t11 * t13
-        t15 = t10 + t14
-        t16 = 1.0 / t5
-        t17 = t15 * t16
-        t18 = t2 / L
-        t19 = Theta_2 * t18
         _failed_ = ~np.asarray(t4 > 0.0)
         if np.any(_failed_ & (status == 0)):
-            t20 = t2 * t2
-            t21, t22 = _sincos(theta)
-            t23 = L * t3
-            t24 = t21 * t23
-            t25 = t24 * t24
-            t26 = t20 + t25
-            t27 = t22 * t23
-            t28 = t27 * t27
-            t29 = t26 + t28
-            t30 = t23 * t23
-            t31 = 1.0 + t30
-            t32 = t31 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t29 > t32), 2)
+            t5 = t2 * t2
+            t6, t7 = _sincos(theta)
+            t8 = L * t3
+            t9 = t6 * t8
+            t10 = t9 * t9
+            t11 = t5 + t10
+            t12 = t7 * t8
+            t13 = t12 * t12
+            t14 = t11 + t13
+            t15 = t8 * t8
+            t16 = 1.0 + t15
+            t17 = t16 * 1.262177448353619e-29
+            t18 = np.abs(theta)
+            status = _first(status, _failed_ & ~np.asarray(100000.0 >= t18), 4)
+            status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 3)
+        t19 = m_1 + m_2
+        t20 = t3 * t3
+        t21 = t19 * t20
+        t22 = t2 / L
+        t23 = L * L
+        t24 = m_2 * t23
+        t25 = Theta_1 + t24
+        t26 = Theta_2 + t25
+        t27 = t26 * t22
+        t28 = t22 * t27
+        t29 = t21 + t28
+        t30 = Theta_2 * t22
         entries = (
-            t17,
-            t19,
-            t19,
+            t29,
+            t30,
+            t30,
             Theta_2,
         )
         return _result("actuator_mass_matrix", status, batch, (2, 2), entries)
@@ -2354,7 +2244,12 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = np.abs(L)
+        _failed_ = ~np.asarray(t18 > 0.0)
+        if np.any(_failed_ & (status == 0)):
+            status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
+            status = _first(status, _failed_, 3)
         t19 = L * L
         t20 = 1.0 / t19
         t21 = phi_dot * t4
@@ -2388,11 +2283,6 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t49 = t21 / L
         t50 = t49 * t40
         t51 = Theta_2 * t50
-        status = _first(status, ~np.asarray(t14 > t17), 2)
-        _failed_ = ~np.asarray(t18 > 0.0)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
-            status = _first(status, _failed_, 3)
         entries = (
             t48,
             t51,
@@ -2422,179 +2312,166 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(theta)
-        t2 = np.abs(phi)
+        t1 = np.abs(phi)
+        t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(theta)
-        t5, t6 = _sincos(phi)
-        t7 = t5 * t5
-        t8 = L * t6
-        t9 = t3 * t8
+        t3, t4 = _sincos(phi)
+        t5, t6 = _sincos(theta)
+        t7 = t3 * t3
+        t8 = L * t4
+        t9 = t5 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t4 * t8
+        t12 = t6 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = m_1 + m_2
-        t19 = t9 * t18
-        t20 = L * m_2
-        t21 = t4 * t20
-        t22 = t5 * t21
-        t23 = t19 + t22
-        t24 = t9 * t23
-        t25 = t3 * t20
-        t26 = t5 * t25
-        t27 = t12 * t18
-        t28 = t26 - t27
-        t29 = t12 * t28
-        t30 = t24 - t29
-        t31 = L * L
-        t32 = m_2 * t31
-        t33 = Theta_1 + t32
-        t34 = Theta_2 + t33
-        t35 = t5 * t34
-        t36 = t5 * t35
-        t37 = t30 + t36
-        t38 = Theta_2 * t37
-        t39 = Theta_2 * t5
-        t40 = t5 * t39
-        t41 = Theta_2 * t40
-        t42 = t38 - t41
-        t43 = np.abs(t42)
-        t44 = np.abs(Theta_2)
-        t45 = np.abs(Theta_1)
-        t46 = np.abs(m_2)
-        t47 = np.abs(L)
-        t48 = t47 * t47
-        t49 = t46 * t48
-        t50 = t45 + t49
-        t51 = t44 + t50
-        t52 = t44 * t51
-        t53 = t7 * t52
-        t54 = np.abs(m_1)
-        t55 = t54 + t46
-        t56 = t55 * t44
-        t57 = t10 * t56
-        t58 = t53 + t57
-        t59 = t13 * t56
-        t60 = t58 + t59
-        t61 = t60 * 3.552713678800501e-15
-        t62 = 1.0 / t42
-        t63 = Theta_2 * t12
-        t64 = t12 * t63
-        t65 = theta_dot * t20
-        t66 = theta_dot * t4
-        t67 = t65 * t66
-        t68 = t4 * t6
-        t69 = t3 * t5
-        t70 = t68 - t69
-        t71 = K_f * t70
-        t72 = t67 + t71
-        t73 = theta_dot * t3
-        t74 = y_dot * t73
-        t75 = x_dot * t66
-        t76 = t74 + t75
-        t77 = 1.0 / t14
-        t78 = t8 * t9
-        t79 = t5 * t70
-        t80 = t78 - t79
-        t81 = t77 * t80
-        t82 = t76 * t81
-        t83 = t4 * t5
-        t84 = t77 * t83
-        t85 = phi_dot * t5
-        t86 = L * t85
-        t87 = theta_dot * t86
-        t88 = theta_dot + phi_dot
-        t89 = t88 * t70
-        t90 = x_dot * t89
-        t91 = t3 * t6
-        t92 = t91 + t83
-        t93 = t88 * t92
-        t94 = y_dot * t93
-        t95 = t90 + t94
-        t96 = t87 + t95
-        t97 = t84 * t96
-        t98 = t82 + t97
-        t99 = t18 * t98
-        t100 = t8 * t77
-        t101 = t100 * t96
-        t102 = t6 * t8
-        t103 = t77 * t102
-        t104 = t76 * t103
-        t105 = t101 - t104
-        t106 = t25 * t105
-        t107 = t99 + t106
-        t108 = t72 + t107
-        t109 = t64 * t108
-        t110 = t9 * t63
-        t111 = t65 * t73
-        t112 = K_f * t92
-        t113 = t111 + t112
-        t114 = t8 * t12
-        t115 = t5 * t92
-        t116 = t114 + t115
-        t117 = t77 * t116
-        t118 = t76 * t117
-        t119 = t77 * t69
-        t120 = t119 * t96
-        t121 = t118 - t120
-        t122 = t18 * t121
-        t123 = t21 * t105
-        t124 = t122 + t123
-        t125 = t113 - t124
-        t126 = t110 * t125
-        t127 = t109 + t126
-        t128 = t5 * t63
-        t129 = L * t5
-        t130 = K_f * t129
-        t131 = t20 * t76
-        t132 = t34 * t105
-        t133 = t131 + t132
-        t134 = t130 - t133
-        t135 = t128 * t134
-        t136 = t127 + t135
-        t137 = Theta_2 * t105
-        t138 = T - t137
-        t139 = t128 * t138
-        t140 = t136 - t139
-        t141 = t62 * t140
-        t142 = t141 - t98
-        t143 = t110 * t108
-        t144 = Theta_2 * t9
-        t145 = t9 * t144
-        t146 = t145 * t125
-        t147 = t143 + t146
-        t148 = t5 * t144
-        t149 = t148 * t134
-        t150 = t147 + t149
-        t151 = t148 * t138
-        t152 = t150 - t151
-        t153 = t62 * t152
-        t154 = t121 + t153
-        t155 = t128 * t108
-        t156 = t148 * t125
-        t157 = t155 + t156
-        t158 = t40 * t134
-        t159 = t157 + t158
-        t160 = t40 * t138
-        t161 = t159 - t160
-        t162 = t62 * t161
-        t163 = t105 + t162
-        t164 = t37 * t138
-        t165 = t164 - t159
-        t166 = t62 * t165
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t43 > t61), 5)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = Theta_1 * t7
+        t24 = t22 + t23
+        t25 = Theta_2 * t24
+        t26 = np.abs(t25)
+        t27 = np.abs(m_1)
+        t28 = np.abs(m_2)
+        t29 = t27 + t28
+        t30 = np.abs(Theta_2)
+        t31 = t29 * t30
+        t32 = t13 * t31
+        t33 = t10 * t31
+        t34 = np.abs(Theta_1)
+        t35 = np.abs(L)
+        t36 = t35 * t35
+        t37 = t28 * t36
+        t38 = t34 + t37
+        t39 = t30 * t38
+        t40 = t7 * t39
+        t41 = t33 + t40
+        t42 = t32 + t41
+        t43 = t42 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t44 = 1.0 / t25
+        t45 = theta_dot * t5
+        t46 = y_dot * t45
+        t47 = theta_dot * t6
+        t48 = x_dot * t47
+        t49 = t46 + t48
+        t50 = t8 * t49
+        t51 = L * Theta_2
+        t52 = t5 * t4
+        t53 = m_1 * t52
+        t54 = t6 * t3
+        t55 = t52 + t54
+        t56 = m_2 * t55
+        t57 = t53 + t56
+        t58 = t51 * t57
+        t59 = t50 * t58
+        t60 = L * L
+        t61 = m_2 * t60
+        t62 = Theta_1 + t61
+        t63 = t3 * t62
+        t64 = Theta_2 * t63
+        t65 = phi_dot * t3
+        t66 = L * t65
+        t67 = theta_dot * t66
+        t68 = theta_dot + phi_dot
+        t69 = t6 * t4
+        t70 = t5 * t3
+        t71 = t69 - t70
+        t72 = t68 * t71
+        t73 = x_dot * t72
+        t74 = t68 * t55
+        t75 = y_dot * t74
+        t76 = t73 + t75
+        t77 = t67 + t76
+        t78 = t6 * t77
+        t79 = t49 * t71
+        t80 = t78 - t79
+        t81 = t64 * t80
+        t82 = t59 + t81
+        t83 = t44 * t82
+        t84 = T * t3
+        t85 = Theta_2 * t84
+        t86 = L * t3
+        t87 = K_f * t86
+        t88 = t3 * t87
+        t89 = L * m_2
+        t90 = theta_dot * t89
+        t91 = t90 * t47
+        t92 = K_f * t71
+        t93 = t91 + t92
+        t94 = t12 * t93
+        t95 = t90 * t45
+        t96 = K_f * t55
+        t97 = t95 + t96
+        t98 = t9 * t97
+        t99 = t94 + t98
+        t100 = t88 + t99
+        t101 = Theta_2 * t100
+        t102 = t85 - t101
+        t103 = t12 * t102
+        t104 = t44 * t103
+        t105 = t83 + t104
+        t106 = -t105
+        t107 = t5 * t77
+        t108 = t49 * t55
+        t109 = t107 - t108
+        t110 = t64 * t109
+        t111 = m_1 * t69
+        t112 = m_2 * t71
+        t113 = t111 + t112
+        t114 = t51 * t113
+        t115 = t50 * t114
+        t116 = t110 - t115
+        t117 = t44 * t116
+        t118 = t9 * t102
+        t119 = t44 * t118
+        t120 = t117 + t119
+        t121 = -t120
+        t122 = t79 - t78
+        t123 = t114 * t122
+        t124 = t58 * t109
+        t125 = t123 - t124
+        t126 = t44 * t125
+        t127 = t3 * t102
+        t128 = t44 * t127
+        t129 = t126 + t128
+        t130 = -t129
+        t131 = m_1 + m_2
+        t132 = T * t12
+        t133 = t131 * t132
+        t134 = t5 * t89
+        t135 = t134 * t84
+        t136 = t133 - t135
+        t137 = t12 * t136
+        t138 = T * t9
+        t139 = t131 * t138
+        t140 = t6 * t89
+        t141 = t140 * t84
+        t142 = t139 + t141
+        t143 = t9 * t142
+        t144 = t137 + t143
+        t145 = Theta_2 + t62
+        t146 = t145 * t84
+        t147 = t146 - t101
+        t148 = t3 * t147
+        t149 = t144 + t148
+        t150 = t44 * t149
+        t151 = t124 - t123
+        t152 = t44 * t151
+        t153 = t150 - t152
         entries = (
-            t142,
-            t154,
-            t163,
-            t166,
+            t106,
+            t121,
+            t130,
+            t153,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2639,230 +2516,146 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = m_1 + m_2
-        t19 = t9 * t18
-        t20 = L * m_2
-        t21 = t6 * t20
-        t22 = t3 * t21
-        t23 = t19 + t22
-        t24 = t9 * t23
-        t25 = t5 * t20
-        t26 = t3 * t25
-        t27 = t12 * t18
-        t28 = t26 - t27
-        t29 = t12 * t28
-        t30 = t24 - t29
-        t31 = L * L
-        t32 = m_2 * t31
-        t33 = Theta_1 + t32
-        t34 = Theta_2 + t33
-        t35 = t3 * t34
-        t36 = t3 * t35
-        t37 = t30 + t36
-        t38 = Theta_2 * t37
-        t39 = Theta_2 * t3
-        t40 = t3 * t39
-        t41 = Theta_2 * t40
-        t42 = t38 - t41
-        t43 = np.abs(t42)
-        t44 = np.abs(Theta_2)
-        t45 = np.abs(Theta_1)
-        t46 = np.abs(m_2)
-        t47 = np.abs(L)
-        t48 = t47 * t47
-        t49 = t46 * t48
-        t50 = t45 + t49
-        t51 = t44 + t50
-        t52 = t44 * t51
-        t53 = t7 * t52
-        t54 = np.abs(m_1)
-        t55 = t54 + t46
-        t56 = t55 * t44
-        t57 = t10 * t56
-        t58 = t53 + t57
-        t59 = t13 * t56
-        t60 = t58 + t59
-        t61 = t60 * 3.552713678800501e-15
-        t62 = 1.0 / t14
-        t63 = t8 * t9
-        t64 = t6 * t4
-        t65 = t5 * t3
-        t66 = t64 - t65
-        t67 = t3 * t66
-        t68 = t63 - t67
-        t69 = t62 * t68
-        t70 = Theta_2 * t12
-        t71 = t12 * t70
-        t72 = t18 * t71
-        t73 = t3 * t70
-        t74 = t25 * t73
-        t75 = t72 - t74
-        t76 = 1.0 / t42
-        t77 = t75 * t76
-        t78 = 1.0 - t77
-        t79 = t69 * t78
-        t80 = t8 * t12
-        t81 = t5 * t4
-        t82 = t6 * t3
-        t83 = t81 + t82
-        t84 = t3 * t83
-        t85 = t80 + t84
-        t86 = t62 * t85
-        t87 = t9 * t70
-        t88 = t18 * t87
-        t89 = t21 * t73
-        t90 = t88 + t89
-        t91 = t76 * t90
-        t92 = t86 * t91
-        t93 = t79 + t92
-        t94 = t4 * t8
-        t95 = t62 * t94
-        t96 = t34 * t73
-        t97 = Theta_2 * t73
-        t98 = t96 - t97
-        t99 = t76 * t98
-        t100 = t95 * t99
-        t101 = t93 - t100
-        t102 = theta_dot * t20
-        t103 = theta_dot * t6
-        t104 = t102 * t103
-        t105 = theta_dot * t5
-        t106 = y_dot * t105
-        t107 = x_dot * t103
-        t108 = t106 + t107
-        t109 = t108 * t69
-        t110 = t62 * t82
-        t111 = phi_dot * t3
-        t112 = L * t111
-        t113 = theta_dot * t112
-        t114 = theta_dot + phi_dot
-        t115 = t114 * t66
-        t116 = x_dot * t115
-        t117 = t114 * t83
-        t118 = y_dot * t117
-        t119 = t116 + t118
-        t120 = t113 + t119
-        t121 = t110 * t120
-        t122 = t109 + t121
-        t123 = t18 * t122
-        t124 = t8 * t62
-        t125 = t124 * t120
-        t126 = t108 * t95
-        t127 = t125 - t126
-        t128 = t25 * t127
-        t129 = t123 + t128
-        t130 = t104 + t129
-        t131 = t101 * t130
-        t132 = Theta_2 * t9
-        t133 = t3 * t132
-        t134 = t34 * t133
-        t135 = Theta_2 * t133
-        t136 = t134 - t135
-        t137 = t76 * t136
-        t138 = t95 * t137
-        t139 = t25 * t133
-        t140 = t88 - t139
-        t141 = t76 * t140
-        t142 = t69 * t141
-        t143 = t9 * t132
-        t144 = t18 * t143
-        t145 = t74 + t144
-        t146 = t145 * t76
-        t147 = 1.0 - t146
-        t148 = t86 * t147
-        t149 = t142 + t148
-        t150 = t138 + t149
-        t151 = t102 * t105
-        t152 = t62 * t65
-        t153 = t152 * t120
-        t154 = t108 * t86
-        t155 = t153 - t154
-        t156 = t18 * t155
-        t157 = t126 - t125
-        t158 = t21 * t157
-        t159 = t156 + t158
-        t160 = t151 + t159
-        t161 = t150 * t160
-        t162 = t131 - t161
-        t163 = t34 * t40
-        t164 = t163 - t41
-        t165 = t164 * t76
-        t166 = 1.0 - t165
-        t167 = t95 * t166
-        t168 = t25 * t40
-        t169 = t18 * t73
-        t170 = t168 - t169
-        t171 = t76 * t170
-        t172 = t69 * t171
-        t173 = t18 * t133
-        t174 = t21 * t40
-        t175 = t173 + t174
-        t176 = t76 * t175
-        t177 = t86 * t176
-        t178 = t172 + t177
-        t179 = t167 + t178
-        t180 = t34 * t157
-        t181 = t20 * t108
-        t182 = t180 - t181
-        t183 = t179 * t182
-        t184 = t162 + t183
-        t185 = t169 - t168
-        t186 = t76 * t185
-        t187 = t69 * t186
-        t188 = t187 - t177
-        t189 = t188 - t167
-        t190 = Theta_2 * t157
-        t191 = t189 * t190
-        t192 = t184 + t191
-        t193 = t66 * t101
-        t194 = t83 * t150
-        t195 = t193 - t194
-        t196 = L * t3
-        t197 = t196 * t179
-        t198 = t195 + t197
-        t199 = K_f * t198
-        t200 = T * t189
-        t201 = t199 + t200
-        t202 = t192 + t201
-        t203 = t110 * t78
-        t204 = t152 * t91
-        t205 = t203 - t204
-        t206 = t124 * t99
-        t207 = t205 + t206
-        t208 = t207 * t130
-        t209 = t152 * t147
-        t210 = t110 * t141
-        t211 = t209 - t210
-        t212 = t124 * t137
-        t213 = t211 + t212
-        t214 = t213 * t160
-        t215 = t208 + t214
-        t216 = t110 * t171
-        t217 = t152 * t176
-        t218 = t216 - t217
-        t219 = t124 * t166
-        t220 = t218 - t219
-        t221 = t220 * t182
-        t222 = t215 + t221
-        t223 = t110 * t186
-        t224 = t217 + t223
-        t225 = t219 + t224
-        t226 = t225 * t190
-        t227 = t222 + t226
-        t228 = T * t225
-        t229 = t196 * t220
-        t230 = t66 * t207
-        t231 = t83 * t213
-        t232 = t230 + t231
-        t233 = t229 + t232
-        t234 = K_f * t233
-        t235 = t228 + t234
-        t236 = t227 + t235
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t43 > t61), 5)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = Theta_1 * t7
+        t24 = t22 + t23
+        t25 = Theta_2 * t24
+        t26 = np.abs(t25)
+        t27 = np.abs(m_1)
+        t28 = np.abs(m_2)
+        t29 = t27 + t28
+        t30 = np.abs(Theta_2)
+        t31 = t29 * t30
+        t32 = t13 * t31
+        t33 = t10 * t31
+        t34 = np.abs(Theta_1)
+        t35 = np.abs(L)
+        t36 = t35 * t35
+        t37 = t28 * t36
+        t38 = t34 + t37
+        t39 = t30 * t38
+        t40 = t7 * t39
+        t41 = t33 + t40
+        t42 = t32 + t41
+        t43 = t42 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t44 = 1.0 / t25
+        t45 = L * Theta_2
+        t46 = t5 * t4
+        t47 = m_1 * t46
+        t48 = t6 * t3
+        t49 = t46 + t48
+        t50 = m_2 * t49
+        t51 = t47 + t50
+        t52 = t45 * t51
+        t53 = L * m_2
+        t54 = theta_dot * t53
+        t55 = theta_dot * t6
+        t56 = t54 * t55
+        t57 = t6 * t4
+        t58 = t5 * t3
+        t59 = t57 - t58
+        t60 = K_f * t59
+        t61 = t56 + t60
+        t62 = m_1 + m_2
+        t63 = theta_dot * t5
+        t64 = y_dot * t63
+        t65 = x_dot * t55
+        t66 = t64 + t65
+        t67 = t8 * t66
+        t68 = t67 * t52
+        t69 = L * L
+        t70 = m_2 * t69
+        t71 = Theta_1 + t70
+        t72 = t3 * t71
+        t73 = Theta_2 * t72
+        t74 = phi_dot * t3
+        t75 = L * t74
+        t76 = theta_dot * t75
+        t77 = theta_dot + phi_dot
+        t78 = t77 * t59
+        t79 = x_dot * t78
+        t80 = t77 * t49
+        t81 = y_dot * t80
+        t82 = t79 + t81
+        t83 = t76 + t82
+        t84 = t6 * t83
+        t85 = t66 * t59
+        t86 = t84 - t85
+        t87 = t73 * t86
+        t88 = t68 + t87
+        t89 = t44 * t88
+        t90 = t62 * t89
+        t91 = t5 * t53
+        t92 = m_1 * t57
+        t93 = m_2 * t59
+        t94 = t92 + t93
+        t95 = t45 * t94
+        t96 = t85 - t84
+        t97 = t95 * t96
+        t98 = t5 * t83
+        t99 = t66 * t49
+        t100 = t98 - t99
+        t101 = t52 * t100
+        t102 = t97 - t101
+        t103 = t44 * t102
+        t104 = t91 * t103
+        t105 = t90 - t104
+        t106 = t61 + t105
+        t107 = t52 * t106
+        t108 = t54 * t63
+        t109 = K_f * t49
+        t110 = t108 + t109
+        t111 = t73 * t100
+        t112 = t67 * t95
+        t113 = t111 - t112
+        t114 = t44 * t113
+        t115 = t62 * t114
+        t116 = t6 * t53
+        t117 = t116 * t103
+        t118 = t115 + t117
+        t119 = t110 + t118
+        t120 = t95 * t119
+        t121 = t107 - t120
+        t122 = t8 * t121
+        t123 = T * t95
+        t124 = L * t3
+        t125 = K_f * t124
+        t126 = Theta_2 + t71
+        t127 = t126 * t103
+        t128 = t53 * t66
+        t129 = t127 - t128
+        t130 = t101 - t97
+        t131 = t44 * t130
+        t132 = Theta_2 * t131
+        t133 = t129 + t132
+        t134 = t125 + t133
+        t135 = t95 * t134
+        t136 = t123 - t135
+        t137 = t73 * t106
+        t138 = t136 + t137
+        t139 = t59 * t138
+        t140 = t122 - t139
+        t141 = T * t52
+        t142 = t52 * t134
+        t143 = t141 - t142
+        t144 = t73 * t119
+        t145 = t143 + t144
+        t146 = t49 * t145
+        t147 = t140 - t146
+        t148 = t44 * t147
+        t149 = t6 * t138
+        t150 = t5 * t145
+        t151 = t149 + t150
+        t152 = t44 * t151
         entries = (
-            t202,
-            t236,
+            t148,
+            t152,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2999,98 +2792,157 @@ class _CParameters(ctypes.Structure):
     ]
 
 
-# quantity: (lengths of the array arguments, shape of the result)
+# quantity: (lengths of the array arguments, shape of the result, whether there is a batch kernel)
 _SIGNATURES = {
-    mass_matrix: ((4,), (4, 4)),
-    coriolis_matrix: ((4, 4), (4, 4)),
-    coriolis_force: ((4, 4), (4,)),
-    potential_force: ((4,), (4,)),
-    applied_force: ((4, 4), (4,)),
-    constraint_jacobian: ((4,), (2, 4)),
-    constraint_jacobian_dot: ((4, 4), (2, 4)),
-    constraint_pseudoinverse: ((4,), (4, 2)),
-    nullspace_projector: ((4,), (4, 4)),
-    nullspace_projector_dot: ((4, 4), (4, 4)),
-    weighted_pseudoinverse: ((4,), (4, 2)),
-    weighted_nullspace_projector: ((4,), (4, 4)),
-    control_matrix: ((4,), (4, 2)),
-    projected_control_matrix: ((4,), (4, 2)),
-    projected_control_pseudoinverse: ((4,), (2, 4)),
-    orthogonal_complement: ((4,), (4, 2)),
-    projected_mass_matrix: ((4,), (4, 4)),
-    projected_coriolis_matrix: ((4, 4), (4, 4)),
-    projected_potential_force: ((4,), (4,)),
-    projected_applied_force: ((4, 4), (4,)),
-    minimal_mass_matrix: ((4,), (2, 2)),
-    minimal_coriolis_matrix: ((4, 4), (2, 2)),
-    minimal_potential_force: ((4,), (2,)),
-    minimal_applied_force: ((4, 4), (2,)),
-    minimal_control_matrix: ((4,), (2, 2)),
-    admissible_velocity: ((4, 4), (4,)),
-    admissible_acceleration: ((4, 4, 4), (4,)),
-    projected_configuration: ((4,), (4,)),
-    inverse_dynamics: ((4, 4, 4), (2,)),
-    inverse_dynamics_residual: ((4, 4, 4), (4,)),
-    actuator_velocity: ((4, 4), (2,)),
-    actuator_mass_matrix: ((4,), (2, 2)),
-    actuator_bias: ((4, 4), (2,)),
-    forward_dynamics: ((4, 4, 2), (4,)),
-    multipliers: ((4, 4, 2), (2,)),
-    energy: ((4, 4), (2,)),
-    singularity: ((4,), (2,)),
+    mass_matrix: ((4,), (4, 4), False),
+    coriolis_matrix: ((4, 4), (4, 4), False),
+    coriolis_force: ((4, 4), (4,), False),
+    potential_force: ((4,), (4,), False),
+    applied_force: ((4, 4), (4,), False),
+    constraint_jacobian: ((4,), (2, 4), False),
+    constraint_jacobian_dot: ((4, 4), (2, 4), False),
+    constraint_pseudoinverse: ((4,), (4, 2), False),
+    nullspace_projector: ((4,), (4, 4), False),
+    nullspace_projector_dot: ((4, 4), (4, 4), False),
+    weighted_pseudoinverse: ((4,), (4, 2), False),
+    weighted_nullspace_projector: ((4,), (4, 4), False),
+    control_matrix: ((4,), (4, 2), False),
+    projected_control_matrix: ((4,), (4, 2), False),
+    projected_control_pseudoinverse: ((4,), (2, 4), False),
+    orthogonal_complement: ((4,), (4, 2), False),
+    projected_mass_matrix: ((4,), (4, 4), False),
+    projected_coriolis_matrix: ((4, 4), (4, 4), False),
+    projected_potential_force: ((4,), (4,), False),
+    projected_applied_force: ((4, 4), (4,), False),
+    minimal_mass_matrix: ((4,), (2, 2), False),
+    minimal_coriolis_matrix: ((4, 4), (2, 2), False),
+    minimal_potential_force: ((4,), (2,), False),
+    minimal_applied_force: ((4, 4), (2,), False),
+    minimal_control_matrix: ((4,), (2, 2), False),
+    admissible_velocity: ((4, 4), (4,), False),
+    admissible_acceleration: ((4, 4, 4), (4,), False),
+    projected_configuration: ((4,), (4,), False),
+    inverse_dynamics: ((4, 4, 4), (2,), True),
+    inverse_dynamics_residual: ((4, 4, 4), (4,), False),
+    actuator_velocity: ((4, 4), (2,), False),
+    actuator_mass_matrix: ((4,), (2, 2), False),
+    actuator_bias: ((4, 4), (2,), False),
+    forward_dynamics: ((4, 4, 2), (4,), True),
+    multipliers: ((4, 4, 2), (2,), True),
+    energy: ((4, 4), (2,), False),
+    singularity: ((4,), (2,), False),
 }
-_FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+_FILES = ('front_car_wheelset.h', 'front_car_wheelset.c', 'front_car_wheelset_batch.h', 'front_car_wheelset_batch.c')
+_FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+# The first of these that the compiler knows: this machine's vector instructions, at their full width.
+_MACHINE_FLAGS = (("-march=native", "-mprefer-vector-width=512"), ("-march=native",), ("-mcpu=native",), ())
+_CHUNK = 4096  # states whose components stay in the cache between two transpositions
 
 
 class Compiled:
-    """The functions of this module, run by the compiled C."""
+    """The functions of this module with the same arguments, results and errors.
 
-    def __init__(self, library: ctypes.CDLL) -> None:
-        for function, (lengths, shape) in _SIGNATURES.items():
-            call = getattr(library, "front_car_wheelset_" + function.__name__)
-            call.restype = ctypes.c_int
-            call.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
-            setattr(self, function.__name__, functools.partial(_run, call, function, lengths, shape))
+    Single states and the quantities with a batch kernel run in C, all else in NumPy: other quantities of many states,
+    and parameters that are arrays. Without a library NumPy does everything.
+    """
+
+    def __init__(self, library: ctypes.CDLL | None) -> None:
+        for function, signature in _SIGNATURES.items():
+            setattr(self, function.__name__, function if library is None else _compiled(library, function, *signature))
 
 
-def _run(call, function, lengths, shape, *args, **kwargs):
-    bound = inspect.signature(function).bind(*args, **kwargs)
-    bound.apply_defaults()
-    *values, p = bound.arguments.values()
-    names = list(bound.arguments)[:-1]
-    arrays = {name: _array(name, length, value) for name, length, value in zip(names, lengths, values)}
-    *arrays, batch = _states(**arrays)
-    rows = [np.ascontiguousarray(array).reshape(-1, array.shape[-1]) for array in arrays]
-    parameters = _CParameters(p.L, p.m_1, p.m_2, p.Theta_1, p.Theta_2)
-    result = np.empty((len(rows[0]), int(np.prod(shape))))
-    for index in range(len(result)):
-        status = call(*(row[index].ctypes.data for row in rows), ctypes.addressof(parameters), result[index].ctypes.data)
-        if status != 0 and not batch:
-            raise StateError(function.__name__, Status(status))
+_last = PARAMETERS, None
+
+
+def _c_parameters(p):
+    """The C struct of parameters, kept for the next call with the same ones; None where one of them is an array."""
+    global _last
+    known, struct = _last
+    if p is not known or struct is None:
+        members = (p.L, p.m_1, p.m_2, p.Theta_1, p.Theta_2, )
+        if any(map(np.ndim, members)):
+            return None
+        struct = _CParameters(*members)
+        if type(p) is Parameters:  # which is frozen; what else has these attributes may change
+            _last = p, struct
+    return struct
+
+
+def _compiled(library, function, lengths, shape, batched):
+    one = getattr(library, "front_car_wheelset_" + function.__name__)
+    one.restype = ctypes.c_int
+    one.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
+    many = getattr(library, "front_car_wheelset_" + function.__name__ + "_batch") if batched else None
+    if many is not None:
+        many.restype = ctypes.c_size_t
+        many.argtypes = [ctypes.c_size_t] * 2 + [ctypes.c_void_p] * (len(lengths) + 3)
+    signature = inspect.signature(function)
+    names = list(signature.parameters)[:-1]
+
+    @functools.wraps(function)
+    def run(*args, **kwargs):
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        *values, p = bound.arguments.values()
+        arrays = [_array(name, length, value) for name, length, value in zip(names, lengths, values)]
+        single = all(array.ndim == 1 for array in arrays)
+        parameters = _c_parameters(p)
+        if parameters is None or not (single or many):
+            return function(*args, **kwargs)
+        if not single:
+            if len({array.shape[:-1] for array in arrays}) > 1:
+                *arrays, _ = _states(**dict(zip(names, arrays)))
+            return _many(many, arrays, parameters, arrays[0].shape[:-1], shape)
+        arrays = [np.ascontiguousarray(array) for array in arrays]
+        result = np.empty(shape)
+        status = one(*(a.ctypes.data for a in arrays), ctypes.addressof(parameters), result.ctypes.data)
         if status != 0:
-            result[index] = np.nan
+            raise StateError(function.__name__, Status(status))
+        return result
+
+    return run
+
+
+def _many(kernel, arrays, parameters, batch, shape):
+    """The kernel takes arrays of components: states are transposed there and back, a chunk at a time."""
+    rows = [array.reshape(-1, array.shape[-1]) for array in arrays]
+    count = len(rows[0])
+    result = np.empty((count, int(np.prod(shape))))
+    stride = min(count, _CHUNK)
+    places = [np.empty((width, stride)) for width in (*(row.shape[1] for row in rows), result.shape[1])]
+    pointers = [place.ctypes.data for place in places]
+    pointers.insert(len(rows), ctypes.addressof(parameters))
+    for start in range(0, count, _CHUNK):
+        length = min(_CHUNK, count - start)
+        for place, row in zip(places, rows):
+            place[:, :length] = row[start : start + length].T
+        kernel(length, stride, *pointers, None)
+        result[start : start + length] = places[-1][:, :length].T
     return result.reshape(batch + shape)
 
 
 def compile():
-    """Builds ../c/front_car_wheelset.c with the system's C compiler (CC, else cc) into a cache folder.
+    """Builds the C beside this module (../c) with the system's C compiler (CC, else cc) into a cache folder.
 
-    Returns an object with the functions of this module. Raises FileNotFoundError without source or compiler and
-    RuntimeError with the compiler's message when it fails.
+    Returns an object with the functions of this module. Without a compiler it warns, and NumPy does the work. Raises
+    FileNotFoundError without the C files and RuntimeError with the compiler's message when it fails.
     """
     folder = Path(__file__).resolve().parent.parent / "c"
-    source, header = folder / "front_car_wheelset.c", folder / "front_car_wheelset.h"
+    contents = b"".join((folder / name).read_bytes() for name in _FILES)
     command = os.environ.get("CC", "cc").split()
     if not command or shutil.which(command[0]) is None:
-        raise FileNotFoundError(f"no C compiler {' '.join(command)!r}: install one or set CC")
-    command += _FLAGS
-    text = repr((command, platform.machine())).encode() + source.read_bytes() + header.read_bytes()
-    built = _cache_folder() / f"front_car_wheelset-{hashlib.sha256(text).hexdigest()[:24]}.so"
+        message = f"no C compiler {' '.join(command)!r}: NumPy does the work; install one or set CC"
+        warnings.warn(message, RuntimeWarning, stacklevel=2)
+        return Compiled(None)
+    command, machine = _for_this_machine([*command, *_FLAGS])
+    key = hashlib.sha256(repr((command, machine)).encode() + contents).hexdigest()[:24]
+    built = _cache_folder() / f"front_car_wheelset-{key}.so"
     if not built.exists():
         handle, name = tempfile.mkstemp(dir=built.parent, suffix=".tmp")
         os.close(handle)
         try:
-            made = subprocess.run([*command, "-o", name, str(source), "-lm"], capture_output=True, text=True, check=False)
+            sources = [str(folder / name) for name in _FILES if name.endswith(".c")]
+            made = _told([*command, "-o", name, *sources, "-lm"])
             if made.returncode != 0:
                 raise RuntimeError(f"{' '.join(command)} failed:\n{made.stderr}")
             os.replace(name, built)
@@ -3099,9 +2951,23 @@ def compile():
     return Compiled(ctypes.CDLL(str(built)))
 
 
+def _for_this_machine(command):
+    """The command with flags for this machine, and what the compiler then says of itself and of the machine."""
+    for flags in _MACHINE_FLAGS:
+        told = _told([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
+        if told.returncode == 0:
+            return [*command, *flags], (platform.machine(), told.stdout)
+    raise RuntimeError(f"{' '.join(command)} failed:\n{told.stderr}")
+
+
+def _told(command):
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
 def _cache_folder() -> Path:
     """The user's cache folder, or a fresh private one where that cannot be written."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    usual = {"darwin": Path.home() / "Library" / "Caches", "win32": Path(os.environ.get("LOCALAPPDATA", Path.home()))}
+    base = os.environ.get("XDG_CACHE_HOME") or usual.get(sys.platform, Path.home() / ".cache")
     folder = Path(base) / "symgen"
     try:
         folder.mkdir(parents=True, exist_ok=True)

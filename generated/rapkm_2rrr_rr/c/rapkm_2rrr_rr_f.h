@@ -19,8 +19,8 @@
  *
  * Operations                          + -      *      /   sqrt sincos  other
  * mass_matrix                          16     20      0      0      3      0
- * coriolis_matrix                       4     26      0      0      3      0
- * coriolis_force                        4     28      0      0      3      0
+ * coriolis_matrix                       4     20      0      0      3      0
+ * coriolis_force                        4     26      0      0      3      0
  * potential_force                       0      0      0      0      0      0
  * applied_force                         0      0      0      0      0      0
  * constraint_residual                  23      8      0      0      6      0
@@ -29,29 +29,29 @@
  * constraint_pseudoinverse            138    210     14      4      6      0
  * nullspace_projector                 109    173      4      4      6      0
  * nullspace_projector_dot             391    549     14      4      6      0
- * weighted_pseudoinverse              410    603     27      4      6      0
- * weighted_nullspace_projector        206    329     17      4      6      0
+ * weighted_pseudoinverse              375    554      1      0      6      0
+ * weighted_nullspace_projector        206    327     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            118    174      1      0      6      0
- * projected_control_pseudoinverse      47    117      1      0      6      0
- * orthogonal_complement                27     72      1      0      6      0
- * projected_mass_matrix               269    398      4      4      6      0
- * projected_coriolis_matrix           722   1037     14      4      6      0
+ * projected_control_pseudoinverse      58    128      1      0      6      0
+ * orthogonal_complement                38     84      1      0      6      0
+ * projected_mass_matrix               269    396      4      4      6      0
+ * projected_coriolis_matrix           722   1014     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  66    129      1      0      6      0
- * minimal_coriolis_matrix             336    540     15      4      6      0
+ * minimal_mass_matrix                  77    139      1      0      6      0
+ * minimal_coriolis_matrix             337    541     15      4      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
- * minimal_control_matrix               12     36      1      0      6      0
+ * minimal_control_matrix               27     56      1      0      6      0
  * admissible_velocity                  96    139      4      4      6      0
  * admissible_acceleration             191    273      8      4      6      0
  * projected_configuration             228    244     16      8     12      0
- * inverse_dynamics                     86    171      1      0      6      0
+ * inverse_dynamics                     51     85      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    253    385     11      4      6      0
- * multipliers                         505    747     31      4      6      0
- * energy                               18     43      0      0      3      0
+ * forward_dynamics                    230    361     20      7      6      0
+ * multipliers                         215    328     24      7      6      0
+ * energy                               18     39      0      0      3      0
  * singularity                          64    104     17      4      6      0
  * (changes of sign are not counted)
  *

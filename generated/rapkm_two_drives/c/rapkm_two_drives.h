@@ -18,8 +18,8 @@
  *
  * Operations                          + -      *      /   sqrt sincos  other
  * mass_matrix                          16     20      0      0      3      0
- * coriolis_matrix                       4     26      0      0      3      0
- * coriolis_force                        4     28      0      0      3      0
+ * coriolis_matrix                       4     20      0      0      3      0
+ * coriolis_force                        4     26      0      0      3      0
  * potential_force                       0      0      0      0      0      0
  * applied_force                         0      0      0      0      0      0
  * constraint_residual                  23      8      0      0      6      0
@@ -28,32 +28,32 @@
  * constraint_pseudoinverse            138    210     14      4      6      0
  * nullspace_projector                 109    173      4      4      6      0
  * nullspace_projector_dot             391    549     14      4      6      0
- * weighted_pseudoinverse              410    603     27      4      6      0
- * weighted_nullspace_projector        206    329     17      4      6      0
+ * weighted_pseudoinverse              375    554      1      0      6      0
+ * weighted_nullspace_projector        206    327     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            105    158      1      0      6      0
- * projected_control_pseudoinverse      27     72      1      0      6      0
- * orthogonal_complement                27     72      1      0      6      0
- * projected_mass_matrix               269    398      4      4      6      0
- * projected_coriolis_matrix           722   1037     14      4      6      0
+ * projected_control_pseudoinverse      38     84      1      0      6      0
+ * orthogonal_complement                38     84      1      0      6      0
+ * projected_mass_matrix               269    396      4      4      6      0
+ * projected_coriolis_matrix           722   1014     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  66    129      1      0      6      0
- * minimal_coriolis_matrix             336    540     15      4      6      0
+ * minimal_mass_matrix                  77    139      1      0      6      0
+ * minimal_coriolis_matrix             336    541     15      4      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                  96    139      4      4      6      0
  * admissible_acceleration             191    273      8      4      6      0
  * projected_configuration             228    244     16      8     12      0
- * inverse_dynamics                     70    142      1      0      6      0
+ * inverse_dynamics                     43     83      4      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                 66    129      1      0      6      0
- * actuator_bias                       181    324      2      0      6      0
- * forward_dynamics                    252    385     11      4      6      0
- * multipliers                         501    743     31      4      6      0
- * energy                               18     43      0      0      3      0
+ * actuator_mass_matrix                 77    139      1      0      6      0
+ * actuator_bias                       180    315      2      0      6      0
+ * forward_dynamics                    229    361     20      7      6      0
+ * multipliers                         214    328     24      7      6      0
+ * energy                               18     39      0      0      3      0
  * singularity                          62    103     17      4      6      0
  * (changes of sign are not counted)
  *

@@ -23,31 +23,31 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     17      1      0      2      0
 nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               31     79      2      0      2      0
-weighted_nullspace_projector         15     59      4      0      2      0
+weighted_pseudoinverse               17     49      3      0      2      0
+weighted_nullspace_projector         14     53      4      0      2      0
 control_matrix                        0      0      0      0      1      0
 projected_control_matrix              3     11      3      0      2      0
-projected_control_pseudoinverse       0      2      1      0      2      0
-orthogonal_complement                 0      4      2      0      2      0
-projected_mass_matrix                10     43      3      0      2      0
-projected_coriolis_matrix            74    204      3      0      2      0
+projected_control_pseudoinverse       1      3      1      0      2      0
+orthogonal_complement                 1      6      2      0      2      0
+projected_mass_matrix                10     45      3      0      2      0
+projected_coriolis_matrix            74    205      3      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
-minimal_mass_matrix                   4     10      1      0      2      0
-minimal_coriolis_matrix              13     42      1      0      2      0
+minimal_mass_matrix                   3     12      1      0      2      0
+minimal_coriolis_matrix              13     41      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
-minimal_control_matrix                0      3      1      0      2      0
+minimal_control_matrix                1      5      1      0      2      0
 admissible_velocity                   5     21      2      0      2      0
 admissible_acceleration              17     76      2      0      2      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                      7     20      1      0      2      0
+inverse_dynamics                      7     17      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     1      2      0      0      1      0
-actuator_mass_matrix                  3      6      1      0      1      0
-actuator_bias                         5     17      1      0      2      0
-forward_dynamics                     40     96      2      0      2      0
-multipliers                          59    132      2      0      2      0
+actuator_mass_matrix                  4      7      1      0      1      0
+actuator_bias                         5     16      1      0      2      0
+forward_dynamics                     35     91      1      0      2      0
+multipliers                          38     89      1      0      2      0
 energy                                7     16      0      0      1      0
 singularity                           9     20      4      1      2      0
 (changes of sign are not counted)
@@ -67,7 +67,9 @@ import os
 import platform
 import shutil
 import subprocess
+import sys
 import tempfile
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -459,6 +461,7 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = 1.0 / t14
         t19 = t8 * t9
         t20 = t6 * t4
@@ -482,7 +485,6 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t38 = t36 * t37
         t39 = t4 * t36
         t40 = -t39
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t25,
             t27,
@@ -523,6 +525,7 @@ def nullspace_projector(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = 1.0 / t14
         t19 = t13 * t18
         t20 = t9 * t12
@@ -533,7 +536,6 @@ def nullspace_projector(q, p=PARAMETERS):
         t25 = t9 * t5
         t26 = t18 * t25
         t27 = t7 * t18
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t19,
             t21,
@@ -585,6 +587,7 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L * L
         t19 = t14 * t14
         t20 = t18 / t19
@@ -652,7 +655,6 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t82 = t3 * t81
         t83 = t20 * t82
         t84 = 2.0 * t83
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t34,
             t52,
@@ -705,122 +707,81 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = m_1 + m_2
-        t19 = t9 * t18
-        t20 = L * m_2
-        t21 = t6 * t20
-        t22 = t3 * t21
-        t23 = t19 + t22
-        t24 = t9 * t23
-        t25 = t5 * t20
-        t26 = t3 * t25
-        t27 = t12 * t18
-        t28 = t26 - t27
-        t29 = t12 * t28
-        t30 = t24 - t29
-        t31 = L * L
-        t32 = m_2 * t31
-        t33 = Theta_1 + t32
-        t34 = t3 * t33
-        t35 = t3 * t34
-        t36 = t30 + t35
-        t37 = Theta_2 * t36
-        t38 = np.abs(t37)
-        t39 = np.abs(Theta_1)
-        t40 = np.abs(m_2)
-        t41 = np.abs(L)
-        t42 = t41 * t41
-        t43 = t40 * t42
-        t44 = t39 + t43
-        t45 = np.abs(Theta_2)
-        t46 = t44 * t45
-        t47 = t7 * t46
-        t48 = np.abs(m_1)
-        t49 = t48 + t40
-        t50 = t49 * t45
-        t51 = t10 * t50
-        t52 = t47 + t51
-        t53 = t13 * t50
-        t54 = t52 + t53
-        t55 = t54 * 3.552713678800501e-15
-        t56 = t6 * t3
-        t57 = t18 + t32
-        t58 = t57 - t33
-        t59 = t4 * t58
-        t60 = t4 * t59
-        t61 = m_2 * t7
-        t62 = t60 + t61
-        t63 = t56 * t62
-        t64 = Theta_2 * t63
-        t65 = t5 * t4
-        t66 = t65 * t37
-        t67 = t64 + t66
-        t68 = L * t67
-        t69 = L * t68
-        t70 = t56 * t37
-        t71 = t69 - t70
-        t72 = t4 * t71
-        t73 = t5 * t3
-        t74 = t3 * t73
-        t75 = t37 * t74
-        t76 = t72 + t75
-        t77 = t14 * t37
-        t78 = 1.0 / t77
-        t79 = t76 * t78
-        t80 = L * Theta_2
-        t81 = t4 * t4
-        t82 = t33 - t18
-        t83 = t81 * t82
-        t84 = t80 * t83
-        t85 = L * t84
-        t86 = t37 + t85
-        t87 = t56 * t86
-        t88 = t78 * t87
-        t89 = t73 * t62
-        t90 = Theta_2 * t89
-        t91 = t6 * t4
-        t92 = t91 * t37
-        t93 = t90 - t92
-        t94 = L * t93
-        t95 = L * t94
-        t96 = t73 * t37
-        t97 = t95 - t96
-        t98 = t4 * t97
-        t99 = t3 * t56
-        t100 = t37 * t99
-        t101 = t98 - t100
-        t102 = t78 * t101
-        t103 = t73 * t86
-        t104 = t78 * t103
-        t105 = t7 * t31
-        t106 = (-2.0) + t105
-        t107 = t81 + t106
-        t108 = m_2 * t107
-        t109 = t18 - t33
-        t110 = t7 * t109
-        t111 = t108 + t110
-        t112 = t4 * t111
-        t113 = t4 * t112
-        t114 = m_2 + t113
-        t115 = Theta_2 * t114
-        t116 = t81 * t37
-        t117 = t115 + t116
-        t118 = L / t77
-        t119 = t117 * t118
-        t120 = t7 * t82
-        t121 = Theta_2 * t120
-        t122 = t121 - t37
-        t123 = t4 * t122
-        t124 = t118 * t123
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t38 > t55), 5)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = Theta_1 * t7
+        t24 = t22 + t23
+        t25 = Theta_2 * t24
+        t26 = np.abs(t25)
+        t27 = np.abs(Theta_1)
+        t28 = np.abs(m_2)
+        t29 = np.abs(L)
+        t30 = t29 * t29
+        t31 = t28 * t30
+        t32 = t27 + t31
+        t33 = np.abs(Theta_2)
+        t34 = t32 * t33
+        t35 = t7 * t34
+        t36 = np.abs(m_1)
+        t37 = t36 + t28
+        t38 = t37 * t33
+        t39 = t10 * t38
+        t40 = t35 + t39
+        t41 = t13 * t38
+        t42 = t40 + t41
+        t43 = t42 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t44 = 1.0 / t25
+        t45 = L * Theta_2
+        t46 = t5 * t4
+        t47 = m_1 * t46
+        t48 = t6 * t3
+        t49 = t46 + t48
+        t50 = m_2 * t49
+        t51 = t47 + t50
+        t52 = t45 * t51
+        t53 = t8 * t52
+        t54 = t6 * t4
+        t55 = t5 * t3
+        t56 = t54 - t55
+        t57 = L * L
+        t58 = m_2 * t57
+        t59 = Theta_1 + t58
+        t60 = t3 * t59
+        t61 = Theta_2 * t60
+        t62 = t56 * t61
+        t63 = t53 - t62
+        t64 = t44 * t63
+        t65 = Theta_2 * t59
+        t66 = t65 / t25
+        t67 = t48 * t66
+        t68 = m_1 * t54
+        t69 = m_2 * t56
+        t70 = t68 + t69
+        t71 = t45 * t70
+        t72 = t8 * t71
+        t73 = t49 * t61
+        t74 = t72 + t73
+        t75 = t44 * t74
+        t76 = -t75
+        t77 = t55 * t66
+        t78 = t45 / t25
+        t79 = t20 * t78
+        t80 = m_1 + m_2
+        t81 = t4 * t80
+        t82 = t78 * t81
+        t83 = -t82
         entries = (
+            t64,
+            t67,
+            t76,
+            t77,
             t79,
-            t88,
-            t102,
-            t104,
-            t119,
-            t124,
+            t83,
             0.0,
             0.0,
         )
@@ -841,110 +802,103 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(theta)
-        t2 = np.abs(phi)
+        t1 = np.abs(phi)
+        t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(theta)
-        t5, t6 = _sincos(phi)
-        t7 = t5 * t5
-        t8 = L * t6
-        t9 = t3 * t8
+        t3, t4 = _sincos(phi)
+        t5, t6 = _sincos(theta)
+        t7 = t3 * t3
+        t8 = L * t4
+        t9 = t5 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t4 * t8
+        t12 = t6 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = m_1 + m_2
-        t19 = t9 * t18
-        t20 = L * m_2
-        t21 = t4 * t20
-        t22 = t5 * t21
-        t23 = t19 + t22
-        t24 = t9 * t23
-        t25 = t3 * t20
-        t26 = t5 * t25
-        t27 = t12 * t18
-        t28 = t26 - t27
-        t29 = t12 * t28
-        t30 = t24 - t29
-        t31 = L * L
-        t32 = m_2 * t31
-        t33 = Theta_1 + t32
-        t34 = t5 * t33
-        t35 = t5 * t34
-        t36 = t30 + t35
-        t37 = Theta_2 * t36
-        t38 = np.abs(t37)
-        t39 = np.abs(Theta_1)
-        t40 = np.abs(m_2)
-        t41 = np.abs(L)
-        t42 = t41 * t41
-        t43 = t40 * t42
-        t44 = t39 + t43
-        t45 = np.abs(Theta_2)
-        t46 = t44 * t45
-        t47 = t7 * t46
-        t48 = np.abs(m_1)
-        t49 = t48 + t40
-        t50 = t49 * t45
-        t51 = t10 * t50
-        t52 = t47 + t51
-        t53 = t13 * t50
-        t54 = t52 + t53
-        t55 = t54 * 3.552713678800501e-15
-        t56 = Theta_2 * t31
-        t57 = t56 / t37
-        t58 = t4 * t6
-        t59 = t18 * t58
-        t60 = t3 * t5
-        t61 = m_2 * t60
-        t62 = t59 - t61
-        t63 = t58 * t62
-        t64 = t57 * t63
-        t65 = t4 * t5
-        t66 = m_2 * t65
-        t67 = t3 * t6
-        t68 = t18 * t67
-        t69 = t66 + t68
-        t70 = t58 * t69
-        t71 = t57 * t70
-        t72 = t5 * t58
-        t73 = L * Theta_2
-        t74 = t33 * t73
-        t75 = t74 / t37
-        t76 = t72 * t75
-        t77 = t67 * t62
-        t78 = t57 * t77
-        t79 = t67 * t69
-        t80 = t57 * t79
-        t81 = t5 * t67
-        t82 = t81 * t75
-        t83 = t73 / t37
-        t84 = t5 * t62
-        t85 = t83 * t84
-        t86 = t5 * t69
-        t87 = t83 * t86
-        t88 = Theta_2 * t33
-        t89 = t88 / t37
-        t90 = t7 * t89
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t38 > t55), 5)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = Theta_1 * t7
+        t24 = t22 + t23
+        t25 = Theta_2 * t24
+        t26 = np.abs(t25)
+        t27 = np.abs(Theta_1)
+        t28 = np.abs(m_2)
+        t29 = np.abs(L)
+        t30 = t29 * t29
+        t31 = t28 * t30
+        t32 = t27 + t31
+        t33 = np.abs(Theta_2)
+        t34 = t32 * t33
+        t35 = t7 * t34
+        t36 = np.abs(m_1)
+        t37 = t36 + t28
+        t38 = t37 * t33
+        t39 = t10 * t38
+        t40 = t35 + t39
+        t41 = t13 * t38
+        t42 = t40 + t41
+        t43 = t42 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t44 = L * L
+        t45 = Theta_2 * t44
+        t46 = t45 / t25
+        t47 = t6 * t4
+        t48 = m_1 * t47
+        t49 = t5 * t3
+        t50 = t47 - t49
+        t51 = m_2 * t50
+        t52 = t48 + t51
+        t53 = t47 * t52
+        t54 = t46 * t53
+        t55 = t5 * t4
+        t56 = m_1 * t55
+        t57 = t6 * t3
+        t58 = t55 + t57
+        t59 = m_2 * t58
+        t60 = t56 + t59
+        t61 = t47 * t60
+        t62 = t46 * t61
+        t63 = t3 * t47
+        t64 = m_2 * t44
+        t65 = Theta_1 + t64
+        t66 = L * Theta_2
+        t67 = t65 * t66
+        t68 = t67 / t25
+        t69 = t63 * t68
+        t70 = t55 * t52
+        t71 = t46 * t70
+        t72 = t55 * t60
+        t73 = t46 * t72
+        t74 = t3 * t55
+        t75 = t74 * t68
+        t76 = t66 / t25
+        t77 = t3 * t52
+        t78 = t76 * t77
+        t79 = t3 * t60
+        t80 = t76 * t79
+        t81 = Theta_2 * t65
+        t82 = t81 / t25
+        t83 = t7 * t82
         entries = (
-            t64,
+            t54,
+            t62,
+            t69,
+            0.0,
             t71,
-            t76,
+            t73,
+            t75,
             0.0,
             t78,
             t80,
-            t82,
-            0.0,
-            t85,
-            t87,
-            t90,
+            t83,
             0.0,
             0.0,
             0.0,
@@ -1005,13 +959,13 @@ def projected_control_matrix(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = t8 * t12
         t19 = t18 / t14
         t20 = t8 * t9
         t21 = t20 / t14
         t22 = t8 * t3
         t23 = t22 / t14
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t19,
             0.0,
@@ -1042,28 +996,25 @@ def projected_control_pseudoinverse(q, p=PARAMETERS):
         t3, t4 = _sincos(theta)
         t5, t6 = _sincos(phi)
         t7 = L * t6
-        t8 = np.abs(t7)
-        t9 = np.abs(L)
-        t10 = t9 * 3.552713678800501e-15
-        t11 = t5 / t7
+        t8 = t7 * t7
+        t9 = 1.0 + t8
+        t10 = t9 * 1.262177448353619e-29
         _failed_ = ~np.asarray(t8 > t10)
         if np.any(_failed_ & (status == 0)):
-            t12 = t5 * t5
-            t13 = t3 * t7
-            t14 = t13 * t13
-            t15 = t12 + t14
-            t16 = t4 * t7
-            t17 = t16 * t16
-            t18 = t15 + t17
-            t19 = t7 * t7
-            t20 = 1.0 + t19
-            t21 = t20 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t18 > t21), 2)
+            t11 = t5 * t5
+            t12 = t3 * t7
+            t13 = t12 * t12
+            t14 = t11 + t13
+            t15 = t4 * t7
+            t16 = t15 * t15
+            t17 = t14 + t16
+            status = _first(status, _failed_ & ~np.asarray(t17 > t10), 2)
             status = _first(status, _failed_, 3)
+        t18 = t5 / t7
         entries = (
             t4,
             t3,
-            t11,
+            t18,
             0.0,
             0.0,
             0.0,
@@ -1091,31 +1042,28 @@ def orthogonal_complement(q, p=PARAMETERS):
         t5, t6 = _sincos(phi)
         t7 = L * t6
         t8 = t4 * t7
-        t9 = np.abs(t8)
-        t10 = np.abs(L)
-        t11 = t10 * 3.552713678800501e-15
-        t12 = 1.0 / t4
-        t13 = t3 * t12
-        t14 = t5 / t8
-        _failed_ = ~np.asarray(t9 > t11)
+        t9 = t8 * t8
+        t10 = t7 * t7
+        t11 = 1.0 + t10
+        t12 = t11 * 1.262177448353619e-29
+        _failed_ = ~np.asarray(t9 > t12)
         if np.any(_failed_ & (status == 0)):
-            t15 = t5 * t5
-            t16 = t3 * t7
-            t17 = t16 * t16
-            t18 = t15 + t17
-            t19 = t8 * t8
-            t20 = t18 + t19
-            t21 = t7 * t7
-            t22 = 1.0 + t21
-            t23 = t22 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t20 > t23), 2)
+            t13 = t5 * t5
+            t14 = t3 * t7
+            t15 = t14 * t14
+            t16 = t13 + t15
+            t17 = t16 + t9
+            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
+        t18 = 1.0 / t4
+        t19 = t3 * t18
+        t20 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t13,
+            t19,
             0.0,
-            t14,
+            t20,
             0.0,
             0.0,
             1.0,
@@ -1154,64 +1102,66 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L * L
         t19 = t14 * t14
         t20 = t18 / t19
         t21 = t6 * t6
         t22 = t4 * t21
         t23 = t4 * t22
-        t24 = m_2 * t18
-        t25 = Theta_1 + t24
-        t26 = m_1 + m_2
-        t27 = t26 * t18
-        t28 = t27 - t25
-        t29 = t4 * t28
-        t30 = t4 * t29
-        t31 = t25 + t30
-        t32 = t23 * t31
-        t33 = t20 * t32
-        t34 = t5 * t6
+        t24 = t4 * t4
+        t25 = m_1 * t24
+        t26 = m_2 + t25
+        t27 = L * t26
+        t28 = L * t27
+        t29 = Theta_1 * t7
+        t30 = t28 + t29
+        t31 = t23 * t30
+        t32 = t20 * t31
+        t33 = t5 * t6
+        t34 = t4 * t33
         t35 = t4 * t34
-        t36 = t4 * t35
-        t37 = t36 * t31
-        t38 = t20 * t37
-        t39 = L / t19
-        t40 = t6 * t4
-        t41 = t3 * t40
-        t42 = t41 * t31
-        t43 = t39 * t42
-        t44 = t5 * t5
+        t36 = t35 * t30
+        t37 = t20 * t36
+        t38 = L / t19
+        t39 = t6 * t4
+        t40 = t3 * t39
+        t41 = t40 * t30
+        t42 = t38 * t41
+        t43 = t5 * t5
+        t44 = t4 * t43
         t45 = t4 * t44
-        t46 = t4 * t45
-        t47 = t46 * t31
-        t48 = t20 * t47
-        t49 = t5 * t4
-        t50 = t3 * t49
-        t51 = t50 * t31
-        t52 = t39 * t51
-        t53 = t4 * t4
-        t54 = t53 + (-2.0)
-        t55 = t25 * t54
-        t56 = t7 * t27
-        t57 = t55 + t56
-        t58 = t4 * t57
-        t59 = t4 * t58
-        t60 = t25 + t59
-        t61 = 1.0 / t19
-        t62 = t60 * t61
-        status = _first(status, ~np.asarray(t14 > t17), 2)
+        t46 = t45 * t30
+        t47 = t20 * t46
+        t48 = t5 * t4
+        t49 = t3 * t48
+        t50 = t49 * t30
+        t51 = t38 * t50
+        t52 = m_2 * t18
+        t53 = Theta_1 + t52
+        t54 = t24 + (-2.0)
+        t55 = t53 * t54
+        t56 = m_1 + m_2
+        t57 = t56 * t18
+        t58 = t7 * t57
+        t59 = t55 + t58
+        t60 = t4 * t59
+        t61 = t4 * t60
+        t62 = t53 + t61
+        t63 = 1.0 / t19
+        t64 = t62 * t63
         entries = (
-            t33,
-            t38,
-            t43,
+            t32,
+            t37,
+            t42,
             0.0,
-            t38,
-            t48,
-            t52,
+            t37,
+            t47,
+            t51,
             0.0,
-            t43,
-            t52,
-            t62,
+            t42,
+            t51,
+            t64,
             0.0,
             0.0,
             0.0,
@@ -1256,6 +1206,7 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L * L
         t19 = t14 * t14
         t20 = t14 * t19
@@ -1269,276 +1220,276 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t28 = L * t27
         t29 = theta_dot * t3
         t30 = t28 + t29
-        t31 = t7 * t18
-        t32 = t4 * t4
-        t33 = t32 + (-2.0)
-        t34 = t14 + t33
-        t35 = t31 + t34
-        t36 = t6 * t35
-        t37 = m_2 * t36
-        t38 = t5 * t4
-        t39 = t3 * t38
-        t40 = m_1 + m_2
-        t41 = t40 * t18
-        t42 = t39 * t41
-        t43 = t37 - t42
-        t44 = t4 * t43
-        t45 = m_2 * t18
-        t46 = Theta_1 + t45
-        t47 = t40 + t46
-        t48 = t5 * t3
-        t49 = t3 * t48
+        t31 = L * t7
+        t32 = L * t31
+        t33 = t4 * t4
+        t34 = t33 + (-2.0)
+        t35 = t14 + t34
+        t36 = t32 + t35
+        t37 = t6 * t36
+        t38 = m_2 * t37
+        t39 = t5 * t4
+        t40 = t3 * t39
+        t41 = m_1 + m_2
+        t42 = t41 * t18
+        t43 = t40 * t42
+        t44 = t38 - t43
+        t45 = t4 * t44
+        t46 = m_2 * t18
+        t47 = Theta_1 + t46
+        t48 = t41 + t47
+        t49 = t5 * t3
         t50 = t3 * t49
-        t51 = t47 * t50
-        t52 = t44 - t51
-        t53 = t4 * t52
-        t54 = t7 + t15
-        t55 = 1.0 - t54
-        t56 = t6 * t55
-        t57 = m_2 * t56
-        t58 = t53 + t57
-        t59 = t30 * t58
-        t60 = 2.0 * t40
-        t61 = t46 - t60
-        t62 = phi_dot * t6
-        t63 = t3 * t62
-        t64 = t14 * t63
-        t65 = t61 * t64
-        t66 = t59 + t65
-        t67 = L * t66
+        t51 = t3 * t50
+        t52 = t48 * t51
+        t53 = t45 - t52
+        t54 = t4 * t53
+        t55 = t7 + t15
+        t56 = 1.0 - t55
+        t57 = t6 * t56
+        t58 = m_2 * t57
+        t59 = t54 + t58
+        t60 = t30 * t59
+        t61 = 2.0 * t41
+        t62 = t47 - t61
+        t63 = phi_dot * t6
+        t64 = t3 * t63
+        t65 = t14 * t64
+        t66 = t62 * t65
+        t67 = t60 + t66
         t68 = L * t67
-        t69 = 2.0 - t32
-        t70 = t4 * t30
-        t71 = t69 * t70
-        t72 = t5 * t71
-        t73 = t14 * t62
-        t74 = t72 + t73
-        t75 = t3 * t74
-        t76 = t46 * t75
-        t77 = t68 + t76
-        t78 = t4 * t77
-        t79 = t30 * t48
-        t80 = t46 * t79
-        t81 = t78 - t80
-        t82 = t4 * t81
-        t83 = t46 * t64
-        t84 = t82 - t83
-        t85 = t23 * t84
-        t86 = t22 * t85
-        t87 = (-1.0) + t18
-        t88 = t40 * t87
-        t89 = t88 - t46
-        t90 = t3 * t89
-        t91 = t6 * t90
-        t92 = m_2 * t38
-        t93 = t91 + t92
-        t94 = t4 * t93
-        t95 = (-2.0) + t31
-        t96 = t5 * t95
-        t97 = m_2 * t96
-        t98 = t94 + t97
-        t99 = t4 * t98
-        t100 = t6 * t3
-        t101 = t100 * t47
-        t102 = t99 + t101
-        t103 = t4 * t102
-        t104 = t7 * t14
-        t105 = 1.0 - t104
-        t106 = t5 * t105
-        t107 = m_2 * t106
-        t108 = t103 + t107
-        t109 = t30 * t108
-        t110 = phi_dot * t5
-        t111 = t3 * t110
-        t112 = t14 * t111
-        t113 = t61 * t112
-        t114 = t109 + t113
-        t115 = L * t114
+        t69 = L * t68
+        t70 = 2.0 - t33
+        t71 = t4 * t30
+        t72 = t70 * t71
+        t73 = t5 * t72
+        t74 = t14 * t63
+        t75 = t73 + t74
+        t76 = t3 * t75
+        t77 = t47 * t76
+        t78 = t69 + t77
+        t79 = t4 * t78
+        t80 = t30 * t49
+        t81 = t47 * t80
+        t82 = t79 - t81
+        t83 = t4 * t82
+        t84 = t47 * t65
+        t85 = t83 - t84
+        t86 = t23 * t85
+        t87 = t22 * t86
+        t88 = (-1.0) + t18
+        t89 = t41 * t88
+        t90 = t89 - t47
+        t91 = t3 * t90
+        t92 = t6 * t91
+        t93 = m_2 * t39
+        t94 = t92 + t93
+        t95 = t4 * t94
+        t96 = (-2.0) + t32
+        t97 = t5 * t96
+        t98 = m_2 * t97
+        t99 = t95 + t98
+        t100 = t4 * t99
+        t101 = t6 * t3
+        t102 = t101 * t48
+        t103 = t100 + t102
+        t104 = t4 * t103
+        t105 = t7 * t14
+        t106 = 1.0 - t105
+        t107 = t5 * t106
+        t108 = m_2 * t107
+        t109 = t104 + t108
+        t110 = t30 * t109
+        t111 = phi_dot * t5
+        t112 = t3 * t111
+        t113 = t14 * t112
+        t114 = t62 * t113
+        t115 = t110 + t114
         t116 = L * t115
-        t117 = t3 * t23
-        t118 = t30 * t117
-        t119 = t33 * t118
-        t120 = t46 * t119
-        t121 = t116 + t120
-        t122 = t4 * t121
-        t123 = t30 * t100
-        t124 = t46 * t123
-        t125 = t122 + t124
-        t126 = t4 * t125
-        t127 = t3 * t111
-        t128 = t3 * t127
-        t129 = t14 * t128
-        t130 = t46 * t129
-        t131 = t126 - t130
-        t132 = t23 * t131
-        t133 = t22 * t132
-        t134 = L * t18
-        t135 = t134 / t21
-        t136 = t4 * t23
-        t137 = 2.0 * t46
-        t138 = t137 - t40
-        t139 = phi_dot * t3
-        t140 = t14 * t139
-        t141 = t138 * t140
-        t142 = t3 * t141
-        t143 = phi_dot * t4
-        t144 = t4 * t143
-        t145 = t14 * t144
-        t146 = t41 * t145
-        t147 = t142 + t146
-        t148 = t136 * t147
-        t149 = t135 * t148
-        t150 = 1.0 - t18
-        t151 = t40 * t150
-        t152 = t46 + t151
-        t153 = t3 * t152
-        t154 = t5 * t153
-        t155 = m_2 * t23
-        t156 = t154 + t155
-        t157 = t4 * t156
-        t158 = t6 * t95
-        t159 = m_2 * t158
-        t160 = t157 + t159
-        t161 = t4 * t160
-        t162 = t48 * t47
-        t163 = t161 - t162
-        t164 = t4 * t163
-        t165 = t6 * t105
-        t166 = m_2 * t165
-        t167 = t164 + t166
-        t168 = t30 * t167
-        t169 = t65 + t168
-        t170 = L * t169
+        t117 = L * t116
+        t118 = t3 * t23
+        t119 = t30 * t118
+        t120 = t34 * t119
+        t121 = t47 * t120
+        t122 = t117 + t121
+        t123 = t4 * t122
+        t124 = t30 * t101
+        t125 = t47 * t124
+        t126 = t123 + t125
+        t127 = t4 * t126
+        t128 = t3 * t112
+        t129 = t3 * t128
+        t130 = t14 * t129
+        t131 = t47 * t130
+        t132 = t127 - t131
+        t133 = t23 * t132
+        t134 = t22 * t133
+        t135 = L * t18
+        t136 = t135 / t21
+        t137 = t4 * t23
+        t138 = 2.0 * t47
+        t139 = t138 - t41
+        t140 = phi_dot * t3
+        t141 = t14 * t140
+        t142 = t139 * t141
+        t143 = t3 * t142
+        t144 = phi_dot * t4
+        t145 = t4 * t144
+        t146 = t14 * t145
+        t147 = t42 * t146
+        t148 = t143 + t147
+        t149 = t137 * t148
+        t150 = t136 * t149
+        t151 = 1.0 - t18
+        t152 = t41 * t151
+        t153 = t47 + t152
+        t154 = t3 * t153
+        t155 = t5 * t154
+        t156 = m_2 * t23
+        t157 = t155 + t156
+        t158 = t4 * t157
+        t159 = t6 * t96
+        t160 = m_2 * t159
+        t161 = t158 + t160
+        t162 = t4 * t161
+        t163 = t49 * t48
+        t164 = t162 - t163
+        t165 = t4 * t164
+        t166 = t6 * t106
+        t167 = m_2 * t166
+        t168 = t165 + t167
+        t169 = t30 * t168
+        t170 = t66 + t169
         t171 = L * t170
-        t172 = t30 * t39
-        t173 = t69 * t172
-        t174 = t46 * t173
-        t175 = t171 + t174
-        t176 = t4 * t175
-        t177 = t176 - t80
-        t178 = t4 * t177
-        t179 = t3 * t63
-        t180 = t3 * t179
-        t181 = t14 * t180
-        t182 = t46 * t181
-        t183 = t178 - t182
-        t184 = t38 * t183
-        t185 = t22 * t184
-        t186 = t38 * t131
-        t187 = t22 * t186
-        t188 = t4 * t38
-        t189 = t188 * t147
-        t190 = t135 * t189
-        t191 = 2.0 - t31
-        t192 = t191 - t32
-        t193 = t40 * t192
-        t194 = t46 * t69
-        t195 = t193 + t194
-        t196 = t5 * t195
-        t197 = m_2 * t117
-        t198 = t196 + t197
-        t199 = t4 * t198
-        t200 = t100 * t95
-        t201 = m_2 * t200
-        t202 = t199 + t201
-        t203 = t4 * t202
-        t204 = t5 * t47
-        t205 = t203 - t204
-        t206 = t4 * t205
-        t207 = t100 * t105
-        t208 = m_2 * t207
-        t209 = t206 + t208
-        t210 = t30 * t209
-        t211 = t14 * t179
-        t212 = t61 * t211
-        t213 = t210 + t212
-        t214 = L * t213
+        t172 = L * t171
+        t173 = t30 * t40
+        t174 = t70 * t173
+        t175 = t47 * t174
+        t176 = t172 + t175
+        t177 = t4 * t176
+        t178 = t177 - t81
+        t179 = t4 * t178
+        t180 = t3 * t64
+        t181 = t3 * t180
+        t182 = t14 * t181
+        t183 = t47 * t182
+        t184 = t179 - t183
+        t185 = t39 * t184
+        t186 = t22 * t185
+        t187 = t39 * t132
+        t188 = t22 * t187
+        t189 = t4 * t39
+        t190 = t189 * t148
+        t191 = t136 * t190
+        t192 = 2.0 - t32
+        t193 = t192 - t33
+        t194 = t41 * t193
+        t195 = t47 * t70
+        t196 = t194 + t195
+        t197 = t5 * t196
+        t198 = m_2 * t118
+        t199 = t197 + t198
+        t200 = t4 * t199
+        t201 = t101 * t96
+        t202 = m_2 * t201
+        t203 = t200 + t202
+        t204 = t4 * t203
+        t205 = t5 * t48
+        t206 = t204 - t205
+        t207 = t4 * t206
+        t208 = t101 * t106
+        t209 = m_2 * t208
+        t210 = t207 + t209
+        t211 = t30 * t210
+        t212 = t14 * t180
+        t213 = t62 * t212
+        t214 = t211 + t213
         t215 = L * t214
-        t216 = t4 * t32
-        t217 = t4 * t216
-        t218 = 3.0 * t7
-        t219 = t217 + t218
-        t220 = t30 * t219
-        t221 = t5 * t220
-        t222 = t4 * t62
-        t223 = t14 * t222
-        t224 = t221 - t223
-        t225 = t4 * t224
-        t226 = 2.0 * t73
-        t227 = t225 + t226
-        t228 = t46 * t227
-        t229 = t215 + t228
-        t230 = t4 * t229
-        t231 = t5 * t30
-        t232 = t46 * t231
-        t233 = t230 - t232
-        t234 = t4 * t233
-        t235 = t46 * t73
-        t236 = t234 - t235
-        t237 = L / t21
-        t238 = t236 * t237
-        t239 = t46 * t33
-        t240 = t32 + t95
-        t241 = t40 * t240
-        t242 = t239 + t241
-        t243 = t6 * t242
-        t244 = m_2 * t39
-        t245 = t243 + t244
-        t246 = t4 * t245
-        t247 = t48 * t95
-        t248 = m_2 * t247
-        t249 = t246 + t248
-        t250 = t4 * t249
-        t251 = t6 * t47
-        t252 = t250 + t251
-        t253 = t4 * t252
-        t254 = t48 * t105
-        t255 = m_2 * t254
-        t256 = t253 + t255
-        t257 = t30 * t256
-        t258 = t14 * t127
-        t259 = t61 * t258
-        t260 = t257 + t259
-        t261 = L * t260
+        t216 = L * t215
+        t217 = t4 * t33
+        t218 = t4 * t217
+        t219 = 3.0 * t7
+        t220 = t218 + t219
+        t221 = t30 * t220
+        t222 = t5 * t221
+        t223 = t4 * t63
+        t224 = t14 * t223
+        t225 = t222 - t224
+        t226 = t4 * t225
+        t227 = 2.0 * t74
+        t228 = t226 + t227
+        t229 = t47 * t228
+        t230 = t216 + t229
+        t231 = t4 * t230
+        t232 = t5 * t30
+        t233 = t47 * t232
+        t234 = t231 - t233
+        t235 = t4 * t234
+        t236 = t47 * t74
+        t237 = t235 - t236
+        t238 = L / t21
+        t239 = t237 * t238
+        t240 = t47 * t34
+        t241 = t33 + t96
+        t242 = t41 * t241
+        t243 = t240 + t242
+        t244 = t6 * t243
+        t245 = m_2 * t40
+        t246 = t244 + t245
+        t247 = t4 * t246
+        t248 = t49 * t96
+        t249 = m_2 * t248
+        t250 = t247 + t249
+        t251 = t4 * t250
+        t252 = t6 * t48
+        t253 = t251 + t252
+        t254 = t4 * t253
+        t255 = t49 * t106
+        t256 = m_2 * t255
+        t257 = t254 + t256
+        t258 = t30 * t257
+        t259 = t14 * t128
+        t260 = t62 * t259
+        t261 = t258 + t260
         t262 = L * t261
-        t263 = t14 * t110
-        t264 = 2.0 * t263
-        t265 = t6 * t220
-        t266 = t4 * t110
-        t267 = t14 * t266
-        t268 = t265 + t267
-        t269 = t4 * t268
-        t270 = t264 - t269
-        t271 = t46 * t270
-        t272 = t262 + t271
-        t273 = t4 * t272
-        t274 = t6 * t30
-        t275 = t46 * t274
-        t276 = t273 + t275
-        t277 = t4 * t276
-        t278 = t46 * t263
-        t279 = t277 - t278
-        t280 = t237 * t279
-        t281 = t32 * t41
-        t282 = t3 * t138
-        t283 = t3 * t282
-        t284 = t281 + t283
-        t285 = t140 * t284
-        t286 = t4 * t285
-        t287 = t22 * t286
-        status = _first(status, ~np.asarray(t14 > t17), 2)
+        t263 = L * t262
+        t264 = t14 * t111
+        t265 = 2.0 * t264
+        t266 = t6 * t221
+        t267 = t4 * t111
+        t268 = t14 * t267
+        t269 = t266 + t268
+        t270 = t4 * t269
+        t271 = t265 - t270
+        t272 = t47 * t271
+        t273 = t263 + t272
+        t274 = t4 * t273
+        t275 = t6 * t30
+        t276 = t47 * t275
+        t277 = t274 + t276
+        t278 = t4 * t277
+        t279 = t47 * t264
+        t280 = t278 - t279
+        t281 = t238 * t280
+        t282 = t33 * t42
+        t283 = t3 * t139
+        t284 = t3 * t283
+        t285 = t282 + t284
+        t286 = t141 * t285
+        t287 = t4 * t286
+        t288 = t22 * t287
         entries = (
-            t86,
-            t133,
-            t149,
+            t87,
+            t134,
+            t150,
             0.0,
-            t185,
-            t187,
-            t190,
+            t186,
+            t188,
+            t191,
             0.0,
-            t238,
-            t280,
-            t287,
+            t239,
+            t281,
+            t288,
             0.0,
             0.0,
             0.0,
@@ -1603,35 +1554,31 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t5, t6 = _sincos(theta)
         t7 = L * t4
         t8 = t6 * t7
-        t9 = np.abs(t8)
-        t10 = np.abs(L)
-        t11 = t10 * 3.552713678800501e-15
-        t12 = L * L
-        t13 = m_2 * t12
-        t14 = Theta_1 + t13
-        t15 = m_1 + m_2
-        t16 = t15 * t12
-        t17 = t16 - t14
-        t18 = t4 * t17
-        t19 = t4 * t18
-        t20 = t14 + t19
-        t21 = t8 * t8
-        t22 = 1.0 / t21
-        t23 = t20 * t22
-        _failed_ = ~np.asarray(t9 > t11)
+        t9 = t8 * t8
+        t10 = t7 * t7
+        t11 = 1.0 + t10
+        t12 = t11 * 1.262177448353619e-29
+        _failed_ = ~np.asarray(t9 > t12)
         if np.any(_failed_ & (status == 0)):
-            t24 = t3 * t3
-            t25 = t5 * t7
-            t26 = t25 * t25
-            t27 = t24 + t26
-            t28 = t27 + t21
-            t29 = t7 * t7
-            t30 = 1.0 + t29
-            t31 = t30 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t28 > t31), 2)
+            t13 = t3 * t3
+            t14 = t5 * t7
+            t15 = t14 * t14
+            t16 = t13 + t15
+            t17 = t16 + t9
+            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = t3 * t3
+        t24 = Theta_1 * t23
+        t25 = t22 + t24
+        t26 = 1.0 / t9
+        t27 = t25 * t26
         entries = (
-            t23,
+            t27,
             0.0,
             0.0,
             Theta_2,
@@ -1672,60 +1619,57 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = np.abs(t12)
-        t19 = np.abs(L)
-        t20 = t19 * 3.552713678800501e-15
-        t21 = t5 * t4
-        t22 = t3 * t21
-        t23 = m_1 + m_2
-        t24 = L * L
-        t25 = m_2 * t24
-        t26 = Theta_1 + t25
-        t27 = t23 + t26
-        t28 = t22 * t27
-        t29 = t3 * t28
-        t30 = t23 * t24
-        t31 = t4 * t21
-        t32 = t4 * t31
-        t33 = t30 * t32
-        t34 = t29 + t33
-        t35 = L * t34
-        t36 = L * t35
-        t37 = t4 * t4
-        t38 = t37 + (-2.0)
-        t39 = t21 * t38
-        t40 = t26 * t39
-        t41 = t36 + t40
-        t42 = theta_dot * t41
-        t43 = phi_dot * t6
-        t44 = t3 * t43
-        t45 = (-1.0) + t24
-        t46 = t44 * t45
-        t47 = t26 * t46
-        t48 = t42 + t47
-        t49 = t4 * t48
-        t50 = theta_dot * t5
-        t51 = t26 * t50
-        t52 = t49 + t51
-        t53 = t4 * t52
-        t54 = t26 * t44
-        t55 = t53 + t54
-        t56 = t6 * t24
-        t57 = t6 * t56
-        t58 = t6 * t57
-        t59 = t4 * t58
-        t60 = t4 * t59
-        t61 = t4 * t60
-        t62 = t14 * t61
-        t63 = 1.0 / t62
-        t64 = t55 * t63
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        _failed_ = ~np.asarray(t18 > t20)
+        _failed_ = ~np.asarray(t13 > t17)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 2)
+        t18 = t5 * t4
+        t19 = t3 * t18
+        t20 = m_1 + m_2
+        t21 = L * L
+        t22 = m_2 * t21
+        t23 = Theta_1 + t22
+        t24 = t20 + t23
+        t25 = t19 * t24
+        t26 = t3 * t25
+        t27 = t20 * t21
+        t28 = t4 * t18
+        t29 = t4 * t28
+        t30 = t27 * t29
+        t31 = t26 + t30
+        t32 = L * t31
+        t33 = L * t32
+        t34 = t4 * t4
+        t35 = t34 + (-2.0)
+        t36 = t18 * t35
+        t37 = t23 * t36
+        t38 = t33 + t37
+        t39 = theta_dot * t38
+        t40 = phi_dot * t6
+        t41 = t3 * t40
+        t42 = (-1.0) + t21
+        t43 = t41 * t42
+        t44 = t23 * t43
+        t45 = t39 + t44
+        t46 = t4 * t45
+        t47 = theta_dot * t5
+        t48 = t23 * t47
+        t49 = t46 + t48
+        t50 = t4 * t49
+        t51 = t23 * t41
+        t52 = t50 + t51
+        t53 = t6 * t21
+        t54 = t6 * t53
+        t55 = t6 * t54
+        t56 = t4 * t55
+        t57 = t4 * t56
+        t58 = t4 * t57
+        t59 = t14 * t58
+        t60 = 1.0 / t59
+        t61 = t52 * t60
         entries = (
-            t64,
+            t61,
             0.0,
             0.0,
             0.0,
@@ -1780,25 +1724,22 @@ def minimal_control_matrix(q, p=PARAMETERS):
         t5, t6 = _sincos(phi)
         t7 = L * t6
         t8 = t4 * t7
-        t9 = np.abs(t8)
-        t10 = np.abs(L)
-        t11 = t10 * 3.552713678800501e-15
-        t12 = 1.0 / t4
-        _failed_ = ~np.asarray(t9 > t11)
+        t9 = t8 * t8
+        t10 = t7 * t7
+        t11 = 1.0 + t10
+        t12 = t11 * 1.262177448353619e-29
+        _failed_ = ~np.asarray(t9 > t12)
         if np.any(_failed_ & (status == 0)):
             t13 = t5 * t5
             t14 = t3 * t7
             t15 = t14 * t14
             t16 = t13 + t15
-            t17 = t8 * t8
-            t18 = t16 + t17
-            t19 = t7 * t7
-            t20 = 1.0 + t19
-            t21 = t20 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t18 > t21), 2)
+            t17 = t16 + t9
+            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
+        t18 = 1.0 / t4
         entries = (
-            t12,
+            t18,
             0.0,
             0.0,
             1.0,
@@ -1838,6 +1779,7 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L / t14
         t19 = x_dot * t6
         t20 = y_dot * t5
@@ -1855,7 +1797,6 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t32 = 1.0 / t14
         t33 = t3 * t25
         t34 = t32 * t33
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t28,
             t31,
@@ -1902,6 +1843,7 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = y_ddot * t6
         t19 = t14 * t18
         t20 = t14 * t19
@@ -1986,7 +1928,6 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t99 = t14 * t98
         t100 = t96 + t99
         t101 = t89 * t100
-        status = _first(status, ~np.asarray(t14 > t17), 2)
         entries = (
             t59,
             t88,
@@ -2037,59 +1978,52 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = L * t4
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = L * t6
         t8 = np.abs(t7)
         t9 = np.abs(L)
         t10 = t9 * 3.552713678800501e-15
-        t11 = 1.0 / t7
-        t12 = y_ddot * t6
-        t13 = x_ddot * t5
-        t14 = t12 - t13
-        t15 = t3 * t14
-        t16 = theta_dot * theta_dot
-        t17 = t4 * t16
-        t18 = L * t17
-        t19 = t15 - t18
-        t20 = m_2 * t19
-        t21 = m_1 + m_2
-        t22 = x_ddot * t6
-        t23 = y_ddot * t5
-        t24 = t22 + t23
-        t25 = t4 * t24
-        t26 = t21 * t25
-        t27 = t20 + t26
-        t28 = L * t27
-        t29 = L * L
-        t30 = m_2 * t29
-        t31 = Theta_1 + t30
-        t32 = theta_ddot * t3
-        t33 = t31 * t32
-        t34 = t28 + t33
-        t35 = t11 * t34
-        t36 = phi_ddot * Theta_2
         _failed_ = ~np.asarray(t8 > t10)
         if np.any(_failed_ & (status == 0)):
-            t37 = t3 * t3
-            t38 = t5 * t7
-            t39 = t38 * t38
-            t40 = t37 + t39
-            t41 = t6 * t7
-            t42 = t41 * t41
-            t43 = t40 + t42
-            t44 = t7 * t7
-            t45 = 1.0 + t44
-            t46 = t45 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t43 > t46), 2)
+            t11 = t5 * t5
+            t12 = t7 * t7
+            t13 = t11 + t12
+            t14 = t9 * t9
+            t15 = 1.0 + t14
+            t16 = t15 * 1.262177448353619e-29
+            status = _first(status, _failed_ & ~np.asarray(t13 > t16), 2)
             status = _first(status, _failed_, 3)
+        t17 = m_1 + m_2
+        t18 = x_ddot * t4
+        t19 = y_ddot * t3
+        t20 = t18 + t19
+        t21 = t17 * t20
+        t22 = L * m_2
+        t23 = theta_dot * theta_dot
+        t24 = t22 * t23
+        t25 = t21 - t24
+        t26 = L * L
+        t27 = m_2 * t26
+        t28 = Theta_1 + t27
+        t29 = theta_ddot * t28
+        t30 = t4 * t22
+        t31 = y_ddot * t30
+        t32 = t3 * t22
+        t33 = x_ddot * t32
+        t34 = t31 - t33
+        t35 = t29 + t34
+        t36 = t35 / t7
+        t37 = t5 * t36
+        t38 = t25 + t37
+        t39 = phi_ddot * Theta_2
         entries = (
-            t35,
-            t36,
+            t38,
+            t39,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -2155,34 +2089,33 @@ def actuator_mass_matrix(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = L * t3
-        t5 = np.abs(t4)
-        t6 = np.abs(L)
-        t7 = t6 * 3.552713678800501e-15
-        t8 = m_1 + m_2
-        t9 = t2 / t4
-        t10 = L * L
-        t11 = m_2 * t10
-        t12 = Theta_1 + t11
-        t13 = t12 * t9
-        t14 = t9 * t13
-        t15 = t8 + t14
+        t5 = t4 * t4
+        t6 = 1.0 + t5
+        t7 = t6 * 1.262177448353619e-29
         _failed_ = ~np.asarray(t5 > t7)
         if np.any(_failed_ & (status == 0)):
-            t16 = t2 * t2
-            t17, t18 = _sincos(theta)
-            t19 = t17 * t4
-            t20 = t19 * t19
-            t21 = t16 + t20
-            t22 = t18 * t4
-            t23 = t22 * t22
-            t24 = t21 + t23
-            t25 = t4 * t4
-            t26 = 1.0 + t25
-            t27 = t26 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t24 > t27), 2)
+            t8 = t2 * t2
+            t9, t10 = _sincos(theta)
+            t11 = t9 * t4
+            t12 = t11 * t11
+            t13 = t8 + t12
+            t14 = t10 * t4
+            t15 = t14 * t14
+            t16 = t13 + t15
+            t17 = np.abs(theta)
+            status = _first(status, _failed_ & ~np.asarray(100000.0 >= t17), 4)
+            status = _first(status, _failed_ & ~np.asarray(t16 > t7), 2)
             status = _first(status, _failed_, 3)
+        t18 = m_1 + m_2
+        t19 = t2 / t4
+        t20 = L * L
+        t21 = m_2 * t20
+        t22 = Theta_1 + t21
+        t23 = t22 * t19
+        t24 = t19 * t23
+        t25 = t18 + t24
         entries = (
-            t15,
+            t25,
             0.0,
             0.0,
             Theta_2,
@@ -2223,27 +2156,24 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = np.abs(t8)
-        t19 = np.abs(L)
-        t20 = t19 * 3.552713678800501e-15
-        t21 = L * L
-        t22 = m_2 * t21
-        t23 = Theta_1 + t22
-        t24 = t4 * t15
-        t25 = t23 / t24
-        t26 = x_dot * t6
-        t27 = y_dot * t5
-        t28 = t26 + t27
-        t29 = phi_dot * t3
-        t30 = t28 * t29
-        t31 = t25 * t30
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        _failed_ = ~np.asarray(t18 > t20)
+        _failed_ = ~np.asarray(t15 > t17)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 3)
+        t18 = L * L
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = t4 * t15
+        t22 = t20 / t21
+        t23 = x_dot * t6
+        t24 = y_dot * t5
+        t25 = t23 + t24
+        t26 = phi_dot * t3
+        t27 = t25 * t26
+        t28 = t22 * t27
         entries = (
-            t31,
+            t28,
             0.0,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
@@ -2271,163 +2201,152 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(theta)
-        t2 = np.abs(phi)
+        t1 = np.abs(phi)
+        t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(theta)
-        t5, t6 = _sincos(phi)
-        t7 = t5 * t5
-        t8 = L * t6
-        t9 = t3 * t8
+        t3, t4 = _sincos(phi)
+        t5, t6 = _sincos(theta)
+        t7 = t3 * t3
+        t8 = L * t4
+        t9 = t5 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t4 * t8
+        t12 = t6 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = m_1 + m_2
-        t19 = t9 * t18
-        t20 = L * m_2
-        t21 = t4 * t20
-        t22 = t5 * t21
-        t23 = t19 + t22
-        t24 = t9 * t23
-        t25 = t3 * t20
-        t26 = t5 * t25
-        t27 = t12 * t18
-        t28 = t26 - t27
-        t29 = t12 * t28
-        t30 = t24 - t29
-        t31 = L * L
-        t32 = m_2 * t31
-        t33 = Theta_1 + t32
-        t34 = t5 * t33
-        t35 = t5 * t34
-        t36 = t30 + t35
-        t37 = Theta_2 * t36
-        t38 = np.abs(t37)
-        t39 = np.abs(Theta_1)
-        t40 = np.abs(m_2)
-        t41 = np.abs(L)
-        t42 = t41 * t41
-        t43 = t40 * t42
-        t44 = t39 + t43
-        t45 = np.abs(Theta_2)
-        t46 = t44 * t45
-        t47 = t7 * t46
-        t48 = np.abs(m_1)
-        t49 = t48 + t40
-        t50 = t49 * t45
-        t51 = t10 * t50
-        t52 = t47 + t51
-        t53 = t13 * t50
-        t54 = t52 + t53
-        t55 = t54 * 3.552713678800501e-15
-        t56 = 1.0 / t37
-        t57 = Theta_2 * t12
-        t58 = t12 * t57
-        t59 = theta_dot * t20
-        t60 = theta_dot * t4
-        t61 = t59 * t60
-        t62 = K_r * t4
-        t63 = t61 + t62
-        t64 = theta_dot * t3
-        t65 = y_dot * t64
-        t66 = x_dot * t60
-        t67 = t65 + t66
-        t68 = 1.0 / t14
-        t69 = t8 * t9
-        t70 = t4 * t6
-        t71 = t3 * t5
-        t72 = t70 - t71
-        t73 = t5 * t72
-        t74 = t69 - t73
-        t75 = t68 * t74
-        t76 = t67 * t75
-        t77 = t4 * t5
-        t78 = t68 * t77
-        t79 = phi_dot * t5
-        t80 = L * t79
-        t81 = theta_dot * t80
-        t82 = theta_dot + phi_dot
-        t83 = t82 * t72
-        t84 = x_dot * t83
-        t85 = t3 * t6
-        t86 = t85 + t77
-        t87 = t82 * t86
-        t88 = y_dot * t87
-        t89 = t84 + t88
-        t90 = t81 + t89
-        t91 = t78 * t90
-        t92 = t76 + t91
-        t93 = t18 * t92
-        t94 = t8 * t68
-        t95 = t94 * t90
-        t96 = t6 * t8
-        t97 = t68 * t96
-        t98 = t67 * t97
-        t99 = t95 - t98
-        t100 = t25 * t99
-        t101 = t93 + t100
-        t102 = t63 + t101
-        t103 = t58 * t102
-        t104 = t9 * t57
-        t105 = t59 * t64
-        t106 = K_r * t3
-        t107 = t105 + t106
-        t108 = t8 * t12
-        t109 = t5 * t86
-        t110 = t108 + t109
-        t111 = t68 * t110
-        t112 = t67 * t111
-        t113 = t68 * t71
-        t114 = t113 * t90
-        t115 = t112 - t114
-        t116 = t18 * t115
-        t117 = t21 * t99
-        t118 = t116 + t117
-        t119 = t107 - t118
-        t120 = t104 * t119
-        t121 = t103 + t120
-        t122 = t5 * t57
-        t123 = t20 * t67
-        t124 = t33 * t99
-        t125 = t123 + t124
-        t126 = t122 * t125
-        t127 = t121 - t126
-        t128 = t56 * t127
-        t129 = t128 - t92
-        t130 = t104 * t102
-        t131 = Theta_2 * t9
-        t132 = t9 * t131
-        t133 = t132 * t119
-        t134 = t130 + t133
-        t135 = t5 * t131
-        t136 = t135 * t125
-        t137 = t134 - t136
-        t138 = t56 * t137
-        t139 = t115 + t138
-        t140 = t122 * t102
-        t141 = t135 * t119
-        t142 = t140 + t141
-        t143 = Theta_2 * t5
-        t144 = t5 * t143
-        t145 = t144 * t125
-        t146 = t142 - t145
-        t147 = t56 * t146
-        t148 = t99 + t147
-        t149 = T * t36
-        t150 = t56 * t149
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t38 > t55), 5)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = Theta_1 * t7
+        t24 = t22 + t23
+        t25 = Theta_2 * t24
+        t26 = np.abs(t25)
+        t27 = np.abs(Theta_1)
+        t28 = np.abs(m_2)
+        t29 = np.abs(L)
+        t30 = t29 * t29
+        t31 = t28 * t30
+        t32 = t27 + t31
+        t33 = np.abs(Theta_2)
+        t34 = t32 * t33
+        t35 = t7 * t34
+        t36 = np.abs(m_1)
+        t37 = t36 + t28
+        t38 = t37 * t33
+        t39 = t10 * t38
+        t40 = t35 + t39
+        t41 = t13 * t38
+        t42 = t40 + t41
+        t43 = t42 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t44 = 1.0 / t25
+        t45 = L * m_2
+        t46 = theta_dot * t45
+        t47 = theta_dot * t6
+        t48 = t46 * t47
+        t49 = K_r * t6
+        t50 = t48 + t49
+        t51 = t12 * t50
+        t52 = theta_dot * t5
+        t53 = t46 * t52
+        t54 = K_r * t5
+        t55 = t53 + t54
+        t56 = t9 * t55
+        t57 = t51 + t56
+        t58 = Theta_2 * t57
+        t59 = t12 * t58
+        t60 = t44 * t59
+        t61 = L * L
+        t62 = m_2 * t61
+        t63 = Theta_1 + t62
+        t64 = t3 * t63
+        t65 = Theta_2 * t64
+        t66 = phi_dot * t3
+        t67 = L * t66
+        t68 = theta_dot * t67
+        t69 = theta_dot + phi_dot
+        t70 = t6 * t4
+        t71 = t5 * t3
+        t72 = t70 - t71
+        t73 = t69 * t72
+        t74 = x_dot * t73
+        t75 = t5 * t4
+        t76 = t6 * t3
+        t77 = t75 + t76
+        t78 = t69 * t77
+        t79 = y_dot * t78
+        t80 = t74 + t79
+        t81 = t68 + t80
+        t82 = t6 * t81
+        t83 = y_dot * t52
+        t84 = x_dot * t47
+        t85 = t83 + t84
+        t86 = t85 * t72
+        t87 = t82 - t86
+        t88 = t65 * t87
+        t89 = t8 * t85
+        t90 = L * Theta_2
+        t91 = m_1 * t75
+        t92 = m_2 * t77
+        t93 = t91 + t92
+        t94 = t90 * t93
+        t95 = t89 * t94
+        t96 = t88 + t95
+        t97 = t44 * t96
+        t98 = t60 - t97
+        t99 = t9 * t58
+        t100 = t44 * t99
+        t101 = t5 * t81
+        t102 = t85 * t77
+        t103 = t101 - t102
+        t104 = t65 * t103
+        t105 = m_1 * t70
+        t106 = m_2 * t72
+        t107 = t105 + t106
+        t108 = t90 * t107
+        t109 = t89 * t108
+        t110 = t104 - t109
+        t111 = t44 * t110
+        t112 = t100 - t111
+        t113 = t3 * t58
+        t114 = t44 * t113
+        t115 = t86 - t82
+        t116 = t108 * t115
+        t117 = t94 * t103
+        t118 = t116 - t117
+        t119 = t44 * t118
+        t120 = t114 - t119
+        t121 = m_1 + m_2
+        t122 = T * t12
+        t123 = t121 * t122
+        t124 = t5 * t45
+        t125 = T * t3
+        t126 = t124 * t125
+        t127 = t123 - t126
+        t128 = t12 * t127
+        t129 = T * t9
+        t130 = t121 * t129
+        t131 = t6 * t45
+        t132 = t131 * t125
+        t133 = t130 + t132
+        t134 = t9 * t133
+        t135 = t128 + t134
+        t136 = t63 * t125
+        t137 = t3 * t136
+        t138 = t135 + t137
+        t139 = t44 * t138
         entries = (
-            t129,
+            t98,
+            t112,
+            t120,
             t139,
-            t148,
-            t150,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2471,199 +2390,134 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
-        t18 = m_1 + m_2
-        t19 = t9 * t18
-        t20 = L * m_2
-        t21 = t6 * t20
-        t22 = t3 * t21
-        t23 = t19 + t22
-        t24 = t9 * t23
-        t25 = t5 * t20
-        t26 = t3 * t25
-        t27 = t12 * t18
-        t28 = t26 - t27
-        t29 = t12 * t28
-        t30 = t24 - t29
-        t31 = L * L
-        t32 = m_2 * t31
-        t33 = Theta_1 + t32
-        t34 = t3 * t33
-        t35 = t3 * t34
-        t36 = t30 + t35
-        t37 = Theta_2 * t36
-        t38 = np.abs(t37)
-        t39 = np.abs(Theta_1)
-        t40 = np.abs(m_2)
-        t41 = np.abs(L)
-        t42 = t41 * t41
-        t43 = t40 * t42
-        t44 = t39 + t43
-        t45 = np.abs(Theta_2)
-        t46 = t44 * t45
-        t47 = t7 * t46
-        t48 = np.abs(m_1)
-        t49 = t48 + t40
-        t50 = t49 * t45
-        t51 = t10 * t50
-        t52 = t47 + t51
-        t53 = t13 * t50
-        t54 = t52 + t53
-        t55 = t54 * 3.552713678800501e-15
-        t56 = 1.0 / t14
-        t57 = t8 * t9
-        t58 = t6 * t4
-        t59 = t5 * t3
-        t60 = t58 - t59
-        t61 = t3 * t60
-        t62 = t57 - t61
-        t63 = t56 * t62
-        t64 = Theta_2 * t12
-        t65 = t12 * t64
-        t66 = t18 * t65
-        t67 = t3 * t64
-        t68 = t25 * t67
-        t69 = t66 - t68
-        t70 = 1.0 / t37
-        t71 = t69 * t70
-        t72 = 1.0 - t71
-        t73 = t63 * t72
-        t74 = t8 * t12
-        t75 = t5 * t4
-        t76 = t6 * t3
-        t77 = t75 + t76
-        t78 = t3 * t77
-        t79 = t74 + t78
-        t80 = t56 * t79
-        t81 = t9 * t64
-        t82 = t18 * t81
-        t83 = t21 * t67
-        t84 = t82 + t83
-        t85 = t70 * t84
-        t86 = t80 * t85
-        t87 = t73 + t86
-        t88 = t4 * t8
-        t89 = t56 * t88
-        t90 = t33 * t67
-        t91 = t70 * t90
-        t92 = t89 * t91
-        t93 = t87 - t92
-        t94 = theta_dot * t20
-        t95 = theta_dot * t6
-        t96 = t94 * t95
-        t97 = theta_dot * t5
-        t98 = y_dot * t97
-        t99 = x_dot * t95
-        t100 = t98 + t99
-        t101 = t100 * t63
-        t102 = t56 * t76
-        t103 = phi_dot * t3
-        t104 = L * t103
-        t105 = theta_dot * t104
-        t106 = theta_dot + phi_dot
-        t107 = t106 * t60
-        t108 = x_dot * t107
-        t109 = t106 * t77
-        t110 = y_dot * t109
-        t111 = t108 + t110
-        t112 = t105 + t111
-        t113 = t102 * t112
-        t114 = t101 + t113
-        t115 = t18 * t114
-        t116 = t8 * t56
-        t117 = t116 * t112
-        t118 = t100 * t89
-        t119 = t117 - t118
-        t120 = t25 * t119
-        t121 = t115 + t120
-        t122 = t96 + t121
-        t123 = t93 * t122
-        t124 = Theta_2 * t9
-        t125 = t3 * t124
-        t126 = t33 * t125
-        t127 = t70 * t126
-        t128 = t89 * t127
-        t129 = t25 * t125
-        t130 = t82 - t129
-        t131 = t70 * t130
-        t132 = t63 * t131
-        t133 = t9 * t124
-        t134 = t18 * t133
-        t135 = t68 + t134
-        t136 = t135 * t70
-        t137 = 1.0 - t136
-        t138 = t80 * t137
-        t139 = t132 + t138
-        t140 = t128 + t139
-        t141 = t94 * t97
-        t142 = t56 * t59
-        t143 = t142 * t112
-        t144 = t100 * t80
-        t145 = t143 - t144
-        t146 = t18 * t145
-        t147 = t118 - t117
-        t148 = t21 * t147
-        t149 = t146 + t148
-        t150 = t141 + t149
-        t151 = t140 * t150
-        t152 = t123 - t151
-        t153 = Theta_2 * t3
-        t154 = t3 * t153
-        t155 = t33 * t154
-        t156 = t155 * t70
-        t157 = 1.0 - t156
-        t158 = t89 * t157
-        t159 = t18 * t125
-        t160 = t21 * t154
-        t161 = t159 + t160
-        t162 = t70 * t161
-        t163 = t80 * t162
-        t164 = t18 * t67
-        t165 = t25 * t154
-        t166 = t164 - t165
-        t167 = t70 * t166
-        t168 = t63 * t167
-        t169 = t163 - t168
-        t170 = t158 + t169
-        t171 = t20 * t100
-        t172 = t33 * t119
-        t173 = t171 + t172
-        t174 = t170 * t173
-        t175 = t152 - t174
-        t176 = t6 * t93
-        t177 = t5 * t140
-        t178 = t176 - t177
-        t179 = K_r * t178
-        t180 = t175 + t179
-        t181 = t102 * t72
-        t182 = t142 * t85
-        t183 = t181 - t182
-        t184 = t116 * t91
-        t185 = t183 + t184
-        t186 = t6 * t185
-        t187 = t142 * t137
-        t188 = t102 * t131
-        t189 = t187 - t188
-        t190 = t116 * t127
-        t191 = t189 + t190
-        t192 = t5 * t191
-        t193 = t186 + t192
-        t194 = K_r * t193
-        t195 = t185 * t122
-        t196 = t191 * t150
-        t197 = t195 + t196
-        t198 = t102 * t167
-        t199 = t142 * t162
-        t200 = t198 + t199
-        t201 = t116 * t157
-        t202 = t200 + t201
-        t203 = t202 * t173
-        t204 = t197 + t203
-        t205 = t194 + t204
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t38 > t55), 5)
+        t18 = t4 * t4
+        t19 = m_1 * t18
+        t20 = m_2 + t19
+        t21 = L * t20
+        t22 = L * t21
+        t23 = Theta_1 * t7
+        t24 = t22 + t23
+        t25 = Theta_2 * t24
+        t26 = np.abs(t25)
+        t27 = np.abs(Theta_1)
+        t28 = np.abs(m_2)
+        t29 = np.abs(L)
+        t30 = t29 * t29
+        t31 = t28 * t30
+        t32 = t27 + t31
+        t33 = np.abs(Theta_2)
+        t34 = t32 * t33
+        t35 = t7 * t34
+        t36 = np.abs(m_1)
+        t37 = t36 + t28
+        t38 = t37 * t33
+        t39 = t10 * t38
+        t40 = t35 + t39
+        t41 = t13 * t38
+        t42 = t40 + t41
+        t43 = t42 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t44 = 1.0 / t25
+        t45 = L * Theta_2
+        t46 = t5 * t4
+        t47 = m_1 * t46
+        t48 = t6 * t3
+        t49 = t46 + t48
+        t50 = m_2 * t49
+        t51 = t47 + t50
+        t52 = t45 * t51
+        t53 = L * m_2
+        t54 = theta_dot * t53
+        t55 = theta_dot * t6
+        t56 = t54 * t55
+        t57 = K_r * t6
+        t58 = t56 + t57
+        t59 = m_1 + m_2
+        t60 = L * L
+        t61 = m_2 * t60
+        t62 = Theta_1 + t61
+        t63 = t3 * t62
+        t64 = Theta_2 * t63
+        t65 = phi_dot * t3
+        t66 = L * t65
+        t67 = theta_dot * t66
+        t68 = theta_dot + phi_dot
+        t69 = t6 * t4
+        t70 = t5 * t3
+        t71 = t69 - t70
+        t72 = t68 * t71
+        t73 = x_dot * t72
+        t74 = t68 * t49
+        t75 = y_dot * t74
+        t76 = t73 + t75
+        t77 = t67 + t76
+        t78 = t6 * t77
+        t79 = theta_dot * t5
+        t80 = y_dot * t79
+        t81 = x_dot * t55
+        t82 = t80 + t81
+        t83 = t82 * t71
+        t84 = t78 - t83
+        t85 = t64 * t84
+        t86 = t8 * t82
+        t87 = t86 * t52
+        t88 = t85 + t87
+        t89 = t44 * t88
+        t90 = t59 * t89
+        t91 = t5 * t53
+        t92 = m_1 * t69
+        t93 = m_2 * t71
+        t94 = t92 + t93
+        t95 = t45 * t94
+        t96 = t83 - t78
+        t97 = t95 * t96
+        t98 = t5 * t77
+        t99 = t82 * t49
+        t100 = t98 - t99
+        t101 = t52 * t100
+        t102 = t97 - t101
+        t103 = t44 * t102
+        t104 = t91 * t103
+        t105 = t90 - t104
+        t106 = t58 + t105
+        t107 = t52 * t106
+        t108 = t54 * t79
+        t109 = K_r * t5
+        t110 = t108 + t109
+        t111 = t64 * t100
+        t112 = t86 * t95
+        t113 = t111 - t112
+        t114 = t44 * t113
+        t115 = t59 * t114
+        t116 = t6 * t53
+        t117 = t116 * t103
+        t118 = t115 + t117
+        t119 = t110 + t118
+        t120 = t95 * t119
+        t121 = t107 - t120
+        t122 = t8 * t121
+        t123 = t64 * t106
+        t124 = t62 * t103
+        t125 = t53 * t82
+        t126 = t124 - t125
+        t127 = t95 * t126
+        t128 = t123 - t127
+        t129 = t71 * t128
+        t130 = t122 - t129
+        t131 = t64 * t119
+        t132 = t52 * t126
+        t133 = t131 - t132
+        t134 = t49 * t133
+        t135 = t130 - t134
+        t136 = t44 * t135
+        t137 = t6 * t128
+        t138 = t5 * t133
+        t139 = t137 + t138
+        t140 = t44 * t139
         entries = (
-            t180,
-            t205,
+            t136,
+            t140,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2788,98 +2642,157 @@ class _CParameters(ctypes.Structure):
     ]
 
 
-# quantity: (lengths of the array arguments, shape of the result)
+# quantity: (lengths of the array arguments, shape of the result, whether there is a batch kernel)
 _SIGNATURES = {
-    mass_matrix: ((4,), (4, 4)),
-    coriolis_matrix: ((4, 4), (4, 4)),
-    coriolis_force: ((4, 4), (4,)),
-    potential_force: ((4,), (4,)),
-    applied_force: ((4, 4), (4,)),
-    constraint_jacobian: ((4,), (2, 4)),
-    constraint_jacobian_dot: ((4, 4), (2, 4)),
-    constraint_pseudoinverse: ((4,), (4, 2)),
-    nullspace_projector: ((4,), (4, 4)),
-    nullspace_projector_dot: ((4, 4), (4, 4)),
-    weighted_pseudoinverse: ((4,), (4, 2)),
-    weighted_nullspace_projector: ((4,), (4, 4)),
-    control_matrix: ((4,), (4, 2)),
-    projected_control_matrix: ((4,), (4, 2)),
-    projected_control_pseudoinverse: ((4,), (2, 4)),
-    orthogonal_complement: ((4,), (4, 2)),
-    projected_mass_matrix: ((4,), (4, 4)),
-    projected_coriolis_matrix: ((4, 4), (4, 4)),
-    projected_potential_force: ((4,), (4,)),
-    projected_applied_force: ((4, 4), (4,)),
-    minimal_mass_matrix: ((4,), (2, 2)),
-    minimal_coriolis_matrix: ((4, 4), (2, 2)),
-    minimal_potential_force: ((4,), (2,)),
-    minimal_applied_force: ((4, 4), (2,)),
-    minimal_control_matrix: ((4,), (2, 2)),
-    admissible_velocity: ((4, 4), (4,)),
-    admissible_acceleration: ((4, 4, 4), (4,)),
-    projected_configuration: ((4,), (4,)),
-    inverse_dynamics: ((4, 4, 4), (2,)),
-    inverse_dynamics_residual: ((4, 4, 4), (4,)),
-    actuator_velocity: ((4, 4), (2,)),
-    actuator_mass_matrix: ((4,), (2, 2)),
-    actuator_bias: ((4, 4), (2,)),
-    forward_dynamics: ((4, 4, 2), (4,)),
-    multipliers: ((4, 4, 2), (2,)),
-    energy: ((4, 4), (2,)),
-    singularity: ((4,), (2,)),
+    mass_matrix: ((4,), (4, 4), False),
+    coriolis_matrix: ((4, 4), (4, 4), False),
+    coriolis_force: ((4, 4), (4,), False),
+    potential_force: ((4,), (4,), False),
+    applied_force: ((4, 4), (4,), False),
+    constraint_jacobian: ((4,), (2, 4), False),
+    constraint_jacobian_dot: ((4, 4), (2, 4), False),
+    constraint_pseudoinverse: ((4,), (4, 2), False),
+    nullspace_projector: ((4,), (4, 4), False),
+    nullspace_projector_dot: ((4, 4), (4, 4), False),
+    weighted_pseudoinverse: ((4,), (4, 2), False),
+    weighted_nullspace_projector: ((4,), (4, 4), False),
+    control_matrix: ((4,), (4, 2), False),
+    projected_control_matrix: ((4,), (4, 2), False),
+    projected_control_pseudoinverse: ((4,), (2, 4), False),
+    orthogonal_complement: ((4,), (4, 2), False),
+    projected_mass_matrix: ((4,), (4, 4), False),
+    projected_coriolis_matrix: ((4, 4), (4, 4), False),
+    projected_potential_force: ((4,), (4,), False),
+    projected_applied_force: ((4, 4), (4,), False),
+    minimal_mass_matrix: ((4,), (2, 2), False),
+    minimal_coriolis_matrix: ((4, 4), (2, 2), False),
+    minimal_potential_force: ((4,), (2,), False),
+    minimal_applied_force: ((4, 4), (2,), False),
+    minimal_control_matrix: ((4,), (2, 2), False),
+    admissible_velocity: ((4, 4), (4,), False),
+    admissible_acceleration: ((4, 4, 4), (4,), False),
+    projected_configuration: ((4,), (4,), False),
+    inverse_dynamics: ((4, 4, 4), (2,), True),
+    inverse_dynamics_residual: ((4, 4, 4), (4,), False),
+    actuator_velocity: ((4, 4), (2,), False),
+    actuator_mass_matrix: ((4,), (2, 2), False),
+    actuator_bias: ((4, 4), (2,), False),
+    forward_dynamics: ((4, 4, 2), (4,), True),
+    multipliers: ((4, 4, 2), (2,), True),
+    energy: ((4, 4), (2,), False),
+    singularity: ((4,), (2,), False),
 }
-_FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+_FILES = ('rear_car.h', 'rear_car.c', 'rear_car_batch.h', 'rear_car_batch.c')
+_FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+# The first of these that the compiler knows: this machine's vector instructions, at their full width.
+_MACHINE_FLAGS = (("-march=native", "-mprefer-vector-width=512"), ("-march=native",), ("-mcpu=native",), ())
+_CHUNK = 4096  # states whose components stay in the cache between two transpositions
 
 
 class Compiled:
-    """The functions of this module, run by the compiled C."""
+    """The functions of this module with the same arguments, results and errors.
 
-    def __init__(self, library: ctypes.CDLL) -> None:
-        for function, (lengths, shape) in _SIGNATURES.items():
-            call = getattr(library, "rear_car_" + function.__name__)
-            call.restype = ctypes.c_int
-            call.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
-            setattr(self, function.__name__, functools.partial(_run, call, function, lengths, shape))
+    Single states and the quantities with a batch kernel run in C, all else in NumPy: other quantities of many states,
+    and parameters that are arrays. Without a library NumPy does everything.
+    """
+
+    def __init__(self, library: ctypes.CDLL | None) -> None:
+        for function, signature in _SIGNATURES.items():
+            setattr(self, function.__name__, function if library is None else _compiled(library, function, *signature))
 
 
-def _run(call, function, lengths, shape, *args, **kwargs):
-    bound = inspect.signature(function).bind(*args, **kwargs)
-    bound.apply_defaults()
-    *values, p = bound.arguments.values()
-    names = list(bound.arguments)[:-1]
-    arrays = {name: _array(name, length, value) for name, length, value in zip(names, lengths, values)}
-    *arrays, batch = _states(**arrays)
-    rows = [np.ascontiguousarray(array).reshape(-1, array.shape[-1]) for array in arrays]
-    parameters = _CParameters(p.L, p.m_1, p.m_2, p.Theta_1, p.Theta_2)
-    result = np.empty((len(rows[0]), int(np.prod(shape))))
-    for index in range(len(result)):
-        status = call(*(row[index].ctypes.data for row in rows), ctypes.addressof(parameters), result[index].ctypes.data)
-        if status != 0 and not batch:
-            raise StateError(function.__name__, Status(status))
+_last = PARAMETERS, None
+
+
+def _c_parameters(p):
+    """The C struct of parameters, kept for the next call with the same ones; None where one of them is an array."""
+    global _last
+    known, struct = _last
+    if p is not known or struct is None:
+        members = (p.L, p.m_1, p.m_2, p.Theta_1, p.Theta_2, )
+        if any(map(np.ndim, members)):
+            return None
+        struct = _CParameters(*members)
+        if type(p) is Parameters:  # which is frozen; what else has these attributes may change
+            _last = p, struct
+    return struct
+
+
+def _compiled(library, function, lengths, shape, batched):
+    one = getattr(library, "rear_car_" + function.__name__)
+    one.restype = ctypes.c_int
+    one.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
+    many = getattr(library, "rear_car_" + function.__name__ + "_batch") if batched else None
+    if many is not None:
+        many.restype = ctypes.c_size_t
+        many.argtypes = [ctypes.c_size_t] * 2 + [ctypes.c_void_p] * (len(lengths) + 3)
+    signature = inspect.signature(function)
+    names = list(signature.parameters)[:-1]
+
+    @functools.wraps(function)
+    def run(*args, **kwargs):
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        *values, p = bound.arguments.values()
+        arrays = [_array(name, length, value) for name, length, value in zip(names, lengths, values)]
+        single = all(array.ndim == 1 for array in arrays)
+        parameters = _c_parameters(p)
+        if parameters is None or not (single or many):
+            return function(*args, **kwargs)
+        if not single:
+            if len({array.shape[:-1] for array in arrays}) > 1:
+                *arrays, _ = _states(**dict(zip(names, arrays)))
+            return _many(many, arrays, parameters, arrays[0].shape[:-1], shape)
+        arrays = [np.ascontiguousarray(array) for array in arrays]
+        result = np.empty(shape)
+        status = one(*(a.ctypes.data for a in arrays), ctypes.addressof(parameters), result.ctypes.data)
         if status != 0:
-            result[index] = np.nan
+            raise StateError(function.__name__, Status(status))
+        return result
+
+    return run
+
+
+def _many(kernel, arrays, parameters, batch, shape):
+    """The kernel takes arrays of components: states are transposed there and back, a chunk at a time."""
+    rows = [array.reshape(-1, array.shape[-1]) for array in arrays]
+    count = len(rows[0])
+    result = np.empty((count, int(np.prod(shape))))
+    stride = min(count, _CHUNK)
+    places = [np.empty((width, stride)) for width in (*(row.shape[1] for row in rows), result.shape[1])]
+    pointers = [place.ctypes.data for place in places]
+    pointers.insert(len(rows), ctypes.addressof(parameters))
+    for start in range(0, count, _CHUNK):
+        length = min(_CHUNK, count - start)
+        for place, row in zip(places, rows):
+            place[:, :length] = row[start : start + length].T
+        kernel(length, stride, *pointers, None)
+        result[start : start + length] = places[-1][:, :length].T
     return result.reshape(batch + shape)
 
 
 def compile():
-    """Builds ../c/rear_car.c with the system's C compiler (CC, else cc) into a cache folder.
+    """Builds the C beside this module (../c) with the system's C compiler (CC, else cc) into a cache folder.
 
-    Returns an object with the functions of this module. Raises FileNotFoundError without source or compiler and
-    RuntimeError with the compiler's message when it fails.
+    Returns an object with the functions of this module. Without a compiler it warns, and NumPy does the work. Raises
+    FileNotFoundError without the C files and RuntimeError with the compiler's message when it fails.
     """
     folder = Path(__file__).resolve().parent.parent / "c"
-    source, header = folder / "rear_car.c", folder / "rear_car.h"
+    contents = b"".join((folder / name).read_bytes() for name in _FILES)
     command = os.environ.get("CC", "cc").split()
     if not command or shutil.which(command[0]) is None:
-        raise FileNotFoundError(f"no C compiler {' '.join(command)!r}: install one or set CC")
-    command += _FLAGS
-    text = repr((command, platform.machine())).encode() + source.read_bytes() + header.read_bytes()
-    built = _cache_folder() / f"rear_car-{hashlib.sha256(text).hexdigest()[:24]}.so"
+        message = f"no C compiler {' '.join(command)!r}: NumPy does the work; install one or set CC"
+        warnings.warn(message, RuntimeWarning, stacklevel=2)
+        return Compiled(None)
+    command, machine = _for_this_machine([*command, *_FLAGS])
+    key = hashlib.sha256(repr((command, machine)).encode() + contents).hexdigest()[:24]
+    built = _cache_folder() / f"rear_car-{key}.so"
     if not built.exists():
         handle, name = tempfile.mkstemp(dir=built.parent, suffix=".tmp")
         os.close(handle)
         try:
-            made = subprocess.run([*command, "-o", name, str(source), "-lm"], capture_output=True, text=True, check=False)
+            sources = [str(folder / name) for name in _FILES if name.endswith(".c")]
+            made = _told([*command, "-o", name, *sources, "-lm"])
             if made.returncode != 0:
                 raise RuntimeError(f"{' '.join(command)} failed:\n{made.stderr}")
             os.replace(name, built)
@@ -2888,9 +2801,23 @@ def compile():
     return Compiled(ctypes.CDLL(str(built)))
 
 
+def _for_this_machine(command):
+    """The command with flags for this machine, and what the compiler then says of itself and of the machine."""
+    for flags in _MACHINE_FLAGS:
+        told = _told([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
+        if told.returncode == 0:
+            return [*command, *flags], (platform.machine(), told.stdout)
+    raise RuntimeError(f"{' '.join(command)} failed:\n{told.stderr}")
+
+
+def _told(command):
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
 def _cache_folder() -> Path:
     """The user's cache folder, or a fresh private one where that cannot be written."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    usual = {"darwin": Path.home() / "Library" / "Caches", "win32": Path(os.environ.get("LOCALAPPDATA", Path.home()))}
+    base = os.environ.get("XDG_CACHE_HOME") or usual.get(sys.platform, Path.home() / ".cache")
     folder = Path(base) / "symgen"
     try:
         folder.mkdir(parents=True, exist_ok=True)

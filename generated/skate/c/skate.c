@@ -3,8 +3,12 @@
 
 #include <math.h>
 
-#ifdef __FAST_MATH__
-#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast)"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
+#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast, /fp:fast)"
+#elif defined(__FINITE_MATH_ONLY__)
+#if __FINITE_MATH_ONLY__
+#error "status tests need IEEE arithmetic: compile without -ffinite-math-only"
+#endif
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
@@ -12,8 +16,14 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+#ifdef __GNUC__
+#define SKATE_INLINE static inline __attribute__((always_inline))
+#else
+#define SKATE_INLINE static inline
+#endif
+
 /* Sine and cosine, the same bits on every IEEE platform. */
-static void skate_sincos(const double x, double *sine, double *cosine) {
+SKATE_INLINE void skate_pair(const double x, double *sine, double *cosine) {
     const double turns = x * 0.6366197723675814;
     const double shifted = turns + 6755399441055744.0;
     const double k = shifted - 6755399441055744.0;
@@ -66,6 +76,10 @@ static void skate_sincos(const double x, double *sine, double *cosine) {
     const double cosine_ = cc - cs;
     *sine = sine_;
     *cosine = cosine_;
+}
+
+static void skate_sincos(const double angle, double *sine, double *cosine) {
+    skate_pair(angle, sine, cosine);
 }
 
 skate_params skate_default_params(void) {
@@ -148,7 +162,8 @@ skate_status skate_constraint_jacobian(const double q[3], const skate_params *p,
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = -t3;
     double rest = t2 - t2;
@@ -169,7 +184,8 @@ skate_status skate_constraint_jacobian_dot(const double q[3], const double qd[3]
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
@@ -192,7 +208,8 @@ skate_status skate_constraint_pseudoinverse(const double q[3], const skate_param
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = -t3;
     double rest = t2 - t2;
@@ -213,7 +230,8 @@ skate_status skate_nullspace_projector(const double q[3], const skate_params *p,
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
     const double t5 = t2 * t3;
@@ -243,7 +261,8 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
@@ -278,7 +297,8 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double m_s = p->m_s;
     const double Theta_s = p->Theta_s;
@@ -288,10 +308,10 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    const double t10 = -t3;
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
+    const double t10 = -t3;
     double rest = t2 - t2;
     rest += t10 - t10;
     if (!(rest >= 0.0)) {
@@ -309,7 +329,8 @@ skate_status skate_weighted_nullspace_projector(const double q[3], const skate_p
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double m_s = p->m_s;
     const double Theta_s = p->Theta_s;
@@ -319,12 +340,12 @@ skate_status skate_weighted_nullspace_projector(const double q[3], const skate_p
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    const double t10 = t3 * t3;
-    const double t11 = t2 * t3;
-    const double t12 = t2 * t2;
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
+    const double t10 = t3 * t3;
+    const double t11 = t2 * t3;
+    const double t12 = t2 * t2;
     double rest = t10 - t10;
     rest += t11 - t11;
     rest += t12 - t12;
@@ -350,7 +371,8 @@ skate_status skate_control_matrix(const double q[3], const skate_params *p, doub
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     double rest = t3 - t3;
     rest += t2 - t2;
@@ -373,7 +395,8 @@ skate_status skate_projected_control_matrix(const double q[3], const skate_param
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     double rest = t3 - t3;
     rest += t2 - t2;
@@ -396,7 +419,8 @@ skate_status skate_projected_control_pseudoinverse(const double q[3], const skat
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     double rest = t3 - t3;
     rest += t2 - t2;
@@ -419,16 +443,17 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
-    const double t4 = fabs(t3);
-    const double t5 = t2 / t3;
-    if (!(t4 > 2.6645352591003757e-15)) {
+    const double t4 = t3 * t3;
+    if (!(t4 > 7.099748146989106e-30)) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
+    const double t5 = t2 / t3;
     double rest = t5 - t5;
     if (!(rest >= 0.0)) {
         return SKATE_NOT_FINITE;
@@ -448,15 +473,16 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
+    const double t4 = t3 * t3;
     const double m_s = p->m_s;
-    const double t4 = m_s * t3;
-    const double t5 = t3 * t4;
+    const double t5 = m_s * t4;
     const double t6 = t2 * t3;
     const double t7 = m_s * t6;
-    const double t8 = m_s * t2;
-    const double t9 = t2 * t8;
+    const double t8 = t2 * t2;
+    const double t9 = m_s * t8;
     const double Theta_s = p->Theta_s;
     double rest = Theta_s - Theta_s;
     rest += t5 - t5;
@@ -483,7 +509,8 @@ skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
@@ -541,28 +568,28 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
-    const double t4 = fabs(t3);
-    const double t5 = t3 * t3;
-    const double m_s = p->m_s;
-    const double t6 = m_s / t5;
-    if (!(t4 > 2.6645352591003757e-15)) {
+    const double t4 = t3 * t3;
+    if (!(t4 > 7.099748146989106e-30)) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
+    const double m_s = p->m_s;
+    const double t5 = m_s / t4;
     const double Theta_s = p->Theta_s;
     double rest = Theta_s - Theta_s;
-    rest += t6 - t6;
+    rest += t5 - t5;
     if (!(rest >= 0.0)) {
         return SKATE_NOT_FINITE;
     }
     G_bar[0] = Theta_s;
     G_bar[1] = 0.0;
     G_bar[2] = 0.0;
-    G_bar[3] = t6;
+    G_bar[3] = t5;
     return SKATE_OK;
 }
 
@@ -572,30 +599,30 @@ skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3]
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
-    const double t4 = fabs(t3);
-    const double phi_dot = qd[0];
-    const double t5 = phi_dot * t2;
-    const double t6 = t3 * t3;
-    const double t7 = t3 * t6;
-    const double m_s = p->m_s;
-    const double t8 = m_s / t7;
-    const double t9 = t5 * t8;
-    if (!(t4 > 2.6645352591003757e-15)) {
+    const double t4 = t3 * t3;
+    if (!(t4 > 7.099748146989106e-30)) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
-    double rest = t9 - t9;
+    const double phi_dot = qd[0];
+    const double t5 = phi_dot * t2;
+    const double t6 = t3 * t4;
+    const double m_s = p->m_s;
+    const double t7 = m_s / t6;
+    const double t8 = t5 * t7;
+    double rest = t8 - t8;
     if (!(rest >= 0.0)) {
         return SKATE_NOT_FINITE;
     }
     C_bar[0] = 0.0;
     C_bar[1] = 0.0;
     C_bar[2] = 0.0;
-    C_bar[3] = t9;
+    C_bar[3] = t8;
     return SKATE_OK;
 }
 
@@ -623,16 +650,17 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
-    const double t4 = fabs(t3);
-    const double t5 = 1.0 / t3;
-    if (!(t4 > 2.6645352591003757e-15)) {
+    const double t4 = t3 * t3;
+    if (!(t4 > 7.099748146989106e-30)) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
+    const double t5 = 1.0 / t3;
     double rest = t5 - t5;
     if (!(rest >= 0.0)) {
         return SKATE_NOT_FINITE;
@@ -651,7 +679,8 @@ skate_status skate_admissible_velocity(const double q[3], const double qd[3], co
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double x_dot = qd[1];
     const double t4 = x_dot * t3;
@@ -680,7 +709,8 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
     const double x_ddot = qdd[1];
@@ -740,7 +770,8 @@ skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double phi_ddot = qdd[0];
     const double Theta_s = p->Theta_s;
@@ -780,7 +811,8 @@ skate_status skate_actuator_velocity(const double q[3], const double qd[3], cons
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double x_dot = qd[1];
     const double t4 = x_dot * t3;
@@ -829,7 +861,8 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double m_s = p->m_s;
     const double Theta_s = p->Theta_s;
@@ -839,31 +872,31 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    const double t10 = 1.0 / Theta_s;
-    const double T = u[0];
-    const double t11 = T * t10;
-    const double K = u[1];
-    const double t12 = K * t3;
-    const double x_dot = qd[1];
-    const double t13 = x_dot * t3;
-    const double y_dot = qd[2];
-    const double t14 = y_dot * t2;
-    const double t15 = t13 + t14;
-    const double phi_dot = qd[0];
-    const double t16 = phi_dot * t15;
-    const double t17 = t2 * t16;
-    const double t18 = m_s * t17;
-    const double t19 = t12 - t18;
-    const double t20 = 1.0 / m_s;
-    const double t21 = t19 * t20;
-    const double t22 = t3 * t16;
-    const double t23 = m_s * t22;
-    const double t24 = K * t2;
-    const double t25 = t23 + t24;
-    const double t26 = t20 * t25;
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
+    const double t10 = 1.0 / Theta_s;
+    const double T = u[0];
+    const double t11 = T * t10;
+    const double t12 = 1.0 / m_s;
+    const double K = u[1];
+    const double t13 = K * t3;
+    const double x_dot = qd[1];
+    const double t14 = x_dot * t3;
+    const double y_dot = qd[2];
+    const double t15 = y_dot * t2;
+    const double t16 = t14 + t15;
+    const double phi_dot = qd[0];
+    const double t17 = phi_dot * t16;
+    const double t18 = t2 * t17;
+    const double t19 = m_s * t18;
+    const double t20 = t13 - t19;
+    const double t21 = t12 * t20;
+    const double t22 = K * t2;
+    const double t23 = t3 * t17;
+    const double t24 = m_s * t23;
+    const double t25 = t22 + t24;
+    const double t26 = t12 * t25;
     double rest = t11 - t11;
     rest += t21 - t21;
     rest += t26 - t26;
@@ -883,7 +916,8 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     if (!(100000.0 >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    double t2, t3;
+    double t2;
+    double t3;
     skate_sincos(phi, &t2, &t3);
     const double m_s = p->m_s;
     const double Theta_s = p->Theta_s;
@@ -893,6 +927,9 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
+    if (!(t5 > t9)) {
+        return SKATE_MASS_RANK;
+    }
     const double x_dot = qd[1];
     const double t10 = x_dot * t3;
     const double y_dot = qd[2];
@@ -901,9 +938,6 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double phi_dot = qd[0];
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
-    if (!(t5 > t9)) {
-        return SKATE_MASS_RANK;
-    }
     double rest = t14 - t14;
     if (!(rest >= 0.0)) {
         return SKATE_NOT_FINITE;

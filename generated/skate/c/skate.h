@@ -29,7 +29,7 @@
  * control_matrix                        0      0      0      0      1      0
  * projected_control_matrix              0      0      0      0      1      0
  * projected_control_pseudoinverse       0      0      0      0      1      0
- * orthogonal_complement                 0      0      1      0      1      0
+ * orthogonal_complement                 0      1      1      0      1      0
  * projected_mass_matrix                 0      6      0      0      1      0
  * projected_coriolis_matrix             0      8      0      0      1      0
  * projected_potential_force             0      0      0      0      0      0
@@ -38,7 +38,7 @@
  * minimal_coriolis_matrix               0      4      1      0      1      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
- * minimal_control_matrix                0      0      1      0      1      0
+ * minimal_control_matrix                0      1      1      0      1      0
  * admissible_velocity                   1      4      0      0      1      0
  * admissible_acceleration               5     11      0      0      1      0
  * projected_configuration               0      0      0      0      0      0

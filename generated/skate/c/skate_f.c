@@ -3,8 +3,12 @@
 
 #include <math.h>
 
-#ifdef __FAST_MATH__
-#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast)"
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
+#error "status tests and rounding need IEEE arithmetic: compile without -ffast-math (-Ofast, /fp:fast)"
+#elif defined(__FINITE_MATH_ONLY__)
+#if __FINITE_MATH_ONLY__
+#error "status tests need IEEE arithmetic: compile without -ffinite-math-only"
+#endif
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
@@ -12,16 +16,22 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+#ifdef __GNUC__
+#define SKATE_INLINE_F static inline __attribute__((always_inline))
+#else
+#define SKATE_INLINE_F static inline
+#endif
+
 /* Sine and cosine, the same bits on every IEEE platform. */
-static void skate_sincos_f(const float x, float *sine, float *cosine) {
+SKATE_INLINE_F void skate_pair_f(const float x, float *sine, float *cosine) {
     const float turns = x * 0.63661975f;
     const float shifted = turns + 12582912.0f;
     const float k = shifted - 12582912.0f;
-    const float k1 = k * 1.5707703f;
+    const float k1 = k * 1.5707855f;
     const float r1 = x - k1;
-    const float k2 = k * 2.6063062e-05f;
+    const float k2 = k * 1.0804331e-05f;
     const float r2 = r1 - k2;
-    const float k3 = k * 6.0771006e-11f;
+    const float k3 = k * 2.563344e-12f;
     const float r = r2 - k3;
     const float z = r * r;
     const float s1p = z * (-0.00019507884f);
@@ -58,6 +68,10 @@ static void skate_sincos_f(const float x, float *sine, float *cosine) {
     const float cosine_ = cc - cs;
     *sine = sine_;
     *cosine = cosine_;
+}
+
+static void skate_sincos_f(const float angle, float *sine, float *cosine) {
+    skate_pair_f(angle, sine, cosine);
 }
 
 skate_params_f skate_default_params_f(void) {
@@ -140,7 +154,8 @@ skate_status skate_constraint_jacobian_f(const float q[3], const skate_params_f 
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = -t3;
     float rest = t2 - t2;
@@ -161,7 +176,8 @@ skate_status skate_constraint_jacobian_dot_f(const float q[3], const float qd[3]
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
@@ -184,7 +200,8 @@ skate_status skate_constraint_pseudoinverse_f(const float q[3], const skate_para
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = -t3;
     float rest = t2 - t2;
@@ -205,7 +222,8 @@ skate_status skate_nullspace_projector_f(const float q[3], const skate_params_f 
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
     const float t5 = t2 * t3;
@@ -235,7 +253,8 @@ skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3]
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
@@ -270,7 +289,8 @@ skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float m_s = p->m_s;
     const float Theta_s = p->Theta_s;
@@ -280,10 +300,10 @@ skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    const float t10 = -t3;
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
+    const float t10 = -t3;
     float rest = t2 - t2;
     rest += t10 - t10;
     if (!(rest >= 0.0f)) {
@@ -301,7 +321,8 @@ skate_status skate_weighted_nullspace_projector_f(const float q[3], const skate_
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float m_s = p->m_s;
     const float Theta_s = p->Theta_s;
@@ -311,12 +332,12 @@ skate_status skate_weighted_nullspace_projector_f(const float q[3], const skate_
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    const float t10 = t3 * t3;
-    const float t11 = t2 * t3;
-    const float t12 = t2 * t2;
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
+    const float t10 = t3 * t3;
+    const float t11 = t2 * t3;
+    const float t12 = t2 * t2;
     float rest = t10 - t10;
     rest += t11 - t11;
     rest += t12 - t12;
@@ -342,7 +363,8 @@ skate_status skate_control_matrix_f(const float q[3], const skate_params_f *p, f
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     float rest = t3 - t3;
     rest += t2 - t2;
@@ -365,7 +387,8 @@ skate_status skate_projected_control_matrix_f(const float q[3], const skate_para
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     float rest = t3 - t3;
     rest += t2 - t2;
@@ -388,7 +411,8 @@ skate_status skate_projected_control_pseudoinverse_f(const float q[3], const ska
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     float rest = t3 - t3;
     rest += t2 - t2;
@@ -411,16 +435,17 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
-    const float t4 = fabsf(t3);
-    const float t5 = t2 / t3;
-    if (!(t4 > 1.4305115e-06f)) {
+    const float t4 = t3 * t3;
+    if (!(t4 > 2.046363e-12f)) {
         if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
+    const float t5 = t2 / t3;
     float rest = t5 - t5;
     if (!(rest >= 0.0f)) {
         return SKATE_NOT_FINITE;
@@ -440,15 +465,16 @@ skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
+    const float t4 = t3 * t3;
     const float m_s = p->m_s;
-    const float t4 = m_s * t3;
-    const float t5 = t3 * t4;
+    const float t5 = m_s * t4;
     const float t6 = t2 * t3;
     const float t7 = m_s * t6;
-    const float t8 = m_s * t2;
-    const float t9 = t2 * t8;
+    const float t8 = t2 * t2;
+    const float t9 = m_s * t8;
     const float Theta_s = p->Theta_s;
     float rest = Theta_s - Theta_s;
     rest += t5 - t5;
@@ -475,7 +501,8 @@ skate_status skate_projected_coriolis_matrix_f(const float q[3], const float qd[
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
@@ -533,28 +560,28 @@ skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f 
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
-    const float t4 = fabsf(t3);
-    const float t5 = t3 * t3;
-    const float m_s = p->m_s;
-    const float t6 = m_s / t5;
-    if (!(t4 > 1.4305115e-06f)) {
+    const float t4 = t3 * t3;
+    if (!(t4 > 2.046363e-12f)) {
         if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
+    const float m_s = p->m_s;
+    const float t5 = m_s / t4;
     const float Theta_s = p->Theta_s;
     float rest = Theta_s - Theta_s;
-    rest += t6 - t6;
+    rest += t5 - t5;
     if (!(rest >= 0.0f)) {
         return SKATE_NOT_FINITE;
     }
     G_bar[0] = Theta_s;
     G_bar[1] = 0.0f;
     G_bar[2] = 0.0f;
-    G_bar[3] = t6;
+    G_bar[3] = t5;
     return SKATE_OK;
 }
 
@@ -564,30 +591,30 @@ skate_status skate_minimal_coriolis_matrix_f(const float q[3], const float qd[3]
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
-    const float t4 = fabsf(t3);
-    const float phi_dot = qd[0];
-    const float t5 = phi_dot * t2;
-    const float t6 = t3 * t3;
-    const float t7 = t3 * t6;
-    const float m_s = p->m_s;
-    const float t8 = m_s / t7;
-    const float t9 = t5 * t8;
-    if (!(t4 > 1.4305115e-06f)) {
+    const float t4 = t3 * t3;
+    if (!(t4 > 2.046363e-12f)) {
         if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
-    float rest = t9 - t9;
+    const float phi_dot = qd[0];
+    const float t5 = phi_dot * t2;
+    const float t6 = t3 * t4;
+    const float m_s = p->m_s;
+    const float t7 = m_s / t6;
+    const float t8 = t5 * t7;
+    float rest = t8 - t8;
     if (!(rest >= 0.0f)) {
         return SKATE_NOT_FINITE;
     }
     C_bar[0] = 0.0f;
     C_bar[1] = 0.0f;
     C_bar[2] = 0.0f;
-    C_bar[3] = t9;
+    C_bar[3] = t8;
     return SKATE_OK;
 }
 
@@ -615,16 +642,17 @@ skate_status skate_minimal_control_matrix_f(const float q[3], const skate_params
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
-    const float t4 = fabsf(t3);
-    const float t5 = 1.0f / t3;
-    if (!(t4 > 1.4305115e-06f)) {
+    const float t4 = t3 * t3;
+    if (!(t4 > 2.046363e-12f)) {
         if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
         return SKATE_CONSTRAINT_RANK;
     }
+    const float t5 = 1.0f / t3;
     float rest = t5 - t5;
     if (!(rest >= 0.0f)) {
         return SKATE_NOT_FINITE;
@@ -643,7 +671,8 @@ skate_status skate_admissible_velocity_f(const float q[3], const float qd[3], co
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float x_dot = qd[1];
     const float t4 = x_dot * t3;
@@ -672,7 +701,8 @@ skate_status skate_admissible_acceleration_f(const float q[3], const float qd[3]
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
     const float x_ddot = qdd[1];
@@ -732,7 +762,8 @@ skate_status skate_inverse_dynamics_f(const float q[3], const float qd[3], const
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float phi_ddot = qdd[0];
     const float Theta_s = p->Theta_s;
@@ -772,7 +803,8 @@ skate_status skate_actuator_velocity_f(const float q[3], const float qd[3], cons
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float x_dot = qd[1];
     const float t4 = x_dot * t3;
@@ -821,7 +853,8 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float m_s = p->m_s;
     const float Theta_s = p->Theta_s;
@@ -831,31 +864,31 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    const float t10 = 1.0f / Theta_s;
-    const float T = u[0];
-    const float t11 = T * t10;
-    const float K = u[1];
-    const float t12 = K * t3;
-    const float x_dot = qd[1];
-    const float t13 = x_dot * t3;
-    const float y_dot = qd[2];
-    const float t14 = y_dot * t2;
-    const float t15 = t13 + t14;
-    const float phi_dot = qd[0];
-    const float t16 = phi_dot * t15;
-    const float t17 = t2 * t16;
-    const float t18 = m_s * t17;
-    const float t19 = t12 - t18;
-    const float t20 = 1.0f / m_s;
-    const float t21 = t19 * t20;
-    const float t22 = t3 * t16;
-    const float t23 = m_s * t22;
-    const float t24 = K * t2;
-    const float t25 = t23 + t24;
-    const float t26 = t20 * t25;
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
+    const float t10 = 1.0f / Theta_s;
+    const float T = u[0];
+    const float t11 = T * t10;
+    const float t12 = 1.0f / m_s;
+    const float K = u[1];
+    const float t13 = K * t3;
+    const float x_dot = qd[1];
+    const float t14 = x_dot * t3;
+    const float y_dot = qd[2];
+    const float t15 = y_dot * t2;
+    const float t16 = t14 + t15;
+    const float phi_dot = qd[0];
+    const float t17 = phi_dot * t16;
+    const float t18 = t2 * t17;
+    const float t19 = m_s * t18;
+    const float t20 = t13 - t19;
+    const float t21 = t12 * t20;
+    const float t22 = K * t2;
+    const float t23 = t3 * t17;
+    const float t24 = m_s * t23;
+    const float t25 = t22 + t24;
+    const float t26 = t12 * t25;
     float rest = t11 - t11;
     rest += t21 - t21;
     rest += t26 - t26;
@@ -875,7 +908,8 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
     if (!(100.0f >= t1)) {
         return SKATE_ANGLE_RANGE;
     }
-    float t2, t3;
+    float t2;
+    float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float m_s = p->m_s;
     const float Theta_s = p->Theta_s;
@@ -885,6 +919,9 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
+    if (!(t5 > t9)) {
+        return SKATE_MASS_RANK;
+    }
     const float x_dot = qd[1];
     const float t10 = x_dot * t3;
     const float y_dot = qd[2];
@@ -893,9 +930,6 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
     const float phi_dot = qd[0];
     const float t13 = phi_dot * m_s;
     const float t14 = t12 * t13;
-    if (!(t5 > t9)) {
-        return SKATE_MASS_RANK;
-    }
     float rest = t14 - t14;
     if (!(rest >= 0.0f)) {
         return SKATE_NOT_FINITE;

@@ -27,7 +27,7 @@ weighted_nullspace_projector          0      6      0      0      1      0
 control_matrix                        0      0      0      0      1      0
 projected_control_matrix              0      0      0      0      1      0
 projected_control_pseudoinverse       0      0      0      0      1      0
-orthogonal_complement                 0      0      1      0      1      0
+orthogonal_complement                 0      1      1      0      1      0
 projected_mass_matrix                 0      6      0      0      1      0
 projected_coriolis_matrix             0      8      0      0      1      0
 projected_potential_force             0      0      0      0      0      0
@@ -36,7 +36,7 @@ minimal_mass_matrix                   0      1      1      0      1      0
 minimal_coriolis_matrix               0      4      1      0      1      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
-minimal_control_matrix                0      0      1      0      1      0
+minimal_control_matrix                0      1      1      0      1      0
 admissible_velocity                   1      4      0      0      1      0
 admissible_acceleration               5     11      0      0      1      0
 projected_configuration               0      0      0      0      0      0
@@ -66,7 +66,9 @@ import os
 import platform
 import shutil
 import subprocess
+import sys
 import tempfile
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -425,8 +427,8 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t7 = np.abs(m_s)
         t8 = t6 * t7
         t9 = t8 * 2.6645352591003757e-15
-        t10 = -t3
         status = _first(status, ~np.asarray(t5 > t9), 5)
+        t10 = -t3
         entries = (
             0.0,
             t2,
@@ -454,10 +456,10 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t7 = np.abs(m_s)
         t8 = t6 * t7
         t9 = t8 * 2.6645352591003757e-15
+        status = _first(status, ~np.asarray(t5 > t9), 5)
         t10 = t3 * t3
         t11 = t2 * t3
         t12 = t2 * t2
-        status = _first(status, ~np.asarray(t5 > t9), 5)
         entries = (
             1.0,
             0.0,
@@ -549,12 +551,12 @@ def orthogonal_complement(q, p=PARAMETERS):
         t1 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
-        t4 = np.abs(t3)
-        t5 = t2 / t3
-        _failed_ = ~np.asarray(t4 > 2.6645352591003757e-15)
+        t4 = t3 * t3
+        _failed_ = ~np.asarray(t4 > 7.099748146989106e-30)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(1.0 > 0.0), 2)
             status = _first(status, _failed_, 2)
+        t5 = t2 / t3
         entries = (
             1.0,
             0.0,
@@ -579,12 +581,12 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t1 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
-        t4 = m_s * t3
-        t5 = t3 * t4
+        t4 = t3 * t3
+        t5 = m_s * t4
         t6 = t2 * t3
         t7 = m_s * t6
-        t8 = m_s * t2
-        t9 = t2 * t8
+        t8 = t2 * t2
+        t9 = m_s * t8
         entries = (
             Theta_s,
             0.0,
@@ -681,18 +683,17 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t1 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
-        t4 = np.abs(t3)
-        t5 = t3 * t3
-        t6 = m_s / t5
-        _failed_ = ~np.asarray(t4 > 2.6645352591003757e-15)
+        t4 = t3 * t3
+        _failed_ = ~np.asarray(t4 > 7.099748146989106e-30)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(1.0 > 0.0), 2)
             status = _first(status, _failed_, 2)
+        t5 = m_s / t4
         entries = (
             Theta_s,
             0.0,
             0.0,
-            t6,
+            t5,
         )
         return _result("minimal_mass_matrix", status, batch, (2, 2), entries)
 
@@ -711,21 +712,20 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t1 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
-        t4 = np.abs(t3)
-        t5 = phi_dot * t2
-        t6 = t3 * t3
-        t7 = t3 * t6
-        t8 = m_s / t7
-        t9 = t5 * t8
-        _failed_ = ~np.asarray(t4 > 2.6645352591003757e-15)
+        t4 = t3 * t3
+        _failed_ = ~np.asarray(t4 > 7.099748146989106e-30)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(1.0 > 0.0), 2)
             status = _first(status, _failed_, 2)
+        t5 = phi_dot * t2
+        t6 = t3 * t4
+        t7 = m_s / t6
+        t8 = t5 * t7
         entries = (
             0.0,
             0.0,
             0.0,
-            t9,
+            t8,
         )
         return _result("minimal_coriolis_matrix", status, batch, (2, 2), entries)
 
@@ -770,12 +770,12 @@ def minimal_control_matrix(q, p=PARAMETERS):
         t1 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
-        t4 = np.abs(t3)
-        t5 = 1.0 / t3
-        _failed_ = ~np.asarray(t4 > 2.6645352591003757e-15)
+        t4 = t3 * t3
+        _failed_ = ~np.asarray(t4 > 7.099748146989106e-30)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(1.0 > 0.0), 2)
             status = _first(status, _failed_, 2)
+        t5 = 1.0 / t3
         entries = (
             1.0,
             0.0,
@@ -1005,24 +1005,24 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t7 = np.abs(m_s)
         t8 = t6 * t7
         t9 = t8 * 2.6645352591003757e-15
+        status = _first(status, ~np.asarray(t5 > t9), 5)
         t10 = 1.0 / Theta_s
         t11 = T * t10
-        t12 = K * t3
-        t13 = x_dot * t3
-        t14 = y_dot * t2
-        t15 = t13 + t14
-        t16 = phi_dot * t15
-        t17 = t2 * t16
-        t18 = m_s * t17
-        t19 = t12 - t18
-        t20 = 1.0 / m_s
-        t21 = t19 * t20
-        t22 = t3 * t16
-        t23 = m_s * t22
-        t24 = K * t2
-        t25 = t23 + t24
-        t26 = t20 * t25
-        status = _first(status, ~np.asarray(t5 > t9), 5)
+        t12 = 1.0 / m_s
+        t13 = K * t3
+        t14 = x_dot * t3
+        t15 = y_dot * t2
+        t16 = t14 + t15
+        t17 = phi_dot * t16
+        t18 = t2 * t17
+        t19 = m_s * t18
+        t20 = t13 - t19
+        t21 = t12 * t20
+        t22 = K * t2
+        t23 = t3 * t17
+        t24 = m_s * t23
+        t25 = t22 + t24
+        t26 = t12 * t25
         entries = (
             t11,
             t21,
@@ -1056,12 +1056,12 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t7 = np.abs(m_s)
         t8 = t6 * t7
         t9 = t8 * 2.6645352591003757e-15
+        status = _first(status, ~np.asarray(t5 > t9), 5)
         t10 = x_dot * t3
         t11 = y_dot * t2
         t12 = t10 + t11
         t13 = phi_dot * m_s
         t14 = t12 * t13
-        status = _first(status, ~np.asarray(t5 > t9), 5)
         entries = (
             t14,
         )
@@ -1118,98 +1118,157 @@ class _CParameters(ctypes.Structure):
     ]
 
 
-# quantity: (lengths of the array arguments, shape of the result)
+# quantity: (lengths of the array arguments, shape of the result, whether there is a batch kernel)
 _SIGNATURES = {
-    mass_matrix: ((3,), (3, 3)),
-    coriolis_matrix: ((3, 3), (3, 3)),
-    coriolis_force: ((3, 3), (3,)),
-    potential_force: ((3,), (3,)),
-    applied_force: ((3, 3), (3,)),
-    constraint_jacobian: ((3,), (1, 3)),
-    constraint_jacobian_dot: ((3, 3), (1, 3)),
-    constraint_pseudoinverse: ((3,), (3, 1)),
-    nullspace_projector: ((3,), (3, 3)),
-    nullspace_projector_dot: ((3, 3), (3, 3)),
-    weighted_pseudoinverse: ((3,), (3, 1)),
-    weighted_nullspace_projector: ((3,), (3, 3)),
-    control_matrix: ((3,), (3, 2)),
-    projected_control_matrix: ((3,), (3, 2)),
-    projected_control_pseudoinverse: ((3,), (2, 3)),
-    orthogonal_complement: ((3,), (3, 2)),
-    projected_mass_matrix: ((3,), (3, 3)),
-    projected_coriolis_matrix: ((3, 3), (3, 3)),
-    projected_potential_force: ((3,), (3,)),
-    projected_applied_force: ((3, 3), (3,)),
-    minimal_mass_matrix: ((3,), (2, 2)),
-    minimal_coriolis_matrix: ((3, 3), (2, 2)),
-    minimal_potential_force: ((3,), (2,)),
-    minimal_applied_force: ((3, 3), (2,)),
-    minimal_control_matrix: ((3,), (2, 2)),
-    admissible_velocity: ((3, 3), (3,)),
-    admissible_acceleration: ((3, 3, 3), (3,)),
-    projected_configuration: ((3,), (3,)),
-    inverse_dynamics: ((3, 3, 3), (2,)),
-    inverse_dynamics_residual: ((3, 3, 3), (3,)),
-    actuator_velocity: ((3, 3), (2,)),
-    actuator_mass_matrix: ((3,), (2, 2)),
-    actuator_bias: ((3, 3), (2,)),
-    forward_dynamics: ((3, 3, 2), (3,)),
-    multipliers: ((3, 3, 2), (1,)),
-    energy: ((3, 3), (2,)),
-    singularity: ((3,), (2,)),
+    mass_matrix: ((3,), (3, 3), False),
+    coriolis_matrix: ((3, 3), (3, 3), False),
+    coriolis_force: ((3, 3), (3,), False),
+    potential_force: ((3,), (3,), False),
+    applied_force: ((3, 3), (3,), False),
+    constraint_jacobian: ((3,), (1, 3), False),
+    constraint_jacobian_dot: ((3, 3), (1, 3), False),
+    constraint_pseudoinverse: ((3,), (3, 1), False),
+    nullspace_projector: ((3,), (3, 3), False),
+    nullspace_projector_dot: ((3, 3), (3, 3), False),
+    weighted_pseudoinverse: ((3,), (3, 1), False),
+    weighted_nullspace_projector: ((3,), (3, 3), False),
+    control_matrix: ((3,), (3, 2), False),
+    projected_control_matrix: ((3,), (3, 2), False),
+    projected_control_pseudoinverse: ((3,), (2, 3), False),
+    orthogonal_complement: ((3,), (3, 2), False),
+    projected_mass_matrix: ((3,), (3, 3), False),
+    projected_coriolis_matrix: ((3, 3), (3, 3), False),
+    projected_potential_force: ((3,), (3,), False),
+    projected_applied_force: ((3, 3), (3,), False),
+    minimal_mass_matrix: ((3,), (2, 2), False),
+    minimal_coriolis_matrix: ((3, 3), (2, 2), False),
+    minimal_potential_force: ((3,), (2,), False),
+    minimal_applied_force: ((3, 3), (2,), False),
+    minimal_control_matrix: ((3,), (2, 2), False),
+    admissible_velocity: ((3, 3), (3,), False),
+    admissible_acceleration: ((3, 3, 3), (3,), False),
+    projected_configuration: ((3,), (3,), False),
+    inverse_dynamics: ((3, 3, 3), (2,), True),
+    inverse_dynamics_residual: ((3, 3, 3), (3,), False),
+    actuator_velocity: ((3, 3), (2,), False),
+    actuator_mass_matrix: ((3,), (2, 2), False),
+    actuator_bias: ((3, 3), (2,), False),
+    forward_dynamics: ((3, 3, 2), (3,), True),
+    multipliers: ((3, 3, 2), (1,), True),
+    energy: ((3, 3), (2,), False),
+    singularity: ((3,), (2,), False),
 }
-_FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+_FILES = ('skate.h', 'skate.c', 'skate_batch.h', 'skate_batch.c')
+_FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+# The first of these that the compiler knows: this machine's vector instructions, at their full width.
+_MACHINE_FLAGS = (("-march=native", "-mprefer-vector-width=512"), ("-march=native",), ("-mcpu=native",), ())
+_CHUNK = 4096  # states whose components stay in the cache between two transpositions
 
 
 class Compiled:
-    """The functions of this module, run by the compiled C."""
+    """The functions of this module with the same arguments, results and errors.
 
-    def __init__(self, library: ctypes.CDLL) -> None:
-        for function, (lengths, shape) in _SIGNATURES.items():
-            call = getattr(library, "skate_" + function.__name__)
-            call.restype = ctypes.c_int
-            call.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
-            setattr(self, function.__name__, functools.partial(_run, call, function, lengths, shape))
+    Single states and the quantities with a batch kernel run in C, all else in NumPy: other quantities of many states,
+    and parameters that are arrays. Without a library NumPy does everything.
+    """
+
+    def __init__(self, library: ctypes.CDLL | None) -> None:
+        for function, signature in _SIGNATURES.items():
+            setattr(self, function.__name__, function if library is None else _compiled(library, function, *signature))
 
 
-def _run(call, function, lengths, shape, *args, **kwargs):
-    bound = inspect.signature(function).bind(*args, **kwargs)
-    bound.apply_defaults()
-    *values, p = bound.arguments.values()
-    names = list(bound.arguments)[:-1]
-    arrays = {name: _array(name, length, value) for name, length, value in zip(names, lengths, values)}
-    *arrays, batch = _states(**arrays)
-    rows = [np.ascontiguousarray(array).reshape(-1, array.shape[-1]) for array in arrays]
-    parameters = _CParameters(p.m_s, p.Theta_s)
-    result = np.empty((len(rows[0]), int(np.prod(shape))))
-    for index in range(len(result)):
-        status = call(*(row[index].ctypes.data for row in rows), ctypes.addressof(parameters), result[index].ctypes.data)
-        if status != 0 and not batch:
-            raise StateError(function.__name__, Status(status))
+_last = PARAMETERS, None
+
+
+def _c_parameters(p):
+    """The C struct of parameters, kept for the next call with the same ones; None where one of them is an array."""
+    global _last
+    known, struct = _last
+    if p is not known or struct is None:
+        members = (p.m_s, p.Theta_s, )
+        if any(map(np.ndim, members)):
+            return None
+        struct = _CParameters(*members)
+        if type(p) is Parameters:  # which is frozen; what else has these attributes may change
+            _last = p, struct
+    return struct
+
+
+def _compiled(library, function, lengths, shape, batched):
+    one = getattr(library, "skate_" + function.__name__)
+    one.restype = ctypes.c_int
+    one.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
+    many = getattr(library, "skate_" + function.__name__ + "_batch") if batched else None
+    if many is not None:
+        many.restype = ctypes.c_size_t
+        many.argtypes = [ctypes.c_size_t] * 2 + [ctypes.c_void_p] * (len(lengths) + 3)
+    signature = inspect.signature(function)
+    names = list(signature.parameters)[:-1]
+
+    @functools.wraps(function)
+    def run(*args, **kwargs):
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        *values, p = bound.arguments.values()
+        arrays = [_array(name, length, value) for name, length, value in zip(names, lengths, values)]
+        single = all(array.ndim == 1 for array in arrays)
+        parameters = _c_parameters(p)
+        if parameters is None or not (single or many):
+            return function(*args, **kwargs)
+        if not single:
+            if len({array.shape[:-1] for array in arrays}) > 1:
+                *arrays, _ = _states(**dict(zip(names, arrays)))
+            return _many(many, arrays, parameters, arrays[0].shape[:-1], shape)
+        arrays = [np.ascontiguousarray(array) for array in arrays]
+        result = np.empty(shape)
+        status = one(*(a.ctypes.data for a in arrays), ctypes.addressof(parameters), result.ctypes.data)
         if status != 0:
-            result[index] = np.nan
+            raise StateError(function.__name__, Status(status))
+        return result
+
+    return run
+
+
+def _many(kernel, arrays, parameters, batch, shape):
+    """The kernel takes arrays of components: states are transposed there and back, a chunk at a time."""
+    rows = [array.reshape(-1, array.shape[-1]) for array in arrays]
+    count = len(rows[0])
+    result = np.empty((count, int(np.prod(shape))))
+    stride = min(count, _CHUNK)
+    places = [np.empty((width, stride)) for width in (*(row.shape[1] for row in rows), result.shape[1])]
+    pointers = [place.ctypes.data for place in places]
+    pointers.insert(len(rows), ctypes.addressof(parameters))
+    for start in range(0, count, _CHUNK):
+        length = min(_CHUNK, count - start)
+        for place, row in zip(places, rows):
+            place[:, :length] = row[start : start + length].T
+        kernel(length, stride, *pointers, None)
+        result[start : start + length] = places[-1][:, :length].T
     return result.reshape(batch + shape)
 
 
 def compile():
-    """Builds ../c/skate.c with the system's C compiler (CC, else cc) into a cache folder.
+    """Builds the C beside this module (../c) with the system's C compiler (CC, else cc) into a cache folder.
 
-    Returns an object with the functions of this module. Raises FileNotFoundError without source or compiler and
-    RuntimeError with the compiler's message when it fails.
+    Returns an object with the functions of this module. Without a compiler it warns, and NumPy does the work. Raises
+    FileNotFoundError without the C files and RuntimeError with the compiler's message when it fails.
     """
     folder = Path(__file__).resolve().parent.parent / "c"
-    source, header = folder / "skate.c", folder / "skate.h"
+    contents = b"".join((folder / name).read_bytes() for name in _FILES)
     command = os.environ.get("CC", "cc").split()
     if not command or shutil.which(command[0]) is None:
-        raise FileNotFoundError(f"no C compiler {' '.join(command)!r}: install one or set CC")
-    command += _FLAGS
-    text = repr((command, platform.machine())).encode() + source.read_bytes() + header.read_bytes()
-    built = _cache_folder() / f"skate-{hashlib.sha256(text).hexdigest()[:24]}.so"
+        message = f"no C compiler {' '.join(command)!r}: NumPy does the work; install one or set CC"
+        warnings.warn(message, RuntimeWarning, stacklevel=2)
+        return Compiled(None)
+    command, machine = _for_this_machine([*command, *_FLAGS])
+    key = hashlib.sha256(repr((command, machine)).encode() + contents).hexdigest()[:24]
+    built = _cache_folder() / f"skate-{key}.so"
     if not built.exists():
         handle, name = tempfile.mkstemp(dir=built.parent, suffix=".tmp")
         os.close(handle)
         try:
-            made = subprocess.run([*command, "-o", name, str(source), "-lm"], capture_output=True, text=True, check=False)
+            sources = [str(folder / name) for name in _FILES if name.endswith(".c")]
+            made = _told([*command, "-o", name, *sources, "-lm"])
             if made.returncode != 0:
                 raise RuntimeError(f"{' '.join(command)} failed:\n{made.stderr}")
             os.replace(name, built)
@@ -1218,9 +1277,23 @@ def compile():
     return Compiled(ctypes.CDLL(str(built)))
 
 
+def _for_this_machine(command):
+    """The command with flags for this machine, and what the compiler then says of itself and of the machine."""
+    for flags in _MACHINE_FLAGS:
+        told = _told([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
+        if told.returncode == 0:
+            return [*command, *flags], (platform.machine(), told.stdout)
+    raise RuntimeError(f"{' '.join(command)} failed:\n{told.stderr}")
+
+
+def _told(command):
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
 def _cache_folder() -> Path:
     """The user's cache folder, or a fresh private one where that cannot be written."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    usual = {"darwin": Path.home() / "Library" / "Caches", "win32": Path(os.environ.get("LOCALAPPDATA", Path.home()))}
+    base = os.environ.get("XDG_CACHE_HOME") or usual.get(sys.platform, Path.home() / ".cache")
     folder = Path(base) / "symgen"
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -11,8 +11,8 @@ Inputs u:
 
 Operations                          + -      *      /   sqrt sincos  other
 mass_matrix                           3     14      0      0      1      0
-coriolis_matrix                       1      7      0      0      1      0
-coriolis_force                        1      9      0      0      1      0
+coriolis_matrix                       1      6      0      0      1      0
+coriolis_force                        1      8      0      0      1      0
 potential_force                       2     10      0      0      2      0
 applied_force                         0      1      0      0      0      0
 constraint_residual                   4      4      0      0      2      0
@@ -21,31 +21,31 @@ constraint_jacobian_dot               0      8      0      0      2      0
 constraint_pseudoinverse              9     27      1      0      2      0
 nullspace_projector                   6     24      1      0      2      0
 nullspace_projector_dot              27     71      1      0      2      0
-weighted_pseudoinverse               34     94      2      0      2      0
-weighted_nullspace_projector         21     78      1      0      2      0
+weighted_pseudoinverse               30    103      4      0      2      0
+weighted_nullspace_projector         23     88      1      0      2      0
 control_matrix                        0      0      0      0      0      0
 projected_control_matrix              6     20      1      0      2      0
-projected_control_pseudoinverse       1      6      2      0      2      0
-orthogonal_complement                 1      6      2      0      2      0
-projected_mass_matrix                27     79      1      0      2      0
+projected_control_pseudoinverse       4     11      2      0      2      0
+orthogonal_complement                 4     11      2      0      2      0
+projected_mass_matrix                27     71      1      0      2      0
 projected_coriolis_matrix            64    152      1      0      2      0
 projected_potential_force            14     45      1      0      2      0
 projected_applied_force               8     27      1      0      2      0
-minimal_mass_matrix                   8     31      1      0      2      0
-minimal_coriolis_matrix              22     67      3      0      2      0
-minimal_potential_force               5     18      1      0      2      0
-minimal_applied_force                 1      7      1      0      2      0
+minimal_mass_matrix                  11     37      1      0      2      0
+minimal_coriolis_matrix              24     68      3      0      2      0
+minimal_potential_force               8     24      1      0      2      0
+minimal_applied_force                 4     13      1      0      2      0
 minimal_control_matrix                0      0      0      0      0      0
 admissible_velocity                  16     43      3      0      2      0
 admissible_acceleration              27     63      1      0      2      0
 projected_configuration              47     79      3      0      7      0
-inverse_dynamics                     16     50      1      0      2      0
+inverse_dynamics                     16     49      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     0      0      0      0      0      0
-actuator_mass_matrix                  8     31      1      0      2      0
-actuator_bias                        24     88      1      0      2      0
-forward_dynamics                     45    118      2      0      2      0
-multipliers                          55    150      2      0      2      0
+actuator_mass_matrix                 11     37      1      0      2      0
+actuator_bias                        26     91      1      0      2      0
+forward_dynamics                     41    121      1      0      2      0
+multipliers                          48    137      1      0      2      0
 energy                               11     32      0      0      2      0
 singularity                          10     23      6      2      2      0
 (changes of sign are not counted)
@@ -65,7 +65,9 @@ import os
 import platform
 import shutil
 import subprocess
+import sys
 import tempfile
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -271,16 +273,15 @@ def coriolis_matrix(q, qd, p=PARAMETERS):
         t3, t4 = _sincos(t1)
         t5 = r * l
         t6 = t3 * t5
-        t7 = m_rod * t6
-        t8 = beta_dot * t7
-        t9 = 0.5 * t8
-        t10 = alpha_dot * t7
-        t11 = 0.5 * t10
+        t7 = 0.5 * m_rod
+        t8 = t6 * t7
+        t9 = beta_dot * t8
+        t10 = alpha_dot * t8
         entries = (
             0.0,
             t9,
             0.0,
-            t11,
+            t10,
             0.0,
             0.0,
             0.0,
@@ -312,15 +313,14 @@ def coriolis_force(q, qd, p=PARAMETERS):
         t5 = beta_dot * beta_dot
         t6 = r * l
         t7 = t3 * t6
-        t8 = m_rod * t7
-        t9 = t5 * t8
-        t10 = 0.5 * t9
+        t8 = 0.5 * m_rod
+        t9 = t7 * t8
+        t10 = t5 * t9
         t11 = alpha_dot * alpha_dot
-        t12 = t11 * t8
-        t13 = 0.5 * t12
+        t12 = t11 * t9
         entries = (
             t10,
-            t13,
+            t12,
             0.0,
         )
         return _result("coriolis_force", status, batch, (3,), entries)
@@ -538,6 +538,7 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = 1.0 / t18
         t29 = t7 * t15
         t30 = t28 * t29
@@ -558,7 +559,6 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t45 = t9 * t19
         t46 = t44 - t45
         t47 = t46 * t28
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t31,
             t34,
@@ -608,6 +608,7 @@ def nullspace_projector(q, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = 1.0 / t18
         t29 = t8 * t28
         t30 = t9 * t7
@@ -620,7 +621,6 @@ def nullspace_projector(q, p=PARAMETERS):
         t37 = t28 * t36
         t38 = -t37
         t39 = t16 * t28
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t29,
             t31,
@@ -676,6 +676,7 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = 1.0 / t18
         t29 = t7 * t15
         t30 = t28 * t29
@@ -759,7 +760,6 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t108 = t106 - t107
         t109 = 2.0 * t108
         t110 = -t109
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t55,
             t72,
@@ -789,160 +789,168 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         m_s = np.float64(p.m_s)
         J_crank = np.float64(p.J_crank)
         J_rod = np.float64(p.J_rod)
-        t1 = np.abs(beta)
-        t2 = np.abs(alpha)
+        t1 = np.abs(alpha)
+        t2 = np.abs(beta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(beta)
-        t5, t6 = _sincos(alpha)
-        t7 = l * t4
+        t3, t4 = _sincos(alpha)
+        t5, t6 = _sincos(beta)
+        t7 = l * t6
         t8 = t7 * t7
-        t9 = r * t6
+        t9 = r * t4
         t10 = t9 * t9
         t11 = r * l
-        t12 = t6 * t3
-        t13 = t4 * t5
+        t12 = t4 * t5
+        t13 = t6 * t3
         t14 = t12 + t13
         t15 = t11 * t14
         t16 = t15 * t15
         t17 = t10 + t16
         t18 = t8 + t17
-        t19 = r * t5
+        t19 = r * t3
         t20 = t19 * t19
-        t21 = l * t3
+        t21 = l * t5
         t22 = t21 * t21
         t23 = t20 + t22
         t24 = 1.0 + t23
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
-        t28 = 0.5 * J_crank
-        t29 = r * r
-        t30 = m_rod * t29
-        t31 = 0.5 * t30
-        t32 = t28 + t31
-        t33 = t8 * t32
-        t34 = 2.0 * t33
-        t35 = t9 * t7
-        t36 = t6 * t4
-        t37 = t5 * t3
-        t38 = t36 - t37
-        t39 = t11 * t38
-        t40 = m_rod * t39
-        t41 = t35 * t40
-        t42 = 0.5 * t41
-        t43 = t34 - t42
-        t44 = 0.5 * J_rod
-        t45 = l * l
-        t46 = m_rod * t45
-        t47 = 0.125 * t46
-        t48 = t44 + t47
-        t49 = t10 * t48
-        t50 = 2.0 * t49
-        t51 = t50 - t42
-        t52 = t43 + t51
-        t53 = m_s * t16
-        t54 = t52 + t53
-        t55 = np.abs(t54)
-        t56 = np.abs(J_crank)
-        t57 = 0.5 * t56
-        t58 = np.abs(m_rod)
-        t59 = np.abs(r)
-        t60 = t59 * t59
-        t61 = t58 * t60
-        t62 = 0.5 * t61
-        t63 = t57 + t62
-        t64 = t8 * t63
-        t65 = 2.0 * t64
-        t66 = np.abs(J_rod)
-        t67 = 0.5 * t66
-        t68 = np.abs(l)
-        t69 = t68 * t68
-        t70 = t58 * t69
-        t71 = 0.125 * t70
-        t72 = t67 + t71
-        t73 = t10 * t72
-        t74 = 2.0 * t73
-        t75 = np.abs(m_s)
-        t76 = t16 * t75
-        t77 = t74 + t76
-        t78 = t65 + t77
-        t79 = 2.6645352591003757e-15 * t78
-        t80 = 1.0 / t54
-        t81 = t7 * t15
-        t82 = m_s * t81
-        t83 = t80 * t82
-        t84 = -t83
-        t85 = 1.0 / t18
-        t86 = t21 * t15
-        t87 = t9 + t86
-        t88 = t85 * t87
-        t89 = t43 * t80
-        t90 = 1.0 - t89
-        t91 = t88 * t90
-        t92 = t19 * t15
-        t93 = t7 + t92
-        t94 = t85 * t93
-        t95 = t48 * t35
-        t96 = 2.0 * t95
-        t97 = t8 * t40
-        t98 = 0.5 * t97
-        t99 = t96 - t98
-        t100 = t80 * t99
-        t101 = t94 * t100
-        t102 = t91 + t101
-        t103 = t7 * t21
-        t104 = t9 * t19
-        t105 = t103 - t104
-        t106 = t105 * t85
-        t107 = t106 * t83
-        t108 = t102 + t107
-        t109 = t9 * t15
-        t110 = m_s * t109
-        t111 = t80 * t110
-        t112 = -t111
-        t113 = t106 * t111
-        t114 = t32 * t35
-        t115 = 2.0 * t114
-        t116 = t10 * t40
-        t117 = 0.5 * t116
-        t118 = t115 - t117
-        t119 = t80 * t118
-        t120 = t88 * t119
-        t121 = t51 * t80
-        t122 = 1.0 - t121
-        t123 = t94 * t122
-        t124 = t120 + t123
-        t125 = t113 - t124
-        t126 = t53 * t80
-        t127 = t126 - 1.0
-        t128 = t81 * t40
-        t129 = 0.5 * t128
-        t130 = t48 * t109
-        t131 = 2.0 * t130
-        t132 = t129 - t131
-        t133 = t80 * t132
-        t134 = t94 * t133
-        t135 = t109 * t40
-        t136 = 0.5 * t135
-        t137 = t32 * t81
-        t138 = 2.0 * t137
-        t139 = t136 - t138
-        t140 = t80 * t139
-        t141 = t88 * t140
-        t142 = t134 - t141
-        t143 = 1.0 - t126
-        t144 = t106 * t143
-        t145 = t142 + t144
         status = _first(status, ~np.asarray(t18 > t27), 2)
-        status = _first(status, ~np.asarray(t55 > t79), 5)
+        t28 = t6 * t6
+        t29 = 2.0 * t28
+        t30 = 1.0 - t29
+        t31 = t4 * t30
+        t32 = t5 * t13
+        t33 = 2.0 * t32
+        t34 = t31 + t33
+        t35 = m_s * t34
+        t36 = 0.25 * t4
+        t37 = t32 + t36
+        t38 = m_rod * t37
+        t39 = t35 + t38
+        t40 = t4 * t39
+        t41 = t3 * t3
+        t42 = m_rod * t41
+        t43 = m_s + t42
+        t44 = t28 * t43
+        t45 = t40 + t44
+        t46 = l * t45
+        t47 = l * t46
+        t48 = t4 * t4
+        t49 = J_rod * t48
+        t50 = t47 + t49
+        t51 = r * t50
+        t52 = r * t51
+        t53 = l * l
+        t54 = J_crank * t53
+        t55 = t28 * t54
+        t56 = t52 + t55
+        t57 = np.abs(t56)
+        t58 = np.abs(J_crank)
+        t59 = 0.5 * t58
+        t60 = np.abs(m_rod)
+        t61 = np.abs(r)
+        t62 = t61 * t61
+        t63 = t60 * t62
+        t64 = 0.5 * t63
+        t65 = t59 + t64
+        t66 = t8 * t65
+        t67 = 2.0 * t66
+        t68 = np.abs(J_rod)
+        t69 = 0.5 * t68
+        t70 = np.abs(l)
+        t71 = t70 * t70
+        t72 = t60 * t71
+        t73 = 0.125 * t72
+        t74 = t69 + t73
+        t75 = t10 * t74
+        t76 = 2.0 * t75
+        t77 = np.abs(m_s)
+        t78 = t16 * t77
+        t79 = t76 + t78
+        t80 = t67 + t79
+        t81 = 2.6645352591003757e-15 * t80
+        status = _first(status, ~np.asarray(t57 > t81), 5)
+        t82 = l * t11
+        t83 = m_s * t82
+        t84 = t83 / t56
+        t85 = t6 * t14
+        t86 = t84 * t85
+        t87 = -t86
+        t88 = 1.0 / t56
+        t89 = 0.5 * J_rod
+        t90 = m_rod * t53
+        t91 = 0.125 * t90
+        t92 = t89 + t91
+        t93 = t9 * t92
+        t94 = 2.0 * t93
+        t95 = t4 * t6
+        t96 = t3 * t5
+        t97 = t95 - t96
+        t98 = t11 * t97
+        t99 = m_rod * t98
+        t100 = t7 * t99
+        t101 = 0.5 * t100
+        t102 = t94 - t101
+        t103 = m_s * t15
+        t104 = t21 * t103
+        t105 = t102 + t104
+        t106 = t88 * t105
+        t107 = r * r
+        t108 = l * t107
+        t109 = m_s * t108
+        t110 = t109 / t56
+        t111 = t4 * t14
+        t112 = t110 * t111
+        t113 = -t112
+        t114 = l / t56
+        t115 = t4 * t97
+        t116 = 0.5 * t115
+        t117 = t116 - t6
+        t118 = m_rod * t117
+        t119 = t3 * t14
+        t120 = m_s * t119
+        t121 = t118 - t120
+        t122 = r * t121
+        t123 = r * t122
+        t124 = J_crank * t6
+        t125 = t123 - t124
+        t126 = t114 * t125
+        t127 = t92 * t48
+        t128 = 2.0 * t127
+        t129 = l * m_rod
+        t130 = t13 * t14
+        t131 = t129 * t130
+        t132 = l * t131
+        t133 = t128 + t132
+        t134 = r * t133
+        t135 = r * t134
+        t136 = t55 + t135
+        t137 = t88 * t136
+        t138 = -t137
+        t139 = t4 * t3
+        t140 = 0.5 * t139
+        t141 = t6 * t5
+        t142 = 0.5 * t141
+        t143 = t140 + t142
+        t144 = t129 * t143
+        t145 = l * t144
+        t146 = t92 * t139
+        t147 = 2.0 * t146
+        t148 = t145 - t147
+        t149 = r * t148
+        t150 = r * t149
+        t151 = t141 * t54
+        t152 = t150 + t151
+        t153 = t88 * t152
         entries = (
-            t84,
-            t108,
-            t112,
-            t125,
-            t127,
-            t145,
+            t87,
+            t106,
+            t113,
+            t126,
+            t138,
+            t153,
         )
         return _result("weighted_pseudoinverse", status, batch, (3, 2), entries)
 
@@ -989,106 +997,122 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
-        t28 = 0.5 * J_crank
-        t29 = r * r
-        t30 = m_rod * t29
-        t31 = 0.5 * t30
-        t32 = t28 + t31
-        t33 = t8 * t32
-        t34 = 2.0 * t33
-        t35 = t9 * t7
-        t36 = t6 * t4
-        t37 = t5 * t3
-        t38 = t36 - t37
-        t39 = t11 * t38
-        t40 = m_rod * t39
-        t41 = t35 * t40
-        t42 = 0.5 * t41
-        t43 = t34 - t42
-        t44 = 0.5 * J_rod
-        t45 = l * l
-        t46 = m_rod * t45
-        t47 = 0.125 * t46
-        t48 = t44 + t47
-        t49 = t10 * t48
-        t50 = 2.0 * t49
-        t51 = t50 - t42
-        t52 = t43 + t51
-        t53 = m_s * t16
-        t54 = t52 + t53
-        t55 = np.abs(t54)
-        t56 = np.abs(J_crank)
-        t57 = 0.5 * t56
-        t58 = np.abs(m_rod)
-        t59 = np.abs(r)
-        t60 = t59 * t59
-        t61 = t58 * t60
-        t62 = 0.5 * t61
-        t63 = t57 + t62
-        t64 = t8 * t63
-        t65 = 2.0 * t64
-        t66 = np.abs(J_rod)
-        t67 = 0.5 * t66
-        t68 = np.abs(l)
-        t69 = t68 * t68
-        t70 = t58 * t69
-        t71 = 0.125 * t70
-        t72 = t67 + t71
-        t73 = t10 * t72
-        t74 = 2.0 * t73
-        t75 = np.abs(m_s)
-        t76 = t16 * t75
-        t77 = t74 + t76
-        t78 = t65 + t77
-        t79 = 2.6645352591003757e-15 * t78
-        t80 = 1.0 / t54
-        t81 = t43 * t80
-        t82 = t48 * t35
-        t83 = 2.0 * t82
-        t84 = t8 * t40
-        t85 = 0.5 * t84
-        t86 = t83 - t85
-        t87 = t80 * t86
-        t88 = t7 * t15
-        t89 = m_s * t88
-        t90 = t80 * t89
-        t91 = -t90
-        t92 = t32 * t35
-        t93 = 2.0 * t92
-        t94 = t10 * t40
-        t95 = 0.5 * t94
-        t96 = t93 - t95
-        t97 = t80 * t96
-        t98 = t51 * t80
-        t99 = t9 * t15
-        t100 = m_s * t99
-        t101 = t80 * t100
-        t102 = -t101
-        t103 = t99 * t40
-        t104 = 0.5 * t103
-        t105 = t32 * t88
-        t106 = 2.0 * t105
-        t107 = t104 - t106
-        t108 = t80 * t107
-        t109 = t88 * t40
-        t110 = 0.5 * t109
-        t111 = t48 * t99
-        t112 = 2.0 * t111
-        t113 = t110 - t112
-        t114 = t80 * t113
-        t115 = t53 * t80
         status = _first(status, ~np.asarray(t18 > t27), 2)
-        status = _first(status, ~np.asarray(t55 > t79), 5)
+        t28 = t4 * t4
+        t29 = 2.0 * t28
+        t30 = 1.0 - t29
+        t31 = t6 * t30
+        t32 = t3 * t13
+        t33 = 2.0 * t32
+        t34 = t31 + t33
+        t35 = m_s * t34
+        t36 = 0.25 * t6
+        t37 = t32 + t36
+        t38 = m_rod * t37
+        t39 = t35 + t38
+        t40 = t6 * t39
+        t41 = t5 * t5
+        t42 = m_rod * t41
+        t43 = m_s + t42
+        t44 = t28 * t43
+        t45 = t40 + t44
+        t46 = l * t45
+        t47 = l * t46
+        t48 = t6 * t6
+        t49 = J_rod * t48
+        t50 = t47 + t49
+        t51 = r * t50
+        t52 = r * t51
+        t53 = l * l
+        t54 = J_crank * t53
+        t55 = t28 * t54
+        t56 = t52 + t55
+        t57 = np.abs(t56)
+        t58 = np.abs(J_crank)
+        t59 = 0.5 * t58
+        t60 = np.abs(m_rod)
+        t61 = np.abs(r)
+        t62 = t61 * t61
+        t63 = t60 * t62
+        t64 = 0.5 * t63
+        t65 = t59 + t64
+        t66 = t8 * t65
+        t67 = 2.0 * t66
+        t68 = np.abs(J_rod)
+        t69 = 0.5 * t68
+        t70 = np.abs(l)
+        t71 = t70 * t70
+        t72 = t60 * t71
+        t73 = 0.125 * t72
+        t74 = t69 + t73
+        t75 = t10 * t74
+        t76 = 2.0 * t75
+        t77 = np.abs(m_s)
+        t78 = t16 * t77
+        t79 = t76 + t78
+        t80 = t67 + t79
+        t81 = 2.6645352591003757e-15 * t80
+        status = _first(status, ~np.asarray(t57 > t81), 5)
+        t82 = t6 * t4
+        t83 = t5 * t3
+        t84 = t82 - t83
+        t85 = t11 * t84
+        t86 = m_rod * t85
+        t87 = t9 * t86
+        t88 = 0.5 * t87
+        t89 = 0.5 * J_crank
+        t90 = r * r
+        t91 = m_rod * t90
+        t92 = 0.5 * t91
+        t93 = t89 + t92
+        t94 = t7 * t93
+        t95 = 2.0 * t94
+        t96 = t88 - t95
+        t97 = t7 * t96
+        t98 = 1.0 / t56
+        t99 = t97 * t98
+        t100 = -t99
+        t101 = t7 * t86
+        t102 = 0.5 * t101
+        t103 = 0.5 * J_rod
+        t104 = m_rod * t53
+        t105 = 0.125 * t104
+        t106 = t103 + t105
+        t107 = t9 * t106
+        t108 = 2.0 * t107
+        t109 = t102 - t108
+        t110 = t7 * t109
+        t111 = t98 * t110
+        t112 = -t111
+        t113 = m_s * t15
+        t114 = t7 * t113
+        t115 = t98 * t114
+        t116 = -t115
+        t117 = t9 * t96
+        t118 = t98 * t117
+        t119 = -t118
+        t120 = t9 * t109
+        t121 = t120 * t98
+        t122 = -t121
+        t123 = t9 * t113
+        t124 = t98 * t123
+        t125 = -t124
+        t126 = t15 * t96
+        t127 = t98 * t126
+        t128 = t15 * t109
+        t129 = t98 * t128
+        t130 = t15 * t113
+        t131 = t130 * t98
         entries = (
-            t81,
-            t87,
-            t91,
-            t97,
-            t98,
-            t102,
-            t108,
-            t114,
-            t115,
+            t100,
+            t112,
+            t116,
+            t119,
+            t122,
+            t125,
+            t127,
+            t129,
+            t131,
         )
         return _result("weighted_nullspace_projector", status, batch, (3, 3), entries)
 
@@ -1146,6 +1170,7 @@ def projected_control_matrix(q, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = 1.0 / t18
         t29 = t8 * t28
         t30 = t9 * t7
@@ -1153,7 +1178,6 @@ def projected_control_matrix(q, p=PARAMETERS):
         t32 = t7 * t15
         t33 = t28 * t32
         t34 = -t33
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t29,
             t31,
@@ -1180,41 +1204,49 @@ def projected_control_pseudoinverse(q, p=PARAMETERS):
         t3, t4 = _sincos(alpha)
         t5, t6 = _sincos(beta)
         t7 = l * t6
-        t8 = np.abs(t7)
-        t9 = np.abs(l)
-        t10 = t9 * 2.6645352591003757e-15
-        t11 = r * t4
-        t12 = t11 / t7
-        t13 = t4 * t5
-        t14 = t6 * t3
-        t15 = t13 + t14
-        t16 = r / t6
-        t17 = t15 * t16
-        t18 = -t17
-        _failed_ = ~np.asarray(t8 > t10)
+        t8 = t7 * t7
+        t9 = r * t4
+        t10 = t9 * t9
+        t11 = t10 + t8
+        t12 = np.abs(r)
+        t13 = t12 * t12
+        t14 = np.abs(l)
+        t15 = t14 * t14
+        t16 = t13 + t15
+        t17 = 1.0 + t16
+        t18 = t11 * t17
+        t19 = t18 * 7.099748146989106e-30
+        _failed_ = ~np.asarray(t8 > t19)
         if np.any(_failed_ & (status == 0)):
-            t19 = t7 * t7
-            t20 = t11 * t11
-            t21 = r * l
-            t22 = t21 * t15
-            t23 = t22 * t22
-            t24 = t20 + t23
-            t25 = t19 + t24
-            t26 = r * t3
-            t27 = t26 * t26
-            t28 = l * t5
+            t20 = r * l
+            t21 = t4 * t5
+            t22 = t6 * t3
+            t23 = t21 + t22
+            t24 = t20 * t23
+            t25 = t24 * t24
+            t26 = t10 + t25
+            t27 = t8 + t26
+            t28 = r * t3
             t29 = t28 * t28
-            t30 = t27 + t29
-            t31 = 1.0 + t30
-            t32 = t20 + t19
-            t33 = t31 * t32
-            t34 = t33 * 7.099748146989106e-30
-            status = _first(status, _failed_ & ~np.asarray(t25 > t34), 2)
+            t30 = l * t5
+            t31 = t30 * t30
+            t32 = t29 + t31
+            t33 = 1.0 + t32
+            t34 = t33 * t11
+            t35 = t34 * 7.099748146989106e-30
+            status = _first(status, _failed_ & ~np.asarray(t27 > t35), 2)
             status = _first(status, _failed_, 3)
+        t36 = t9 / t7
+        t37 = t4 * t5
+        t38 = t6 * t3
+        t39 = t37 + t38
+        t40 = r / t6
+        t41 = t39 * t40
+        t42 = -t41
         entries = (
             1.0,
-            t12,
-            t18,
+            t36,
+            t42,
         )
         return _result("projected_control_pseudoinverse", status, batch, (1, 3), entries)
 
@@ -1237,41 +1269,49 @@ def orthogonal_complement(q, p=PARAMETERS):
         t3, t4 = _sincos(alpha)
         t5, t6 = _sincos(beta)
         t7 = l * t6
-        t8 = np.abs(t7)
-        t9 = np.abs(l)
-        t10 = t9 * 2.6645352591003757e-15
-        t11 = r * t4
-        t12 = t11 / t7
-        t13 = t4 * t5
-        t14 = t6 * t3
-        t15 = t13 + t14
-        t16 = r / t6
-        t17 = t15 * t16
-        t18 = -t17
-        _failed_ = ~np.asarray(t8 > t10)
+        t8 = t7 * t7
+        t9 = r * t4
+        t10 = t9 * t9
+        t11 = t10 + t8
+        t12 = np.abs(r)
+        t13 = t12 * t12
+        t14 = np.abs(l)
+        t15 = t14 * t14
+        t16 = t13 + t15
+        t17 = 1.0 + t16
+        t18 = t11 * t17
+        t19 = t18 * 7.099748146989106e-30
+        _failed_ = ~np.asarray(t8 > t19)
         if np.any(_failed_ & (status == 0)):
-            t19 = t7 * t7
-            t20 = t11 * t11
-            t21 = r * l
-            t22 = t21 * t15
-            t23 = t22 * t22
-            t24 = t20 + t23
-            t25 = t19 + t24
-            t26 = r * t3
-            t27 = t26 * t26
-            t28 = l * t5
+            t20 = r * l
+            t21 = t4 * t5
+            t22 = t6 * t3
+            t23 = t21 + t22
+            t24 = t20 * t23
+            t25 = t24 * t24
+            t26 = t10 + t25
+            t27 = t8 + t26
+            t28 = r * t3
             t29 = t28 * t28
-            t30 = t27 + t29
-            t31 = 1.0 + t30
-            t32 = t20 + t19
-            t33 = t31 * t32
-            t34 = t33 * 7.099748146989106e-30
-            status = _first(status, _failed_ & ~np.asarray(t25 > t34), 2)
+            t30 = l * t5
+            t31 = t30 * t30
+            t32 = t29 + t31
+            t33 = 1.0 + t32
+            t34 = t33 * t11
+            t35 = t34 * 7.099748146989106e-30
+            status = _first(status, _failed_ & ~np.asarray(t27 > t35), 2)
             status = _first(status, _failed_, 2)
+        t36 = t9 / t7
+        t37 = t4 * t5
+        t38 = t6 * t3
+        t39 = t37 + t38
+        t40 = r / t6
+        t41 = t39 * t40
+        t42 = -t41
         entries = (
             1.0,
-            t12,
-            t18,
+            t36,
+            t42,
         )
         return _result("orthogonal_complement", status, batch, (3, 1), entries)
 
@@ -1318,105 +1358,97 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
-        t28 = 1.0 / t18
-        t29 = t8 * t28
-        t30 = 0.5 * J_crank
-        t31 = r * r
-        t32 = m_rod * t31
-        t33 = 0.5 * t32
-        t34 = t30 + t33
-        t35 = t34 * t29
-        t36 = 2.0 * t35
-        t37 = t9 * t7
-        t38 = t37 * t28
-        t39 = t6 * t4
-        t40 = t5 * t3
-        t41 = t39 - t40
-        t42 = t11 * t41
-        t43 = m_rod * t42
-        t44 = t38 * t43
-        t45 = 0.5 * t44
-        t46 = t36 - t45
-        t47 = t29 * t46
-        t48 = 0.5 * J_rod
-        t49 = l * l
-        t50 = m_rod * t49
-        t51 = 0.125 * t50
-        t52 = t48 + t51
-        t53 = t52 * t38
-        t54 = 2.0 * t53
-        t55 = t29 * t43
-        t56 = 0.5 * t55
-        t57 = t54 - t56
-        t58 = t38 * t57
-        t59 = t47 + t58
-        t60 = t7 * t15
-        t61 = t28 * t60
-        t62 = m_s * t61
-        t63 = t61 * t62
-        t64 = t59 + t63
-        t65 = t38 * t46
-        t66 = t10 * t28
-        t67 = t66 * t57
-        t68 = t65 + t67
-        t69 = t9 * t15
-        t70 = t28 * t69
-        t71 = t70 * t62
-        t72 = t68 + t71
-        t73 = t61 * t46
-        t74 = t70 * t57
-        t75 = t73 + t74
-        t76 = t16 * t28
-        t77 = t76 * t62
-        t78 = t75 + t77
-        t79 = -t78
-        t80 = t34 * t38
-        t81 = 2.0 * t80
-        t82 = t66 * t43
-        t83 = 0.5 * t82
-        t84 = t81 - t83
-        t85 = t38 * t84
-        t86 = t52 * t66
-        t87 = 2.0 * t86
-        t88 = t87 - t45
-        t89 = t66 * t88
-        t90 = t85 + t89
-        t91 = m_s * t70
-        t92 = t70 * t91
-        t93 = t90 + t92
-        t94 = t61 * t84
-        t95 = t70 * t88
-        t96 = t94 + t95
-        t97 = t76 * t91
-        t98 = t96 + t97
-        t99 = -t98
-        t100 = m_s * t76
-        t101 = t76 * t100
-        t102 = t70 * t43
-        t103 = 0.5 * t102
-        t104 = t34 * t61
-        t105 = 2.0 * t104
-        t106 = t103 - t105
-        t107 = t61 * t106
-        t108 = t61 * t43
-        t109 = 0.5 * t108
-        t110 = t52 * t70
-        t111 = 2.0 * t110
-        t112 = t109 - t111
-        t113 = t70 * t112
-        t114 = t107 + t113
-        t115 = t101 - t114
         status = _first(status, ~np.asarray(t18 > t27), 2)
+        t28 = 1.0 / t18
+        t29 = t7 * t15
+        t30 = t28 * t29
+        t31 = m_s * t30
+        t32 = t30 * t31
+        t33 = t8 * t28
+        t34 = 0.5 * J_crank
+        t35 = r * r
+        t36 = m_rod * t35
+        t37 = 0.5 * t36
+        t38 = t34 + t37
+        t39 = 2.0 * t38
+        t40 = t39 * t33
+        t41 = t9 * t7
+        t42 = t41 * t28
+        t43 = 0.5 * m_rod
+        t44 = t6 * t4
+        t45 = t5 * t3
+        t46 = t44 - t45
+        t47 = t11 * t46
+        t48 = t43 * t47
+        t49 = t42 * t48
+        t50 = t40 - t49
+        t51 = t33 * t50
+        t52 = 0.5 * J_rod
+        t53 = l * l
+        t54 = m_rod * t53
+        t55 = 0.125 * t54
+        t56 = t52 + t55
+        t57 = 2.0 * t56
+        t58 = t57 * t42
+        t59 = t33 * t48
+        t60 = t58 - t59
+        t61 = t42 * t60
+        t62 = t51 + t61
+        t63 = t32 + t62
+        t64 = t9 * t15
+        t65 = t28 * t64
+        t66 = t65 * t31
+        t67 = t42 * t50
+        t68 = t10 * t28
+        t69 = t68 * t60
+        t70 = t67 + t69
+        t71 = t66 + t70
+        t72 = t16 * t28
+        t73 = t72 * t31
+        t74 = t30 * t50
+        t75 = t65 * t60
+        t76 = t74 + t75
+        t77 = t73 + t76
+        t78 = -t77
+        t79 = m_s * t65
+        t80 = t65 * t79
+        t81 = t39 * t42
+        t82 = t68 * t48
+        t83 = t81 - t82
+        t84 = t42 * t83
+        t85 = t57 * t68
+        t86 = t85 - t49
+        t87 = t68 * t86
+        t88 = t84 + t87
+        t89 = t80 + t88
+        t90 = t72 * t79
+        t91 = t30 * t83
+        t92 = t65 * t86
+        t93 = t91 + t92
+        t94 = t90 + t93
+        t95 = -t94
+        t96 = m_s * t72
+        t97 = t72 * t96
+        t98 = t65 * t48
+        t99 = t39 * t30
+        t100 = t98 - t99
+        t101 = t30 * t100
+        t102 = t30 * t48
+        t103 = t57 * t65
+        t104 = t102 - t103
+        t105 = t65 * t104
+        t106 = t101 + t105
+        t107 = t97 - t106
         entries = (
-            t64,
-            t72,
-            t79,
-            t72,
-            t93,
-            t99,
-            t79,
-            t99,
-            t115,
+            t63,
+            t71,
+            t78,
+            t71,
+            t89,
+            t95,
+            t78,
+            t95,
+            t107,
         )
         return _result("projected_mass_matrix", status, batch, (3, 3), entries)
 
@@ -1467,6 +1499,7 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = 1.0 / t18
         t29 = t8 * t28
         t30 = t9 * t7
@@ -1664,7 +1697,6 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t222 = t210 * t187
         t223 = 2.0 * t222
         t224 = t221 - t223
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t135,
             t164,
@@ -1722,6 +1754,7 @@ def projected_potential_force(q, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = m_rod * g
         t29 = r * t28
         t30 = r * m_crank
@@ -1761,7 +1794,6 @@ def projected_potential_force(q, p=PARAMETERS):
         t64 = t16 * t35
         t65 = t46 * t64
         t66 = t63 + t65
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t50,
             t59,
@@ -1813,6 +1845,7 @@ def projected_applied_force(q, qd, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = 1.0 / t18
         t29 = t7 * t15
         t30 = t28 * t29
@@ -1829,7 +1862,6 @@ def projected_applied_force(q, qd, p=PARAMETERS):
         t41 = t35 * t39
         t42 = t31 * t39
         t43 = -t42
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t40,
             t41,
@@ -1860,72 +1892,78 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t3, t4 = _sincos(beta)
         t5, t6 = _sincos(alpha)
         t7 = l * t4
-        t8 = np.abs(t7)
-        t9 = np.abs(l)
-        t10 = t9 * 2.6645352591003757e-15
-        t11 = t7 * t7
-        t12 = 1.0 / t11
-        t13 = 0.5 * J_crank
-        t14 = r * r
-        t15 = m_rod * t14
-        t16 = 0.5 * t15
-        t17 = t13 + t16
+        t8 = t7 * t7
+        t9 = r * t6
+        t10 = t9 * t9
+        t11 = t10 + t8
+        t12 = np.abs(r)
+        t13 = t12 * t12
+        t14 = np.abs(l)
+        t15 = t14 * t14
+        t16 = t13 + t15
+        t17 = 1.0 + t16
         t18 = t11 * t17
-        t19 = 2.0 * t18
-        t20 = 0.5 * J_rod
-        t21 = l * l
-        t22 = m_rod * t21
-        t23 = 0.125 * t22
-        t24 = t20 + t23
-        t25 = t6 * t6
-        t26 = t24 * t25
-        t27 = 2.0 * t26
-        t28 = t4 * t4
-        t29 = m_s * t28
-        t30 = m_s * t6
-        t31 = t6 * t4
-        t32 = t5 * t3
-        t33 = t31 - t32
-        t34 = m_rod * t33
-        t35 = m_s * t33
-        t36 = 2.0 * t35
-        t37 = t34 + t36
-        t38 = t4 * t37
-        t39 = t30 - t38
-        t40 = t6 * t39
-        t41 = t29 + t40
-        t42 = l * t41
-        t43 = l * t42
-        t44 = t27 + t43
-        t45 = r * t44
-        t46 = r * t45
-        t47 = t19 + t46
-        t48 = t12 * t47
-        _failed_ = ~np.asarray(t8 > t10)
+        t19 = t18 * 7.099748146989106e-30
+        _failed_ = ~np.asarray(t8 > t19)
         if np.any(_failed_ & (status == 0)):
-            t49 = r * t6
-            t50 = t49 * t49
-            t51 = r * l
-            t52 = t6 * t3
-            t53 = t4 * t5
-            t54 = t52 + t53
-            t55 = t51 * t54
-            t56 = t55 * t55
-            t57 = t50 + t56
-            t58 = t11 + t57
-            t59 = r * t5
-            t60 = t59 * t59
-            t61 = l * t3
-            t62 = t61 * t61
-            t63 = t60 + t62
-            t64 = 1.0 + t63
-            t65 = t50 + t11
-            t66 = t64 * t65
-            t67 = t66 * 7.099748146989106e-30
-            status = _first(status, _failed_ & ~np.asarray(t58 > t67), 2)
+            t20 = r * l
+            t21 = t6 * t3
+            t22 = t4 * t5
+            t23 = t21 + t22
+            t24 = t20 * t23
+            t25 = t24 * t24
+            t26 = t10 + t25
+            t27 = t8 + t26
+            t28 = r * t5
+            t29 = t28 * t28
+            t30 = l * t3
+            t31 = t30 * t30
+            t32 = t29 + t31
+            t33 = 1.0 + t32
+            t34 = t33 * t11
+            t35 = t34 * 7.099748146989106e-30
+            status = _first(status, _failed_ & ~np.asarray(t27 > t35), 2)
             status = _first(status, _failed_, 2)
+        t36 = 1.0 / t8
+        t37 = t4 * t4
+        t38 = l * l
+        t39 = 0.5 * J_crank
+        t40 = r * r
+        t41 = m_rod * t40
+        t42 = 0.5 * t41
+        t43 = t39 + t42
+        t44 = t38 * t43
+        t45 = t37 * t44
+        t46 = 2.0 * t45
+        t47 = 0.5 * J_rod
+        t48 = m_rod * t38
+        t49 = 0.125 * t48
+        t50 = t47 + t49
+        t51 = t6 * t6
+        t52 = t50 * t51
+        t53 = 2.0 * t52
+        t54 = m_s * t37
+        t55 = m_s * t6
+        t56 = t6 * t4
+        t57 = t5 * t3
+        t58 = t56 - t57
+        t59 = m_rod * t58
+        t60 = m_s * t58
+        t61 = 2.0 * t60
+        t62 = t59 + t61
+        t63 = t4 * t62
+        t64 = t55 - t63
+        t65 = t6 * t64
+        t66 = t54 + t65
+        t67 = l * t66
+        t68 = l * t67
+        t69 = t53 + t68
+        t70 = r * t69
+        t71 = r * t70
+        t72 = t46 + t71
+        t73 = t36 * t72
         entries = (
-            t48,
+            t73,
         )
         return _result("minimal_mass_matrix", status, batch, (1, 1), entries)
 
@@ -1974,86 +2012,89 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
-        t28 = np.abs(t7)
-        t29 = np.abs(l)
-        t30 = t29 * 2.6645352591003757e-15
-        t31 = t9 / t7
-        t32 = m_rod * t15
-        t33 = beta_dot * t32
-        t34 = t31 * t33
-        t35 = 0.5 * t34
-        t36 = t4 * t6
-        t37 = t3 * t5
-        t38 = t36 - t37
-        t39 = t11 * t38
-        t40 = m_rod * t39
-        t41 = 1.0 / t18
-        t42 = t7 * t15
-        t43 = t41 * t42
-        t44 = alpha_dot * t4
-        t45 = r * t44
-        t46 = beta_dot * t6
-        t47 = l * t46
-        t48 = t47 * t31
-        t49 = t45 + t48
-        t50 = t43 * t49
-        t51 = t21 * t15
-        t52 = t9 + t51
-        t53 = t41 * t52
-        t54 = beta_dot * t5
-        t55 = l * t54
-        t56 = t55 * t31
-        t57 = alpha_dot * t3
-        t58 = r * t57
-        t59 = t56 - t58
-        t60 = t53 * t59
-        t61 = t50 + t60
-        t62 = t31 * t61
-        t63 = t9 * t15
-        t64 = t41 * t63
-        t65 = t64 * t49
-        t66 = t19 * t15
-        t67 = t7 + t66
-        t68 = t41 * t67
-        t69 = t68 * t59
-        t70 = t65 - t69
-        t71 = t62 - t70
-        t72 = t40 * t71
-        t73 = 0.5 * t72
-        t74 = t35 - t73
-        t75 = alpha_dot * t32
-        t76 = 0.5 * t75
-        t77 = 0.5 * J_rod
-        t78 = l * l
-        t79 = m_rod * t78
-        t80 = 0.125 * t79
-        t81 = t77 + t80
-        t82 = t81 * t71
-        t83 = 2.0 * t82
-        t84 = t76 + t83
-        t85 = t31 * t84
-        t86 = t74 + t85
-        t87 = t15 / t7
-        t88 = t25 * t41
-        t89 = t88 * t49
-        t90 = t7 * t21
-        t91 = t9 * t19
-        t92 = t90 - t91
-        t93 = t92 * t41
-        t94 = t93 * t59
-        t95 = t89 + t94
-        t96 = t87 * t61
-        t97 = t95 + t96
-        t98 = m_s * t97
-        t99 = t87 * t98
-        t100 = t86 + t99
         status = _first(status, ~np.asarray(t18 > t27), 2)
-        _failed_ = ~np.asarray(t28 > t30)
+        t28 = np.abs(r)
+        t29 = t28 * t28
+        t30 = np.abs(l)
+        t31 = t30 * t30
+        t32 = t29 + t31
+        t33 = 1.0 + t32
+        t34 = t25 * t33
+        t35 = t34 * 7.099748146989106e-30
+        _failed_ = ~np.asarray(t8 > t35)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t18 > t27), 2)
             status = _first(status, _failed_, 2)
+        t36 = t15 / t7
+        t37 = 1.0 / t18
+        t38 = t25 * t37
+        t39 = alpha_dot * t4
+        t40 = r * t39
+        t41 = beta_dot * t6
+        t42 = l * t41
+        t43 = t9 / t7
+        t44 = t42 * t43
+        t45 = t40 + t44
+        t46 = t38 * t45
+        t47 = t7 * t21
+        t48 = t9 * t19
+        t49 = t47 - t48
+        t50 = t49 * t37
+        t51 = beta_dot * t5
+        t52 = l * t51
+        t53 = t52 * t43
+        t54 = alpha_dot * t3
+        t55 = r * t54
+        t56 = t53 - t55
+        t57 = t50 * t56
+        t58 = t46 + t57
+        t59 = t7 * t15
+        t60 = t37 * t59
+        t61 = t60 * t45
+        t62 = t21 * t15
+        t63 = t9 + t62
+        t64 = t37 * t63
+        t65 = t64 * t56
+        t66 = t61 + t65
+        t67 = t36 * t66
+        t68 = t58 + t67
+        t69 = m_s * t68
+        t70 = t36 * t69
+        t71 = 0.5 * m_rod
+        t72 = t71 * t15
+        t73 = beta_dot * t72
+        t74 = t43 * t73
+        t75 = t43 * t66
+        t76 = t9 * t15
+        t77 = t37 * t76
+        t78 = t77 * t45
+        t79 = t19 * t15
+        t80 = t7 + t79
+        t81 = t37 * t80
+        t82 = t81 * t56
+        t83 = t78 - t82
+        t84 = t75 - t83
+        t85 = t4 * t6
+        t86 = t3 * t5
+        t87 = t85 - t86
+        t88 = t11 * t87
+        t89 = t71 * t88
+        t90 = t84 * t89
+        t91 = t74 - t90
+        t92 = alpha_dot * t72
+        t93 = 0.5 * J_rod
+        t94 = l * l
+        t95 = m_rod * t94
+        t96 = 0.125 * t95
+        t97 = t93 + t96
+        t98 = 2.0 * t97
+        t99 = t98 * t84
+        t100 = t92 + t99
+        t101 = t43 * t100
+        t102 = t91 + t101
+        t103 = t70 + t102
         entries = (
-            t100,
+            t103,
         )
         return _result("minimal_coriolis_matrix", status, batch, (1, 1), entries)
 
@@ -2081,54 +2122,62 @@ def minimal_potential_force(q, p=PARAMETERS):
         t3, t4 = _sincos(beta)
         t5, t6 = _sincos(alpha)
         t7 = l * t4
-        t8 = np.abs(t7)
-        t9 = np.abs(l)
-        t10 = t9 * 2.6645352591003757e-15
-        t11 = 1.0 / t4
-        t12 = m_rod * g
-        t13 = r * t12
-        t14 = r * m_crank
-        t15 = g * t14
-        t16 = 0.5 * t15
-        t17 = t13 + t16
-        t18 = t6 * t4
-        t19 = t17 * t18
-        t20 = t6 * t3
-        t21 = t4 * t5
-        t22 = t20 + t21
-        t23 = l * t22
-        t24 = s * t22
-        t25 = t23 - t24
-        t26 = k * t25
-        t27 = t12 * t18
-        t28 = 0.5 * t27
-        t29 = t26 - t28
-        t30 = r * t29
-        t31 = t19 + t30
-        t32 = t11 * t31
-        _failed_ = ~np.asarray(t8 > t10)
+        t8 = t7 * t7
+        t9 = r * t6
+        t10 = t9 * t9
+        t11 = t10 + t8
+        t12 = np.abs(r)
+        t13 = t12 * t12
+        t14 = np.abs(l)
+        t15 = t14 * t14
+        t16 = t13 + t15
+        t17 = 1.0 + t16
+        t18 = t11 * t17
+        t19 = t18 * 7.099748146989106e-30
+        _failed_ = ~np.asarray(t8 > t19)
         if np.any(_failed_ & (status == 0)):
-            t33 = t7 * t7
-            t34 = r * t6
-            t35 = t34 * t34
-            t36 = r * l
-            t37 = t36 * t22
-            t38 = t37 * t37
-            t39 = t35 + t38
-            t40 = t33 + t39
-            t41 = r * t5
-            t42 = t41 * t41
-            t43 = l * t3
-            t44 = t43 * t43
-            t45 = t42 + t44
-            t46 = 1.0 + t45
-            t47 = t35 + t33
-            t48 = t46 * t47
-            t49 = t48 * 7.099748146989106e-30
-            status = _first(status, _failed_ & ~np.asarray(t40 > t49), 2)
+            t20 = r * l
+            t21 = t6 * t3
+            t22 = t4 * t5
+            t23 = t21 + t22
+            t24 = t20 * t23
+            t25 = t24 * t24
+            t26 = t10 + t25
+            t27 = t8 + t26
+            t28 = r * t5
+            t29 = t28 * t28
+            t30 = l * t3
+            t31 = t30 * t30
+            t32 = t29 + t31
+            t33 = 1.0 + t32
+            t34 = t33 * t11
+            t35 = t34 * 7.099748146989106e-30
+            status = _first(status, _failed_ & ~np.asarray(t27 > t35), 2)
             status = _first(status, _failed_, 2)
+        t36 = 1.0 / t4
+        t37 = m_rod * g
+        t38 = r * t37
+        t39 = r * m_crank
+        t40 = g * t39
+        t41 = 0.5 * t40
+        t42 = t38 + t41
+        t43 = t6 * t4
+        t44 = t42 * t43
+        t45 = t6 * t3
+        t46 = t4 * t5
+        t47 = t45 + t46
+        t48 = l * t47
+        t49 = s * t47
+        t50 = t48 - t49
+        t51 = k * t50
+        t52 = t37 * t43
+        t53 = 0.5 * t52
+        t54 = t51 - t53
+        t55 = r * t54
+        t56 = t44 + t55
+        t57 = t36 * t56
         entries = (
-            t32,
+            t57,
         )
         return _result("minimal_potential_force", status, batch, (1,), entries)
 
@@ -2154,39 +2203,47 @@ def minimal_applied_force(q, qd, p=PARAMETERS):
         t3, t4 = _sincos(beta)
         t5, t6 = _sincos(alpha)
         t7 = l * t4
-        t8 = np.abs(t7)
-        t9 = np.abs(l)
-        t10 = t9 * 2.6645352591003757e-15
-        t11 = r * d
-        t12 = t11 / t4
-        t13 = t6 * t3
-        t14 = t4 * t5
-        t15 = t13 + t14
-        t16 = s_dot * t15
-        t17 = t12 * t16
-        _failed_ = ~np.asarray(t8 > t10)
+        t8 = t7 * t7
+        t9 = r * t6
+        t10 = t9 * t9
+        t11 = t10 + t8
+        t12 = np.abs(r)
+        t13 = t12 * t12
+        t14 = np.abs(l)
+        t15 = t14 * t14
+        t16 = t13 + t15
+        t17 = 1.0 + t16
+        t18 = t11 * t17
+        t19 = t18 * 7.099748146989106e-30
+        _failed_ = ~np.asarray(t8 > t19)
         if np.any(_failed_ & (status == 0)):
-            t18 = t7 * t7
-            t19 = r * t6
-            t20 = t19 * t19
-            t21 = r * l
-            t22 = t21 * t15
-            t23 = t22 * t22
-            t24 = t20 + t23
-            t25 = t18 + t24
-            t26 = r * t5
-            t27 = t26 * t26
-            t28 = l * t3
+            t20 = r * l
+            t21 = t6 * t3
+            t22 = t4 * t5
+            t23 = t21 + t22
+            t24 = t20 * t23
+            t25 = t24 * t24
+            t26 = t10 + t25
+            t27 = t8 + t26
+            t28 = r * t5
             t29 = t28 * t28
-            t30 = t27 + t29
-            t31 = 1.0 + t30
-            t32 = t20 + t18
-            t33 = t31 * t32
-            t34 = t33 * 7.099748146989106e-30
-            status = _first(status, _failed_ & ~np.asarray(t25 > t34), 2)
+            t30 = l * t3
+            t31 = t30 * t30
+            t32 = t29 + t31
+            t33 = 1.0 + t32
+            t34 = t33 * t11
+            t35 = t34 * 7.099748146989106e-30
+            status = _first(status, _failed_ & ~np.asarray(t27 > t35), 2)
             status = _first(status, _failed_, 2)
+        t36 = r * d
+        t37 = t36 / t4
+        t38 = t6 * t3
+        t39 = t4 * t5
+        t40 = t38 + t39
+        t41 = s_dot * t40
+        t42 = t37 * t41
         entries = (
-            t17,
+            t42,
         )
         return _result("minimal_applied_force", status, batch, (1,), entries)
 
@@ -2246,6 +2303,7 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = t13 + t12
         t29 = t11 * t28
         t30 = t29 * t29
@@ -2287,7 +2345,6 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t66 = l * t65
         t67 = t64 - t66
         t68 = t47 * t67
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t43,
             t46,
@@ -2342,6 +2399,7 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
+        status = _first(status, ~np.asarray(t18 > t27), 2)
         t28 = 1.0 / t18
         t29 = t8 * t28
         t30 = alpha_ddot * t29
@@ -2412,7 +2470,6 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t95 = t94 * t67
         t96 = t90 + t95
         t97 = t88 - t96
-        status = _first(status, ~np.asarray(t18 > t27), 2)
         entries = (
             t70,
             t82,
@@ -2465,147 +2522,131 @@ def projected_configuration(q, p=PARAMETERS):
         t29 = t14 + t12
         t30 = t28 * t29
         t31 = t30 * 7.099748146989106e-30
-        t32 = t13 + t11
-        t33 = t32 - s
-        t34 = 1.0 / t22
-        t35 = t13 * t19
-        t36 = t34 * t35
-        t37 = t33 * t36
-        t38 = t23 - t25
-        t39 = t38 - e
-        t40 = t23 * t19
-        t41 = t11 + t40
-        t42 = t34 * t41
-        t43 = t39 * t42
-        t44 = t37 + t43
-        t45 = beta + t44
-        t46, t47 = _sincos(t45)
-        t48 = l * t47
-        t49 = t48 * t48
-        t50 = t25 * t19
-        t51 = t13 + t50
-        t52 = t34 * t51
-        t53 = t39 * t52
-        t54 = t11 * t19
-        t55 = t34 * t54
-        t56 = t33 * t55
-        t57 = t53 - t56
-        t58 = alpha - t57
-        t59, t60 = _sincos(t58)
-        t61 = r * t60
-        t62 = t61 * t61
-        t63 = t9 * t15
-        t64 = t63 * t63
-        t65 = t64 + t14
-        t66 = t65 + t12
-        t67 = 1.0 / t66
-        t68 = t13 * t63
-        t69 = t67 * t68
-        t70 = t33 * t69
-        t71 = t23 * t63
-        t72 = t11 + t71
-        t73 = t67 * t72
-        t74 = t39 * t73
-        t75 = t70 + t74
-        t76 = beta + t75
-        t77, t78 = _sincos(t76)
-        t79 = t25 * t63
-        t80 = t13 + t79
-        t81 = t67 * t80
-        t82 = t39 * t81
-        t83 = t11 * t63
-        t84 = t67 * t83
-        t85 = t33 * t84
-        t86 = t82 - t85
-        t87 = alpha - t86
-        t88, t89 = _sincos(t87)
-        t90 = t77 * t89
-        t91 = t88 * t78
-        t92 = t90 + t91
-        t93 = t15 * t92
-        t94 = t93 * t93
-        t95 = t62 + t94
-        t96 = t49 + t95
-        t97 = t62 + t49
-        t98 = r * t59
-        t99 = t98 * t98
-        t100 = l * t46
-        t101 = t100 * t100
-        t102 = t99 + t101
-        t103 = 1.0 + t102
-        t104 = t97 * t103
-        t105 = 7.099748146989106e-30 * t104
-        t106 = t98 - t100
-        t107 = t106 - e
-        t108 = 1.0 / t96
-        t109 = t100 * t93
-        t110 = t61 + t109
-        t111 = t108 * t110
-        t112 = t107 * t111
-        t113 = t61 + t48
-        t114 = t11 * t25
-        t115 = t13 * t23
-        t116 = t114 - t115
-        t117 = t116 * t34
-        t118 = t39 * t117
-        t119 = t29 * t34
-        t120 = t33 * t119
-        t121 = t118 - t120
-        t122 = s - t121
-        t123 = t113 - t122
-        t124 = t48 * t93
-        t125 = t108 * t124
-        t126 = t123 * t125
-        t127 = t112 - t126
-        t128 = t58 - t127
-        t129 = t61 * t93
-        t130 = t108 * t129
-        t131 = t123 * t130
-        t132 = t98 * t93
-        t133 = t48 + t132
-        t134 = t108 * t133
-        t135 = t107 * t134
-        t136 = t131 + t135
-        t137 = t45 + t136
-        t138 = t100 * t48
-        t139 = t98 * t61
-        t140 = t138 - t139
-        t141 = t140 * t108
-        t142 = t107 * t141
-        t143 = t97 * t108
-        t144 = t123 * t143
-        t145 = t142 - t144
-        t146 = t122 - t145
-        t147 = np.abs(t58)
-        t148 = np.abs(t45)
-        t149 = np.abs(t76)
-        t150 = np.abs(t87)
-        _failed_ = ~np.asarray(100000.0 >= t147)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t22 > t31), 2)
-            status = _first(status, _failed_ & ~np.asarray(t96 > t105), 2)
-            status = _first(status, _failed_, 4)
-        _failed_ = ~np.asarray(100000.0 >= t148)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t22 > t31), 2)
-            status = _first(status, _failed_ & ~np.asarray(t96 > t105), 2)
-            status = _first(status, _failed_, 4)
-        _failed_ = ~np.asarray(100000.0 >= t149)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t22 > t31), 2)
-            status = _first(status, _failed_ & ~np.asarray(t96 > t105), 2)
-            status = _first(status, _failed_, 4)
-        _failed_ = ~np.asarray(100000.0 >= t150)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t22 > t31), 2)
-            status = _first(status, _failed_ & ~np.asarray(t96 > t105), 2)
-            status = _first(status, _failed_, 4)
         status = _first(status, ~np.asarray(t22 > t31), 2)
-        status = _first(status, ~np.asarray(t96 > t105), 2)
+        t32 = t23 - t25
+        t33 = t32 - e
+        t34 = 1.0 / t22
+        t35 = t25 * t19
+        t36 = t13 + t35
+        t37 = t34 * t36
+        t38 = t33 * t37
+        t39 = t13 + t11
+        t40 = t39 - s
+        t41 = t11 * t19
+        t42 = t34 * t41
+        t43 = t40 * t42
+        t44 = t38 - t43
+        t45 = alpha - t44
+        t46 = np.abs(t45)
+        status = _first(status, ~np.asarray(100000.0 >= t46), 4)
+        t47 = t13 * t19
+        t48 = t34 * t47
+        t49 = t40 * t48
+        t50 = t23 * t19
+        t51 = t11 + t50
+        t52 = t34 * t51
+        t53 = t33 * t52
+        t54 = t49 + t53
+        t55 = beta + t54
+        t56 = np.abs(t55)
+        status = _first(status, ~np.asarray(100000.0 >= t56), 4)
+        t57 = t9 * t15
+        t58 = t57 * t57
+        t59 = t58 + t14
+        t60 = t59 + t12
+        t61 = 1.0 / t60
+        t62 = t13 * t57
+        t63 = t61 * t62
+        t64 = t40 * t63
+        t65 = t23 * t57
+        t66 = t11 + t65
+        t67 = t61 * t66
+        t68 = t33 * t67
+        t69 = t64 + t68
+        t70 = beta + t69
+        t71 = np.abs(t70)
+        status = _first(status, ~np.asarray(100000.0 >= t71), 4)
+        t72 = t25 * t57
+        t73 = t13 + t72
+        t74 = t61 * t73
+        t75 = t33 * t74
+        t76 = t11 * t57
+        t77 = t61 * t76
+        t78 = t40 * t77
+        t79 = t75 - t78
+        t80 = alpha - t79
+        t81 = np.abs(t80)
+        status = _first(status, ~np.asarray(100000.0 >= t81), 4)
+        t82, t83 = _sincos(t55)
+        t84 = l * t83
+        t85 = t84 * t84
+        t86, t87 = _sincos(t45)
+        t88 = r * t87
+        t89 = t88 * t88
+        t90, t91 = _sincos(t70)
+        t92, t93 = _sincos(t80)
+        t94 = t90 * t93
+        t95 = t92 * t91
+        t96 = t94 + t95
+        t97 = t15 * t96
+        t98 = t97 * t97
+        t99 = t89 + t98
+        t100 = t85 + t99
+        t101 = t89 + t85
+        t102 = r * t86
+        t103 = t102 * t102
+        t104 = l * t82
+        t105 = t104 * t104
+        t106 = t103 + t105
+        t107 = 1.0 + t106
+        t108 = t101 * t107
+        t109 = 7.099748146989106e-30 * t108
+        status = _first(status, ~np.asarray(t100 > t109), 2)
+        t110 = t102 - t104
+        t111 = t110 - e
+        t112 = 1.0 / t100
+        t113 = t104 * t97
+        t114 = t88 + t113
+        t115 = t112 * t114
+        t116 = t111 * t115
+        t117 = t88 + t84
+        t118 = t11 * t25
+        t119 = t13 * t23
+        t120 = t118 - t119
+        t121 = t120 * t34
+        t122 = t33 * t121
+        t123 = t29 * t34
+        t124 = t40 * t123
+        t125 = t122 - t124
+        t126 = s - t125
+        t127 = t117 - t126
+        t128 = t84 * t97
+        t129 = t112 * t128
+        t130 = t127 * t129
+        t131 = t116 - t130
+        t132 = t45 - t131
+        t133 = t88 * t97
+        t134 = t112 * t133
+        t135 = t127 * t134
+        t136 = t102 * t97
+        t137 = t84 + t136
+        t138 = t112 * t137
+        t139 = t111 * t138
+        t140 = t135 + t139
+        t141 = t55 + t140
+        t142 = t104 * t84
+        t143 = t102 * t88
+        t144 = t142 - t143
+        t145 = t144 * t112
+        t146 = t111 * t145
+        t147 = t101 * t112
+        t148 = t127 * t147
+        t149 = t146 - t148
+        t150 = t126 - t149
         entries = (
-            t128,
-            t137,
-            t146,
+            t132,
+            t141,
+            t150,
         )
         return _result("projected_configuration", status, batch, (3,), entries)
 
@@ -2638,102 +2679,90 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         g = np.float64(p.g)
         k = np.float64(p.k)
         d = np.float64(p.d)
-        t1 = np.abs(alpha)
-        t2 = np.abs(beta)
+        t1 = np.abs(beta)
+        t2 = np.abs(alpha)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(alpha)
-        t5, t6 = _sincos(beta)
-        t7 = l * t6
+        t3, t4 = _sincos(beta)
+        t5, t6 = _sincos(alpha)
+        t7 = l * t4
         t8 = np.abs(t7)
         t9 = np.abs(l)
         t10 = t9 * 2.6645352591003757e-15
-        t11 = r * l
-        t12 = t4 * t5
-        t13 = t6 * t3
-        t14 = t12 + t13
-        t15 = t11 * t14
-        t16 = s_dot * d
-        t17 = s - l
-        t18 = k * t17
-        t19 = s_ddot * m_s
-        t20 = t18 + t19
-        t21 = t16 + t20
-        t22 = t15 * t21
-        t23 = r * t4
-        t24 = alpha_dot * alpha_dot
-        t25 = m_rod * t15
-        t26 = t24 * t25
-        t27 = 0.5 * t26
-        t28 = 0.5 * J_rod
-        t29 = l * l
-        t30 = m_rod * t29
-        t31 = 0.125 * t30
-        t32 = t28 + t31
-        t33 = beta_ddot * t32
-        t34 = 2.0 * t33
-        t35 = t4 * t6
-        t36 = t3 * t5
-        t37 = t35 - t36
-        t38 = t11 * t37
-        t39 = m_rod * t38
-        t40 = alpha_ddot * t39
-        t41 = 0.5 * t40
-        t42 = t34 - t41
-        t43 = t27 + t42
-        t44 = m_rod * g
-        t45 = l * t44
-        t46 = t6 * t45
-        t47 = 0.5 * t46
-        t48 = t43 - t47
-        t49 = t23 * t48
-        t50 = t22 - t49
-        t51 = r * t44
-        t52 = r * m_crank
-        t53 = g * t52
-        t54 = 0.5 * t53
-        t55 = t51 + t54
-        t56 = t4 * t55
-        t57 = beta_dot * beta_dot
-        t58 = t57 * t25
-        t59 = 0.5 * t58
-        t60 = 0.5 * J_crank
-        t61 = r * r
-        t62 = m_rod * t61
-        t63 = 0.5 * t62
-        t64 = t60 + t63
-        t65 = alpha_ddot * t64
-        t66 = 2.0 * t65
-        t67 = beta_ddot * m_rod
-        t68 = t38 * t67
-        t69 = 0.5 * t68
-        t70 = t66 - t69
-        t71 = t59 + t70
-        t72 = t56 + t71
-        t73 = t7 * t72
-        t74 = t50 - t73
-        t75 = t74 / t7
-        t76 = -t75
         _failed_ = ~np.asarray(t8 > t10)
         if np.any(_failed_ & (status == 0)):
-            t77 = t7 * t7
-            t78 = t23 * t23
-            t79 = t15 * t15
-            t80 = t78 + t79
-            t81 = t77 + t80
-            t82 = r * t3
-            t83 = t82 * t82
-            t84 = l * t5
-            t85 = t84 * t84
-            t86 = t83 + t85
-            t87 = 1.0 + t86
-            t88 = t78 + t77
-            t89 = t87 * t88
-            t90 = t89 * 7.099748146989106e-30
-            status = _first(status, _failed_ & ~np.asarray(t81 > t90), 2)
+            t11 = r * t6
+            t12 = t11 * t11
+            t13 = t7 * t7
+            t14 = t12 + t13
+            status = _first(status, _failed_ & ~np.asarray(t14 > 0.0), 2)
             status = _first(status, _failed_, 3)
+        t15 = m_rod * g
+        t16 = r * t15
+        t17 = r * m_crank
+        t18 = g * t17
+        t19 = 0.5 * t18
+        t20 = t16 + t19
+        t21 = t6 * t20
+        t22 = beta_dot * beta_dot
+        t23 = 0.5 * m_rod
+        t24 = r * l
+        t25 = t6 * t3
+        t26 = t4 * t5
+        t27 = t25 + t26
+        t28 = t24 * t27
+        t29 = t23 * t28
+        t30 = t22 * t29
+        t31 = 0.5 * J_crank
+        t32 = r * r
+        t33 = m_rod * t32
+        t34 = 0.5 * t33
+        t35 = t31 + t34
+        t36 = 2.0 * t35
+        t37 = alpha_ddot * t36
+        t38 = beta_ddot * m_rod
+        t39 = t6 * t4
+        t40 = t5 * t3
+        t41 = t39 - t40
+        t42 = 0.5 * t24
+        t43 = t41 * t42
+        t44 = t38 * t43
+        t45 = t37 - t44
+        t46 = t30 + t45
+        t47 = t21 + t46
+        t48 = t7 * t47
+        t49 = r * t6
+        t50 = alpha_dot * alpha_dot
+        t51 = t50 * t29
+        t52 = 0.5 * J_rod
+        t53 = l * l
+        t54 = m_rod * t53
+        t55 = 0.125 * t54
+        t56 = t52 + t55
+        t57 = 2.0 * t56
+        t58 = beta_ddot * t57
+        t59 = t24 * t41
+        t60 = t23 * t59
+        t61 = alpha_ddot * t60
+        t62 = t58 - t61
+        t63 = t51 + t62
+        t64 = l * t15
+        t65 = 0.5 * t64
+        t66 = t4 * t65
+        t67 = t63 - t66
+        t68 = t49 * t67
+        t69 = t48 + t68
+        t70 = s_dot * d
+        t71 = s - l
+        t72 = k * t71
+        t73 = s_ddot * m_s
+        t74 = t72 + t73
+        t75 = t70 + t74
+        t76 = t28 * t75
+        t77 = t69 - t76
+        t78 = t77 / t7
         entries = (
-            t76,
+            t78,
         )
         return _result("inverse_dynamics", status, batch, (1,), entries)
 
@@ -2792,72 +2821,78 @@ def actuator_mass_matrix(q, p=PARAMETERS):
         t3, t4 = _sincos(beta)
         t5, t6 = _sincos(alpha)
         t7 = l * t4
-        t8 = np.abs(t7)
-        t9 = np.abs(l)
-        t10 = t9 * 2.6645352591003757e-15
-        t11 = t7 * t7
-        t12 = 1.0 / t11
-        t13 = 0.5 * J_crank
-        t14 = r * r
-        t15 = m_rod * t14
-        t16 = 0.5 * t15
-        t17 = t13 + t16
+        t8 = t7 * t7
+        t9 = r * t6
+        t10 = t9 * t9
+        t11 = t10 + t8
+        t12 = np.abs(r)
+        t13 = t12 * t12
+        t14 = np.abs(l)
+        t15 = t14 * t14
+        t16 = t13 + t15
+        t17 = 1.0 + t16
         t18 = t11 * t17
-        t19 = 2.0 * t18
-        t20 = 0.5 * J_rod
-        t21 = l * l
-        t22 = m_rod * t21
-        t23 = 0.125 * t22
-        t24 = t20 + t23
-        t25 = t6 * t6
-        t26 = t24 * t25
-        t27 = 2.0 * t26
-        t28 = t4 * t4
-        t29 = m_s * t28
-        t30 = m_s * t6
-        t31 = t6 * t4
-        t32 = t5 * t3
-        t33 = t31 - t32
-        t34 = m_rod * t33
-        t35 = m_s * t33
-        t36 = 2.0 * t35
-        t37 = t34 + t36
-        t38 = t4 * t37
-        t39 = t30 - t38
-        t40 = t6 * t39
-        t41 = t29 + t40
-        t42 = l * t41
-        t43 = l * t42
-        t44 = t27 + t43
-        t45 = r * t44
-        t46 = r * t45
-        t47 = t19 + t46
-        t48 = t12 * t47
-        _failed_ = ~np.asarray(t8 > t10)
+        t19 = t18 * 7.099748146989106e-30
+        _failed_ = ~np.asarray(t8 > t19)
         if np.any(_failed_ & (status == 0)):
-            t49 = r * t6
-            t50 = t49 * t49
-            t51 = r * l
-            t52 = t6 * t3
-            t53 = t4 * t5
-            t54 = t52 + t53
-            t55 = t51 * t54
-            t56 = t55 * t55
-            t57 = t50 + t56
-            t58 = t11 + t57
-            t59 = r * t5
-            t60 = t59 * t59
-            t61 = l * t3
-            t62 = t61 * t61
-            t63 = t60 + t62
-            t64 = 1.0 + t63
-            t65 = t50 + t11
-            t66 = t64 * t65
-            t67 = t66 * 7.099748146989106e-30
-            status = _first(status, _failed_ & ~np.asarray(t58 > t67), 2)
+            t20 = r * l
+            t21 = t6 * t3
+            t22 = t4 * t5
+            t23 = t21 + t22
+            t24 = t20 * t23
+            t25 = t24 * t24
+            t26 = t10 + t25
+            t27 = t8 + t26
+            t28 = r * t5
+            t29 = t28 * t28
+            t30 = l * t3
+            t31 = t30 * t30
+            t32 = t29 + t31
+            t33 = 1.0 + t32
+            t34 = t33 * t11
+            t35 = t34 * 7.099748146989106e-30
+            status = _first(status, _failed_ & ~np.asarray(t27 > t35), 2)
             status = _first(status, _failed_, 3)
+        t36 = 1.0 / t8
+        t37 = t4 * t4
+        t38 = l * l
+        t39 = 0.5 * J_crank
+        t40 = r * r
+        t41 = m_rod * t40
+        t42 = 0.5 * t41
+        t43 = t39 + t42
+        t44 = t38 * t43
+        t45 = t37 * t44
+        t46 = 2.0 * t45
+        t47 = 0.5 * J_rod
+        t48 = m_rod * t38
+        t49 = 0.125 * t48
+        t50 = t47 + t49
+        t51 = t6 * t6
+        t52 = t50 * t51
+        t53 = 2.0 * t52
+        t54 = m_s * t37
+        t55 = m_s * t6
+        t56 = t6 * t4
+        t57 = t5 * t3
+        t58 = t56 - t57
+        t59 = m_rod * t58
+        t60 = m_s * t58
+        t61 = 2.0 * t60
+        t62 = t59 + t61
+        t63 = t4 * t62
+        t64 = t55 - t63
+        t65 = t6 * t64
+        t66 = t54 + t65
+        t67 = l * t66
+        t68 = l * t67
+        t69 = t53 + t68
+        t70 = r * t69
+        t71 = r * t70
+        t72 = t46 + t71
+        t73 = t36 * t72
         entries = (
-            t48,
+            t73,
         )
         return _result("actuator_mass_matrix", status, batch, (1, 1), entries)
 
@@ -2910,107 +2945,112 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
-        t28 = np.abs(t7)
-        t29 = np.abs(l)
-        t30 = t29 * 2.6645352591003757e-15
-        t31 = l * l
-        t32 = l * t31
-        t33 = t4 * t32
-        t34 = t4 * t33
-        t35 = t4 * t34
-        t36 = t4 * t35
-        t37 = 1.0 / t36
-        t38 = m_rod * g
-        t39 = r * t38
-        t40 = r * m_crank
-        t41 = g * t40
-        t42 = 0.5 * t41
-        t43 = t39 + t42
-        t44 = t43 * t32
-        t45 = t6 * t4
-        t46 = t4 * t45
-        t47 = t4 * t46
-        t48 = t4 * t47
-        t49 = t44 * t48
-        t50 = r * r
-        t51 = 0.5 * J_rod
-        t52 = m_rod * t31
-        t53 = 0.125 * t52
-        t54 = t51 + t53
-        t55 = t50 * t54
-        t56 = alpha_dot * alpha_dot
-        t57 = t6 * t56
-        t58 = t6 * t57
-        t59 = t6 * t58
-        t60 = t3 * t59
-        t61 = t55 * t60
-        t62 = 2.0 * t61
-        t63 = m_s * t50
-        t64 = t63 * t60
-        t65 = 0.5 * m_rod
-        t66 = m_s + t65
-        t67 = t5 * t58
-        t68 = t66 * t67
-        t69 = t50 * t68
-        t70 = alpha_dot * t6
-        t71 = d * t6
-        t72 = alpha_dot * t5
-        t73 = m_s * t72
-        t74 = t71 - t73
-        t75 = t70 * t74
-        t76 = r * t75
-        t77 = l * t14
-        t78 = s * t14
-        t79 = t77 - t78
-        t80 = k * t79
-        t81 = t38 * t45
-        t82 = 0.5 * t81
-        t83 = t80 - t82
-        t84 = m_rod * t14
-        t85 = m_s * t14
-        t86 = 2.0 * t85
-        t87 = t84 + t86
-        t88 = t6 * t87
-        t89 = t3 * t66
-        t90 = t88 - t89
-        t91 = alpha_dot * t90
-        t92 = t5 * t3
-        t93 = t45 - t92
-        t94 = t6 * t93
-        t95 = 2.0 * t94
-        t96 = t4 - t95
-        t97 = d * t96
-        t98 = t91 + t97
-        t99 = r * t98
-        t100 = alpha_dot * t99
-        t101 = t83 + t100
-        t102 = t4 * t101
-        t103 = t76 + t102
-        t104 = t4 * t103
-        t105 = l * t104
-        t106 = t69 + t105
-        t107 = t4 * t106
-        t108 = t64 + t107
-        t109 = l * t108
-        t110 = r * t54
-        t111 = t4 * t57
-        t112 = t4 * t111
-        t113 = t5 * t112
-        t114 = t110 * t113
-        t115 = 2.0 * t114
-        t116 = t109 - t115
-        t117 = l * t116
-        t118 = t62 + t117
-        t119 = r * t118
-        t120 = t49 + t119
-        t121 = t37 * t120
         status = _first(status, ~np.asarray(t18 > t27), 2)
-        _failed_ = ~np.asarray(t28 > t30)
+        t28 = np.abs(r)
+        t29 = t28 * t28
+        t30 = np.abs(l)
+        t31 = t30 * t30
+        t32 = t29 + t31
+        t33 = 1.0 + t32
+        t34 = t25 * t33
+        t35 = t34 * 7.099748146989106e-30
+        _failed_ = ~np.asarray(t8 > t35)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t18 > t27), 2)
             status = _first(status, _failed_, 3)
+        t36 = l * l
+        t37 = l * t36
+        t38 = t4 * t37
+        t39 = t4 * t38
+        t40 = t4 * t39
+        t41 = t4 * t40
+        t42 = 1.0 / t41
+        t43 = m_rod * g
+        t44 = r * t43
+        t45 = r * m_crank
+        t46 = g * t45
+        t47 = 0.5 * t46
+        t48 = t44 + t47
+        t49 = t48 * t37
+        t50 = t6 * t4
+        t51 = t4 * t50
+        t52 = t4 * t51
+        t53 = t4 * t52
+        t54 = t49 * t53
+        t55 = r * r
+        t56 = 0.5 * J_rod
+        t57 = m_rod * t36
+        t58 = 0.125 * t57
+        t59 = t56 + t58
+        t60 = t55 * t59
+        t61 = alpha_dot * alpha_dot
+        t62 = t6 * t61
+        t63 = t6 * t62
+        t64 = t6 * t63
+        t65 = t3 * t64
+        t66 = t60 * t65
+        t67 = 2.0 * t66
+        t68 = m_s * t55
+        t69 = t68 * t65
+        t70 = 0.5 * m_rod
+        t71 = m_s + t70
+        t72 = t5 * t63
+        t73 = t71 * t72
+        t74 = t55 * t73
+        t75 = alpha_dot * t6
+        t76 = d * t6
+        t77 = alpha_dot * t5
+        t78 = m_s * t77
+        t79 = t76 - t78
+        t80 = t75 * t79
+        t81 = r * t80
+        t82 = l * t14
+        t83 = s * t14
+        t84 = t82 - t83
+        t85 = k * t84
+        t86 = t43 * t50
+        t87 = 0.5 * t86
+        t88 = t85 - t87
+        t89 = m_rod * t14
+        t90 = m_s * t14
+        t91 = 2.0 * t90
+        t92 = t89 + t91
+        t93 = t6 * t92
+        t94 = t3 * t71
+        t95 = t93 - t94
+        t96 = alpha_dot * t95
+        t97 = t5 * t3
+        t98 = t50 - t97
+        t99 = t6 * t98
+        t100 = 2.0 * t99
+        t101 = t4 - t100
+        t102 = d * t101
+        t103 = t96 + t102
+        t104 = r * t103
+        t105 = alpha_dot * t104
+        t106 = t88 + t105
+        t107 = t4 * t106
+        t108 = t81 + t107
+        t109 = t4 * t108
+        t110 = l * t109
+        t111 = t74 + t110
+        t112 = t4 * t111
+        t113 = t69 + t112
+        t114 = l * t113
+        t115 = r * t59
+        t116 = t4 * t62
+        t117 = t4 * t116
+        t118 = t5 * t117
+        t119 = t115 * t118
+        t120 = 2.0 * t119
+        t121 = t114 - t120
+        t122 = l * t121
+        t123 = t67 + t122
+        t124 = r * t123
+        t125 = t54 + t124
+        t126 = t42 * t125
         entries = (
-            t121,
+            t126,
         )
         return _result("actuator_bias", status, batch, (1,), entries)
 
@@ -3041,190 +3081,188 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         g = np.float64(p.g)
         k = np.float64(p.k)
         d = np.float64(p.d)
-        t1 = np.abs(beta)
-        t2 = np.abs(alpha)
+        t1 = np.abs(alpha)
+        t2 = np.abs(beta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(beta)
-        t5, t6 = _sincos(alpha)
-        t7 = l * t4
+        t3, t4 = _sincos(alpha)
+        t5, t6 = _sincos(beta)
+        t7 = l * t6
         t8 = t7 * t7
-        t9 = r * t6
+        t9 = r * t4
         t10 = t9 * t9
         t11 = r * l
-        t12 = t6 * t3
-        t13 = t4 * t5
+        t12 = t4 * t5
+        t13 = t6 * t3
         t14 = t12 + t13
         t15 = t11 * t14
         t16 = t15 * t15
         t17 = t10 + t16
         t18 = t8 + t17
-        t19 = r * t5
+        t19 = r * t3
         t20 = t19 * t19
-        t21 = l * t3
+        t21 = l * t5
         t22 = t21 * t21
         t23 = t20 + t22
         t24 = 1.0 + t23
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
-        t28 = 0.5 * J_crank
-        t29 = r * r
-        t30 = m_rod * t29
-        t31 = 0.5 * t30
-        t32 = t28 + t31
-        t33 = t8 * t32
-        t34 = 2.0 * t33
-        t35 = t9 * t7
-        t36 = t6 * t4
-        t37 = t5 * t3
-        t38 = t36 - t37
-        t39 = t11 * t38
-        t40 = m_rod * t39
-        t41 = t35 * t40
-        t42 = 0.5 * t41
-        t43 = t34 - t42
-        t44 = 0.5 * J_rod
-        t45 = l * l
-        t46 = m_rod * t45
-        t47 = 0.125 * t46
-        t48 = t44 + t47
-        t49 = t10 * t48
-        t50 = 2.0 * t49
-        t51 = t50 - t42
-        t52 = t43 + t51
-        t53 = m_s * t16
-        t54 = t52 + t53
-        t55 = np.abs(t54)
-        t56 = np.abs(J_crank)
-        t57 = 0.5 * t56
-        t58 = np.abs(m_rod)
-        t59 = np.abs(r)
-        t60 = t59 * t59
-        t61 = t58 * t60
-        t62 = 0.5 * t61
-        t63 = t57 + t62
-        t64 = t8 * t63
-        t65 = 2.0 * t64
-        t66 = np.abs(J_rod)
-        t67 = 0.5 * t66
-        t68 = np.abs(l)
-        t69 = t68 * t68
-        t70 = t58 * t69
-        t71 = 0.125 * t70
-        t72 = t67 + t71
-        t73 = t10 * t72
-        t74 = 2.0 * t73
-        t75 = np.abs(m_s)
-        t76 = t16 * t75
-        t77 = t74 + t76
-        t78 = t65 + t77
-        t79 = 2.6645352591003757e-15 * t78
-        t80 = 1.0 / t54
-        t81 = m_rod * g
-        t82 = r * t81
-        t83 = r * m_crank
-        t84 = g * t83
-        t85 = 0.5 * t84
-        t86 = t82 + t85
-        t87 = t6 * t86
-        t88 = beta_dot * beta_dot
-        t89 = m_rod * t15
-        t90 = t88 * t89
-        t91 = 0.5 * t90
-        t92 = t87 + t91
-        t93 = crank - t92
-        t94 = 1.0 / t18
-        t95 = t7 * t15
-        t96 = t94 * t95
-        t97 = alpha_dot * t6
-        t98 = r * t97
-        t99 = alpha_dot * t98
-        t100 = beta_dot * t4
-        t101 = l * t100
-        t102 = beta_dot * t101
-        t103 = t99 + t102
-        t104 = t96 * t103
-        t105 = t21 * t15
-        t106 = t9 + t105
-        t107 = t94 * t106
-        t108 = beta_dot * t3
-        t109 = l * t108
-        t110 = beta_dot * t109
-        t111 = alpha_dot * t5
-        t112 = r * t111
-        t113 = alpha_dot * t112
-        t114 = t110 - t113
-        t115 = t107 * t114
-        t116 = t104 + t115
-        t117 = t32 * t116
-        t118 = 2.0 * t117
-        t119 = t19 * t15
-        t120 = t7 + t119
-        t121 = t94 * t120
-        t122 = t121 * t114
-        t123 = t9 * t15
-        t124 = t94 * t123
-        t125 = t124 * t103
-        t126 = t122 - t125
-        t127 = t40 * t126
-        t128 = 0.5 * t127
-        t129 = t118 + t128
-        t130 = t93 + t129
-        t131 = t8 * t130
-        t132 = l * t81
-        t133 = t4 * t132
-        t134 = 0.5 * t133
-        t135 = alpha_dot * alpha_dot
-        t136 = t135 * t89
-        t137 = 0.5 * t136
-        t138 = t134 - t137
-        t139 = t40 * t116
-        t140 = 0.5 * t139
-        t141 = t48 * t126
-        t142 = 2.0 * t141
-        t143 = t140 + t142
-        t144 = t138 - t143
-        t145 = t35 * t144
-        t146 = t131 + t145
-        t147 = t25 * t94
-        t148 = t147 * t103
-        t149 = t7 * t21
-        t150 = t9 * t19
-        t151 = t149 - t150
-        t152 = t151 * t94
-        t153 = t152 * t114
-        t154 = t148 + t153
-        t155 = m_s * t154
-        t156 = s - l
-        t157 = k * t156
-        t158 = s_dot * d
-        t159 = t157 + t158
-        t160 = t155 - t159
-        t161 = t95 * t160
-        t162 = t146 - t161
-        t163 = t80 * t162
-        t164 = t163 - t116
-        t165 = t35 * t130
-        t166 = t10 * t144
-        t167 = t165 + t166
-        t168 = t123 * t160
-        t169 = t167 - t168
-        t170 = t80 * t169
-        t171 = t126 + t170
-        t172 = t16 * t160
-        t173 = t95 * t130
-        t174 = t123 * t144
-        t175 = t173 + t174
-        t176 = t172 - t175
-        t177 = t80 * t176
-        t178 = t177 - t154
         status = _first(status, ~np.asarray(t18 > t27), 2)
-        status = _first(status, ~np.asarray(t55 > t79), 5)
+        t28 = t6 * t6
+        t29 = 2.0 * t28
+        t30 = 1.0 - t29
+        t31 = t4 * t30
+        t32 = t5 * t13
+        t33 = 2.0 * t32
+        t34 = t31 + t33
+        t35 = m_s * t34
+        t36 = 0.25 * t4
+        t37 = t32 + t36
+        t38 = m_rod * t37
+        t39 = t35 + t38
+        t40 = t4 * t39
+        t41 = t3 * t3
+        t42 = m_rod * t41
+        t43 = m_s + t42
+        t44 = t28 * t43
+        t45 = t40 + t44
+        t46 = l * t45
+        t47 = l * t46
+        t48 = t4 * t4
+        t49 = J_rod * t48
+        t50 = t47 + t49
+        t51 = r * t50
+        t52 = r * t51
+        t53 = l * l
+        t54 = J_crank * t53
+        t55 = t28 * t54
+        t56 = t52 + t55
+        t57 = np.abs(t56)
+        t58 = np.abs(J_crank)
+        t59 = 0.5 * t58
+        t60 = np.abs(m_rod)
+        t61 = np.abs(r)
+        t62 = t61 * t61
+        t63 = t60 * t62
+        t64 = 0.5 * t63
+        t65 = t59 + t64
+        t66 = t8 * t65
+        t67 = 2.0 * t66
+        t68 = np.abs(J_rod)
+        t69 = 0.5 * t68
+        t70 = np.abs(l)
+        t71 = t70 * t70
+        t72 = t60 * t71
+        t73 = 0.125 * t72
+        t74 = t69 + t73
+        t75 = t10 * t74
+        t76 = 2.0 * t75
+        t77 = np.abs(m_s)
+        t78 = t16 * t77
+        t79 = t76 + t78
+        t80 = t67 + t79
+        t81 = 2.6645352591003757e-15 * t80
+        status = _first(status, ~np.asarray(t57 > t81), 5)
+        t82 = 1.0 / t56
+        t83 = m_rod * g
+        t84 = r * t83
+        t85 = r * m_crank
+        t86 = g * t85
+        t87 = 0.5 * t86
+        t88 = t84 + t87
+        t89 = t4 * t88
+        t90 = beta_dot * beta_dot
+        t91 = m_rod * t15
+        t92 = t90 * t91
+        t93 = 0.5 * t92
+        t94 = t89 + t93
+        t95 = crank - t94
+        t96 = t7 * t95
+        t97 = l * t83
+        t98 = t6 * t97
+        t99 = 0.5 * t98
+        t100 = alpha_dot * alpha_dot
+        t101 = t100 * t91
+        t102 = 0.5 * t101
+        t103 = t99 - t102
+        t104 = t9 * t103
+        t105 = t96 + t104
+        t106 = s - l
+        t107 = k * t106
+        t108 = s_dot * d
+        t109 = t107 + t108
+        t110 = t15 * t109
+        t111 = t105 + t110
+        t112 = t7 * t111
+        t113 = t82 * t112
+        t114 = m_s * t15
+        t115 = alpha_dot * t4
+        t116 = r * t115
+        t117 = alpha_dot * t116
+        t118 = beta_dot * t6
+        t119 = l * t118
+        t120 = beta_dot * t119
+        t121 = t117 + t120
+        t122 = t7 * t121
+        t123 = beta_dot * t5
+        t124 = l * t123
+        t125 = beta_dot * t124
+        t126 = alpha_dot * t3
+        t127 = r * t126
+        t128 = alpha_dot * t127
+        t129 = t125 - t128
+        t130 = t21 * t129
+        t131 = t122 + t130
+        t132 = t114 * t131
+        t133 = t4 * t6
+        t134 = t3 * t5
+        t135 = t133 - t134
+        t136 = t11 * t135
+        t137 = m_rod * t136
+        t138 = t7 * t137
+        t139 = 0.5 * t138
+        t140 = 0.5 * J_rod
+        t141 = m_rod * t53
+        t142 = 0.125 * t141
+        t143 = t140 + t142
+        t144 = t9 * t143
+        t145 = 2.0 * t144
+        t146 = t139 - t145
+        t147 = t146 * t129
+        t148 = t132 - t147
+        t149 = t82 * t148
+        t150 = t113 - t149
+        t151 = t9 * t111
+        t152 = t82 * t151
+        t153 = t9 * t121
+        t154 = t19 * t129
+        t155 = t153 - t154
+        t156 = t114 * t155
+        t157 = r * m_rod
+        t158 = t4 * t135
+        t159 = 0.5 * t158
+        t160 = t159 - t6
+        t161 = t157 * t160
+        t162 = r * t161
+        t163 = J_crank * t6
+        t164 = t162 - t163
+        t165 = l * t164
+        t166 = t129 * t165
+        t167 = t156 + t166
+        t168 = t82 * t167
+        t169 = t152 - t168
+        t170 = t146 * t155
+        t171 = t131 * t165
+        t172 = t170 + t171
+        t173 = t82 * t172
+        t174 = t15 * t111
+        t175 = t82 * t174
+        t176 = t173 - t175
         entries = (
-            t164,
-            t171,
-            t178,
+            t150,
+            t169,
+            t176,
         )
         return _result("forward_dynamics", status, batch, (3,), entries)
 
@@ -3283,204 +3321,185 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t25 = t10 + t8
         t26 = t24 * t25
         t27 = t26 * 7.099748146989106e-30
-        t28 = 0.5 * J_crank
-        t29 = r * r
-        t30 = m_rod * t29
-        t31 = 0.5 * t30
-        t32 = t28 + t31
-        t33 = t8 * t32
-        t34 = 2.0 * t33
-        t35 = t9 * t7
-        t36 = t4 * t6
-        t37 = t3 * t5
-        t38 = t36 - t37
-        t39 = t11 * t38
-        t40 = m_rod * t39
-        t41 = t35 * t40
-        t42 = 0.5 * t41
-        t43 = t34 - t42
-        t44 = 0.5 * J_rod
-        t45 = l * l
-        t46 = m_rod * t45
-        t47 = 0.125 * t46
-        t48 = t44 + t47
-        t49 = t10 * t48
-        t50 = 2.0 * t49
-        t51 = t50 - t42
-        t52 = t43 + t51
-        t53 = m_s * t16
-        t54 = t52 + t53
-        t55 = np.abs(t54)
-        t56 = np.abs(J_crank)
-        t57 = 0.5 * t56
-        t58 = np.abs(m_rod)
-        t59 = np.abs(r)
-        t60 = t59 * t59
-        t61 = t58 * t60
-        t62 = 0.5 * t61
-        t63 = t57 + t62
-        t64 = t8 * t63
-        t65 = 2.0 * t64
-        t66 = np.abs(J_rod)
-        t67 = 0.5 * t66
-        t68 = np.abs(l)
-        t69 = t68 * t68
-        t70 = t58 * t69
-        t71 = 0.125 * t70
-        t72 = t67 + t71
-        t73 = t10 * t72
-        t74 = 2.0 * t73
-        t75 = np.abs(m_s)
-        t76 = t16 * t75
-        t77 = t74 + t76
-        t78 = t65 + t77
-        t79 = 2.6645352591003757e-15 * t78
-        t80 = 1.0 / t54
-        t81 = t53 * t80
-        t82 = t81 - 1.0
-        t83 = 1.0 / t18
-        t84 = t25 * t83
-        t85 = alpha_dot * t4
-        t86 = r * t85
-        t87 = alpha_dot * t86
-        t88 = beta_dot * t6
-        t89 = l * t88
-        t90 = beta_dot * t89
-        t91 = t87 + t90
-        t92 = t84 * t91
-        t93 = t7 * t21
-        t94 = t9 * t19
-        t95 = t93 - t94
-        t96 = t95 * t83
-        t97 = beta_dot * t5
-        t98 = l * t97
-        t99 = beta_dot * t98
-        t100 = alpha_dot * t3
-        t101 = r * t100
-        t102 = alpha_dot * t101
-        t103 = t99 - t102
-        t104 = t96 * t103
-        t105 = t92 + t104
-        t106 = m_s * t105
-        t107 = s - l
-        t108 = k * t107
-        t109 = s_dot * d
-        t110 = t108 + t109
-        t111 = t106 - t110
-        t112 = t82 * t111
-        t113 = t7 * t15
-        t114 = m_s * t113
-        t115 = t80 * t114
-        t116 = t83 * t113
-        t117 = t116 * t91
-        t118 = t21 * t15
-        t119 = t9 + t118
-        t120 = t83 * t119
-        t121 = t120 * t103
-        t122 = t117 + t121
-        t123 = t32 * t122
-        t124 = 2.0 * t123
-        t125 = t19 * t15
-        t126 = t7 + t125
-        t127 = t83 * t126
-        t128 = t127 * t103
-        t129 = t9 * t15
-        t130 = t83 * t129
-        t131 = t130 * t91
-        t132 = t128 - t131
-        t133 = t40 * t132
-        t134 = 0.5 * t133
-        t135 = t124 + t134
-        t136 = m_rod * g
-        t137 = r * t136
-        t138 = r * m_crank
-        t139 = g * t138
-        t140 = 0.5 * t139
-        t141 = t137 + t140
-        t142 = t4 * t141
-        t143 = beta_dot * beta_dot
-        t144 = m_rod * t15
-        t145 = t143 * t144
-        t146 = 0.5 * t145
-        t147 = t142 + t146
-        t148 = t135 - t147
-        t149 = t115 * t148
-        t150 = m_s * t129
-        t151 = t80 * t150
-        t152 = l * t136
-        t153 = t6 * t152
-        t154 = 0.5 * t153
-        t155 = alpha_dot * alpha_dot
-        t156 = t155 * t144
-        t157 = 0.5 * t156
-        t158 = t154 - t157
-        t159 = t40 * t122
-        t160 = 0.5 * t159
-        t161 = t48 * t132
-        t162 = 2.0 * t161
-        t163 = t160 + t162
-        t164 = t158 - t163
-        t165 = t151 * t164
-        t166 = t149 + t165
-        t167 = t112 - t166
-        t168 = crank * t115
-        t169 = t167 - t168
-        t170 = t43 * t80
-        t171 = 1.0 - t170
-        t172 = t120 * t171
-        t173 = t48 * t35
-        t174 = 2.0 * t173
-        t175 = t8 * t40
-        t176 = 0.5 * t175
-        t177 = t174 - t176
-        t178 = t80 * t177
-        t179 = t127 * t178
-        t180 = t172 + t179
-        t181 = t96 * t115
-        t182 = t180 + t181
-        t183 = t182 * t148
-        t184 = t96 * t151
-        t185 = t32 * t35
-        t186 = 2.0 * t185
-        t187 = t10 * t40
-        t188 = 0.5 * t187
-        t189 = t186 - t188
-        t190 = t80 * t189
-        t191 = t120 * t190
-        t192 = t51 * t80
-        t193 = 1.0 - t192
-        t194 = t127 * t193
-        t195 = t191 + t194
-        t196 = t184 - t195
-        t197 = t196 * t164
-        t198 = t183 + t197
-        t199 = t113 * t40
-        t200 = 0.5 * t199
-        t201 = t48 * t129
-        t202 = 2.0 * t201
-        t203 = t200 - t202
-        t204 = t80 * t203
-        t205 = t127 * t204
-        t206 = t129 * t40
-        t207 = 0.5 * t206
-        t208 = t32 * t113
-        t209 = 2.0 * t208
-        t210 = t207 - t209
-        t211 = t80 * t210
-        t212 = t120 * t211
-        t213 = t205 - t212
-        t214 = 1.0 - t81
-        t215 = t96 * t214
-        t216 = t213 + t215
-        t217 = t216 * t111
-        t218 = t198 + t217
-        t219 = crank * t182
-        t220 = t218 + t219
         status = _first(status, ~np.asarray(t18 > t27), 2)
-        status = _first(status, ~np.asarray(t55 > t79), 5)
+        t28 = t6 * t6
+        t29 = 2.0 * t28
+        t30 = 1.0 - t29
+        t31 = t4 * t30
+        t32 = t5 * t13
+        t33 = 2.0 * t32
+        t34 = t31 + t33
+        t35 = m_s * t34
+        t36 = 0.25 * t4
+        t37 = t32 + t36
+        t38 = m_rod * t37
+        t39 = t35 + t38
+        t40 = t4 * t39
+        t41 = t3 * t3
+        t42 = m_rod * t41
+        t43 = m_s + t42
+        t44 = t28 * t43
+        t45 = t40 + t44
+        t46 = l * t45
+        t47 = l * t46
+        t48 = t4 * t4
+        t49 = J_rod * t48
+        t50 = t47 + t49
+        t51 = r * t50
+        t52 = r * t51
+        t53 = l * l
+        t54 = J_crank * t53
+        t55 = t28 * t54
+        t56 = t52 + t55
+        t57 = np.abs(t56)
+        t58 = np.abs(J_crank)
+        t59 = 0.5 * t58
+        t60 = np.abs(m_rod)
+        t61 = np.abs(r)
+        t62 = t61 * t61
+        t63 = t60 * t62
+        t64 = 0.5 * t63
+        t65 = t59 + t64
+        t66 = t8 * t65
+        t67 = 2.0 * t66
+        t68 = np.abs(J_rod)
+        t69 = 0.5 * t68
+        t70 = np.abs(l)
+        t71 = t70 * t70
+        t72 = t60 * t71
+        t73 = 0.125 * t72
+        t74 = t69 + t73
+        t75 = t10 * t74
+        t76 = 2.0 * t75
+        t77 = np.abs(m_s)
+        t78 = t16 * t77
+        t79 = t76 + t78
+        t80 = t67 + t79
+        t81 = 2.6645352591003757e-15 * t80
+        status = _first(status, ~np.asarray(t57 > t81), 5)
+        t82 = 1.0 / t56
+        t83 = r * m_rod
+        t84 = t4 * t6
+        t85 = t3 * t5
+        t86 = t84 - t85
+        t87 = t4 * t86
+        t88 = 0.5 * t87
+        t89 = t88 - t6
+        t90 = t83 * t89
+        t91 = r * t90
+        t92 = J_crank * t6
+        t93 = t91 - t92
+        t94 = l * t93
+        t95 = s - l
+        t96 = k * t95
+        t97 = s_dot * d
+        t98 = t96 + t97
+        t99 = t11 * t86
+        t100 = m_rod * t99
+        t101 = t7 * t100
+        t102 = 0.5 * t101
+        t103 = 0.5 * J_rod
+        t104 = m_rod * t53
+        t105 = 0.125 * t104
+        t106 = t103 + t105
+        t107 = t9 * t106
+        t108 = 2.0 * t107
+        t109 = t102 - t108
+        t110 = alpha_dot * t4
+        t111 = r * t110
+        t112 = alpha_dot * t111
+        t113 = beta_dot * t6
+        t114 = l * t113
+        t115 = beta_dot * t114
+        t116 = t112 + t115
+        t117 = t9 * t116
+        t118 = beta_dot * t5
+        t119 = l * t118
+        t120 = beta_dot * t119
+        t121 = alpha_dot * t3
+        t122 = r * t121
+        t123 = alpha_dot * t122
+        t124 = t120 - t123
+        t125 = t19 * t124
+        t126 = t117 - t125
+        t127 = t109 * t126
+        t128 = t7 * t116
+        t129 = t21 * t124
+        t130 = t128 + t129
+        t131 = t130 * t94
+        t132 = t127 + t131
+        t133 = t82 * t132
+        t134 = m_s * t133
+        t135 = t98 + t134
+        t136 = t94 * t135
+        t137 = m_s * t15
+        t138 = m_rod * g
+        t139 = r * t138
+        t140 = r * m_crank
+        t141 = g * t140
+        t142 = 0.5 * t141
+        t143 = t139 + t142
+        t144 = t4 * t143
+        t145 = beta_dot * beta_dot
+        t146 = m_rod * t15
+        t147 = t145 * t146
+        t148 = 0.5 * t147
+        t149 = t144 + t148
+        t150 = crank - t149
+        t151 = 0.5 * J_crank
+        t152 = r * r
+        t153 = m_rod * t152
+        t154 = 0.5 * t153
+        t155 = t151 + t154
+        t156 = t137 * t130
+        t157 = t109 * t124
+        t158 = t156 - t157
+        t159 = t82 * t158
+        t160 = t155 * t159
+        t161 = 2.0 * t160
+        t162 = t137 * t126
+        t163 = t124 * t94
+        t164 = t162 + t163
+        t165 = t82 * t164
+        t166 = t100 * t165
+        t167 = 0.5 * t166
+        t168 = t161 - t167
+        t169 = t150 + t168
+        t170 = t137 * t169
+        t171 = t136 + t170
+        t172 = t7 * t171
+        t173 = t109 * t135
+        t174 = l * t138
+        t175 = t6 * t174
+        t176 = 0.5 * t175
+        t177 = alpha_dot * alpha_dot
+        t178 = t177 * t146
+        t179 = 0.5 * t178
+        t180 = t176 - t179
+        t181 = t106 * t165
+        t182 = 2.0 * t181
+        t183 = t100 * t159
+        t184 = 0.5 * t183
+        t185 = t182 - t184
+        t186 = t180 + t185
+        t187 = t137 * t186
+        t188 = t173 + t187
+        t189 = t9 * t188
+        t190 = t172 + t189
+        t191 = t82 * t190
+        t192 = -t191
+        t193 = t109 * t169
+        t194 = t94 * t186
+        t195 = t193 - t194
+        t196 = t21 * t171
+        t197 = t195 - t196
+        t198 = t19 * t188
+        t199 = t197 + t198
+        t200 = t82 * t199
+        t201 = -t200
         entries = (
-            t169,
-            t220,
+            t192,
+            t201,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -3649,99 +3668,158 @@ class _CParameters(ctypes.Structure):
     ]
 
 
-# quantity: (lengths of the array arguments, shape of the result)
+# quantity: (lengths of the array arguments, shape of the result, whether there is a batch kernel)
 _SIGNATURES = {
-    mass_matrix: ((3,), (3, 3)),
-    coriolis_matrix: ((3, 3), (3, 3)),
-    coriolis_force: ((3, 3), (3,)),
-    potential_force: ((3,), (3,)),
-    applied_force: ((3, 3), (3,)),
-    constraint_residual: ((3,), (2,)),
-    constraint_jacobian: ((3,), (2, 3)),
-    constraint_jacobian_dot: ((3, 3), (2, 3)),
-    constraint_pseudoinverse: ((3,), (3, 2)),
-    nullspace_projector: ((3,), (3, 3)),
-    nullspace_projector_dot: ((3, 3), (3, 3)),
-    weighted_pseudoinverse: ((3,), (3, 2)),
-    weighted_nullspace_projector: ((3,), (3, 3)),
-    control_matrix: ((3,), (3, 1)),
-    projected_control_matrix: ((3,), (3, 1)),
-    projected_control_pseudoinverse: ((3,), (1, 3)),
-    orthogonal_complement: ((3,), (3, 1)),
-    projected_mass_matrix: ((3,), (3, 3)),
-    projected_coriolis_matrix: ((3, 3), (3, 3)),
-    projected_potential_force: ((3,), (3,)),
-    projected_applied_force: ((3, 3), (3,)),
-    minimal_mass_matrix: ((3,), (1, 1)),
-    minimal_coriolis_matrix: ((3, 3), (1, 1)),
-    minimal_potential_force: ((3,), (1,)),
-    minimal_applied_force: ((3, 3), (1,)),
-    minimal_control_matrix: ((3,), (1, 1)),
-    admissible_velocity: ((3, 3), (3,)),
-    admissible_acceleration: ((3, 3, 3), (3,)),
-    projected_configuration: ((3,), (3,)),
-    inverse_dynamics: ((3, 3, 3), (1,)),
-    inverse_dynamics_residual: ((3, 3, 3), (3,)),
-    actuator_velocity: ((3, 3), (1,)),
-    actuator_mass_matrix: ((3,), (1, 1)),
-    actuator_bias: ((3, 3), (1,)),
-    forward_dynamics: ((3, 3, 1), (3,)),
-    multipliers: ((3, 3, 1), (2,)),
-    energy: ((3, 3), (2,)),
-    singularity: ((3,), (2,)),
+    mass_matrix: ((3,), (3, 3), False),
+    coriolis_matrix: ((3, 3), (3, 3), False),
+    coriolis_force: ((3, 3), (3,), False),
+    potential_force: ((3,), (3,), False),
+    applied_force: ((3, 3), (3,), False),
+    constraint_residual: ((3,), (2,), False),
+    constraint_jacobian: ((3,), (2, 3), False),
+    constraint_jacobian_dot: ((3, 3), (2, 3), False),
+    constraint_pseudoinverse: ((3,), (3, 2), False),
+    nullspace_projector: ((3,), (3, 3), False),
+    nullspace_projector_dot: ((3, 3), (3, 3), False),
+    weighted_pseudoinverse: ((3,), (3, 2), False),
+    weighted_nullspace_projector: ((3,), (3, 3), False),
+    control_matrix: ((3,), (3, 1), False),
+    projected_control_matrix: ((3,), (3, 1), False),
+    projected_control_pseudoinverse: ((3,), (1, 3), False),
+    orthogonal_complement: ((3,), (3, 1), False),
+    projected_mass_matrix: ((3,), (3, 3), False),
+    projected_coriolis_matrix: ((3, 3), (3, 3), False),
+    projected_potential_force: ((3,), (3,), False),
+    projected_applied_force: ((3, 3), (3,), False),
+    minimal_mass_matrix: ((3,), (1, 1), False),
+    minimal_coriolis_matrix: ((3, 3), (1, 1), False),
+    minimal_potential_force: ((3,), (1,), False),
+    minimal_applied_force: ((3, 3), (1,), False),
+    minimal_control_matrix: ((3,), (1, 1), False),
+    admissible_velocity: ((3, 3), (3,), False),
+    admissible_acceleration: ((3, 3, 3), (3,), False),
+    projected_configuration: ((3,), (3,), False),
+    inverse_dynamics: ((3, 3, 3), (1,), True),
+    inverse_dynamics_residual: ((3, 3, 3), (3,), False),
+    actuator_velocity: ((3, 3), (1,), False),
+    actuator_mass_matrix: ((3,), (1, 1), False),
+    actuator_bias: ((3, 3), (1,), False),
+    forward_dynamics: ((3, 3, 1), (3,), True),
+    multipliers: ((3, 3, 1), (2,), True),
+    energy: ((3, 3), (2,), False),
+    singularity: ((3,), (2,), False),
 }
-_FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+_FILES = ('slider_crank.h', 'slider_crank.c', 'slider_crank_batch.h', 'slider_crank_batch.c')
+_FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fno-math-errno", "-shared", "-fPIC")
+# The first of these that the compiler knows: this machine's vector instructions, at their full width.
+_MACHINE_FLAGS = (("-march=native", "-mprefer-vector-width=512"), ("-march=native",), ("-mcpu=native",), ())
+_CHUNK = 4096  # states whose components stay in the cache between two transpositions
 
 
 class Compiled:
-    """The functions of this module, run by the compiled C."""
+    """The functions of this module with the same arguments, results and errors.
 
-    def __init__(self, library: ctypes.CDLL) -> None:
-        for function, (lengths, shape) in _SIGNATURES.items():
-            call = getattr(library, "slider_crank_" + function.__name__)
-            call.restype = ctypes.c_int
-            call.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
-            setattr(self, function.__name__, functools.partial(_run, call, function, lengths, shape))
+    Single states and the quantities with a batch kernel run in C, all else in NumPy: other quantities of many states,
+    and parameters that are arrays. Without a library NumPy does everything.
+    """
+
+    def __init__(self, library: ctypes.CDLL | None) -> None:
+        for function, signature in _SIGNATURES.items():
+            setattr(self, function.__name__, function if library is None else _compiled(library, function, *signature))
 
 
-def _run(call, function, lengths, shape, *args, **kwargs):
-    bound = inspect.signature(function).bind(*args, **kwargs)
-    bound.apply_defaults()
-    *values, p = bound.arguments.values()
-    names = list(bound.arguments)[:-1]
-    arrays = {name: _array(name, length, value) for name, length, value in zip(names, lengths, values)}
-    *arrays, batch = _states(**arrays)
-    rows = [np.ascontiguousarray(array).reshape(-1, array.shape[-1]) for array in arrays]
-    parameters = _CParameters(p.r, p.l, p.e, p.m_crank, p.m_rod, p.m_s, p.J_crank, p.J_rod, p.g, p.k, p.d)
-    result = np.empty((len(rows[0]), int(np.prod(shape))))
-    for index in range(len(result)):
-        status = call(*(row[index].ctypes.data for row in rows), ctypes.addressof(parameters), result[index].ctypes.data)
-        if status != 0 and not batch:
-            raise StateError(function.__name__, Status(status))
+_last = PARAMETERS, None
+
+
+def _c_parameters(p):
+    """The C struct of parameters, kept for the next call with the same ones; None where one of them is an array."""
+    global _last
+    known, struct = _last
+    if p is not known or struct is None:
+        members = (p.r, p.l, p.e, p.m_crank, p.m_rod, p.m_s, p.J_crank, p.J_rod, p.g, p.k, p.d, )
+        if any(map(np.ndim, members)):
+            return None
+        struct = _CParameters(*members)
+        if type(p) is Parameters:  # which is frozen; what else has these attributes may change
+            _last = p, struct
+    return struct
+
+
+def _compiled(library, function, lengths, shape, batched):
+    one = getattr(library, "slider_crank_" + function.__name__)
+    one.restype = ctypes.c_int
+    one.argtypes = [ctypes.c_void_p] * (len(lengths) + 2)
+    many = getattr(library, "slider_crank_" + function.__name__ + "_batch") if batched else None
+    if many is not None:
+        many.restype = ctypes.c_size_t
+        many.argtypes = [ctypes.c_size_t] * 2 + [ctypes.c_void_p] * (len(lengths) + 3)
+    signature = inspect.signature(function)
+    names = list(signature.parameters)[:-1]
+
+    @functools.wraps(function)
+    def run(*args, **kwargs):
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        *values, p = bound.arguments.values()
+        arrays = [_array(name, length, value) for name, length, value in zip(names, lengths, values)]
+        single = all(array.ndim == 1 for array in arrays)
+        parameters = _c_parameters(p)
+        if parameters is None or not (single or many):
+            return function(*args, **kwargs)
+        if not single:
+            if len({array.shape[:-1] for array in arrays}) > 1:
+                *arrays, _ = _states(**dict(zip(names, arrays)))
+            return _many(many, arrays, parameters, arrays[0].shape[:-1], shape)
+        arrays = [np.ascontiguousarray(array) for array in arrays]
+        result = np.empty(shape)
+        status = one(*(a.ctypes.data for a in arrays), ctypes.addressof(parameters), result.ctypes.data)
         if status != 0:
-            result[index] = np.nan
+            raise StateError(function.__name__, Status(status))
+        return result
+
+    return run
+
+
+def _many(kernel, arrays, parameters, batch, shape):
+    """The kernel takes arrays of components: states are transposed there and back, a chunk at a time."""
+    rows = [array.reshape(-1, array.shape[-1]) for array in arrays]
+    count = len(rows[0])
+    result = np.empty((count, int(np.prod(shape))))
+    stride = min(count, _CHUNK)
+    places = [np.empty((width, stride)) for width in (*(row.shape[1] for row in rows), result.shape[1])]
+    pointers = [place.ctypes.data for place in places]
+    pointers.insert(len(rows), ctypes.addressof(parameters))
+    for start in range(0, count, _CHUNK):
+        length = min(_CHUNK, count - start)
+        for place, row in zip(places, rows):
+            place[:, :length] = row[start : start + length].T
+        kernel(length, stride, *pointers, None)
+        result[start : start + length] = places[-1][:, :length].T
     return result.reshape(batch + shape)
 
 
 def compile():
-    """Builds ../c/slider_crank.c with the system's C compiler (CC, else cc) into a cache folder.
+    """Builds the C beside this module (../c) with the system's C compiler (CC, else cc) into a cache folder.
 
-    Returns an object with the functions of this module. Raises FileNotFoundError without source or compiler and
-    RuntimeError with the compiler's message when it fails.
+    Returns an object with the functions of this module. Without a compiler it warns, and NumPy does the work. Raises
+    FileNotFoundError without the C files and RuntimeError with the compiler's message when it fails.
     """
     folder = Path(__file__).resolve().parent.parent / "c"
-    source, header = folder / "slider_crank.c", folder / "slider_crank.h"
+    contents = b"".join((folder / name).read_bytes() for name in _FILES)
     command = os.environ.get("CC", "cc").split()
     if not command or shutil.which(command[0]) is None:
-        raise FileNotFoundError(f"no C compiler {' '.join(command)!r}: install one or set CC")
-    command += _FLAGS
-    text = repr((command, platform.machine())).encode() + source.read_bytes() + header.read_bytes()
-    built = _cache_folder() / f"slider_crank-{hashlib.sha256(text).hexdigest()[:24]}.so"
+        message = f"no C compiler {' '.join(command)!r}: NumPy does the work; install one or set CC"
+        warnings.warn(message, RuntimeWarning, stacklevel=2)
+        return Compiled(None)
+    command, machine = _for_this_machine([*command, *_FLAGS])
+    key = hashlib.sha256(repr((command, machine)).encode() + contents).hexdigest()[:24]
+    built = _cache_folder() / f"slider_crank-{key}.so"
     if not built.exists():
         handle, name = tempfile.mkstemp(dir=built.parent, suffix=".tmp")
         os.close(handle)
         try:
-            made = subprocess.run([*command, "-o", name, str(source), "-lm"], capture_output=True, text=True, check=False)
+            sources = [str(folder / name) for name in _FILES if name.endswith(".c")]
+            made = _told([*command, "-o", name, *sources, "-lm"])
             if made.returncode != 0:
                 raise RuntimeError(f"{' '.join(command)} failed:\n{made.stderr}")
             os.replace(name, built)
@@ -3750,9 +3828,23 @@ def compile():
     return Compiled(ctypes.CDLL(str(built)))
 
 
+def _for_this_machine(command):
+    """The command with flags for this machine, and what the compiler then says of itself and of the machine."""
+    for flags in _MACHINE_FLAGS:
+        told = _told([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
+        if told.returncode == 0:
+            return [*command, *flags], (platform.machine(), told.stdout)
+    raise RuntimeError(f"{' '.join(command)} failed:\n{told.stderr}")
+
+
+def _told(command):
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
 def _cache_folder() -> Path:
     """The user's cache folder, or a fresh private one where that cannot be written."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    usual = {"darwin": Path.home() / "Library" / "Caches", "win32": Path(os.environ.get("LOCALAPPDATA", Path.home()))}
+    base = os.environ.get("XDG_CACHE_HOME") or usual.get(sys.platform, Path.home() / ".cache")
     folder = Path(base) / "symgen"
     try:
         folder.mkdir(parents=True, exist_ok=True)
