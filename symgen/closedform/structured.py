@@ -18,6 +18,9 @@ from symgen.closedform.spelling import Speller
 LONGEST_LOAD = 600
 """A load tau with more terms than this is not listed."""
 
+LONGEST_SQUARES = 3000
+"""Entries of B B^T with more terms than this together are not listed."""
+
 MOST_MINORS = 30
 """More named minors than this are not listed."""
 
@@ -151,13 +154,18 @@ def structured_inverse_dynamics(exact: Exact, speller: Speller, left: Structured
 
 
 def structured_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[str]) -> tuple[tuple[Symbol, Expr], ...]:
-    """The entries of S = B B^T by name, for B^+ = B^T S^{-1}."""
+    """The entries of S = B B^T by name, for B^+ = B^T S^{-1}; none where they are too long to be read."""
     jacobian = exact.mechanics.jacobian
     naming = Naming(speller, taken)
-    return tuple(
-        (naming.symbol(f"S_{i + 1}_{j + 1}"), speller.quotient(dot(exact.ring, jacobian[i], jacobian[j])))
+    entries = {
+        (i, j): dot(exact.ring, jacobian[i], jacobian[j])
         for i in range(len(jacobian))
         for j in range(i, len(jacobian))
+    }
+    if sum(len(entry.numerator) for entry in entries.values()) > LONGEST_SQUARES:
+        return ()
+    return tuple(
+        (naming.symbol(f"S_{i + 1}_{j + 1}"), speller.quotient(entry)) for (i, j), entry in entries.items()
     )
 
 
