@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
@@ -26,11 +27,11 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "tanh": math.tanh,
     "abs": abs,
     "copysign": math.copysign,
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "neg": lambda a: -a,
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+    "neg": operator.neg,
     "min": min,
     "max": max,
     "ratio_or_zero": lambda a, b: a / b if b else 0.0,
@@ -42,28 +43,41 @@ class Evaluator:
 
     def __init__(self, outputs: Sequence[Scalar]) -> None:
         self.outputs = outputs
-        self.order = topological(outputs)
+        order = topological(outputs)
+        place = {node: k for k, node in enumerate(order)}
+        self._start = [0.0] * len(order)
+        self._symbols: list[tuple[int, str]] = []
+        self._steps: list[tuple[int, Callable[..., float], tuple[int, ...]]] = []
+        for k, node in enumerate(order):
+            if node.op == "symbol":
+                self._symbols.append((k, str(node.payload)))
+            elif node.constant is not None:
+                self._start[k] = float(node.constant)
+            else:
+                self._steps.append((k, _function(node), tuple(place[argument] for argument in node.args)))
+        self._places = [place[output] for output in outputs]
 
     def __call__(self, point: Mapping[str, float]) -> list[float]:
         """The outputs with symbols at `point`; NaN where a function is undefined."""
-        values: dict[int, float] = {}
-        for node in self.order:
-            values[node.serial] = _value(node, [values[argument.serial] for argument in node.args], point)
-        return [values[output.serial] for output in self.outputs]
+        values = self._start.copy()
+        for k, name in self._symbols:
+            values[k] = point[name]
+        for k, function, places in self._steps:
+            try:
+                if len(places) == 2:
+                    values[k] = function(values[places[0]], values[places[1]])
+                else:
+                    values[k] = function(*[values[place] for place in places])
+            except (ValueError, ZeroDivisionError, OverflowError):
+                values[k] = math.nan
+        return [values[place] for place in self._places]
 
 
-def _value(node: Scalar, args: list[float], point: Mapping[str, float]) -> float:
-    if node.op == "symbol":
-        return point[str(node.payload)]
-    if node.op == "const":
+def _function(node: Scalar) -> Callable[..., float]:
+    if node.op == "pow":
         assert isinstance(node.payload, Fraction)
-        return float(node.payload)
-    try:
-        if node.op == "pow":
-            assert isinstance(node.payload, Fraction)
-            return math.pow(args[0], float(node.payload))
-        if node.op not in FUNCTIONS:
-            raise SymgenBug(f"evaluate: unknown operation {node.op}")
-        return float(FUNCTIONS[node.op](*args))
-    except (ValueError, ZeroDivisionError, OverflowError):
-        return math.nan
+        exponent = float(node.payload)
+        return lambda base: math.pow(base, exponent)
+    if node.op not in FUNCTIONS:
+        raise SymgenBug(f"evaluate: unknown operation {node.op}")
+    return FUNCTIONS[node.op]

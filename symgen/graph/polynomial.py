@@ -84,8 +84,9 @@ class Multiplier:
             raise _TooLongError
         result: Polynomial = {}
         for left, x in a.items():
+            powers = dict(left)
             for right, y in b.items():
-                key = _product(left, right)
+                key = _raised(powers, right) if left and right else left or right
                 result[key] = result.get(key, 0) + x * y
         return reduced(self._circle, {key: value for key, value in result.items() if value})
 
@@ -99,7 +100,12 @@ def _product(a: Monomial, b: Monomial) -> Monomial:
         return a
     if not a:
         return b
-    powers = dict(a)
+    return _raised(dict(a), b)
+
+
+def _raised(powers: dict[int, int], b: Monomial) -> Monomial:
+    """The product of a monomial, given by its powers, and another."""
+    powers = powers.copy()
     for atom, power in b:
         powers[atom] = powers.get(atom, 0) + power
     return _key(powers)
@@ -121,16 +127,16 @@ class Circle:
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
-        self._partners: dict[tuple[str, int], int | None] = {}
+        self._partners: dict[str, dict[int, int | None]] = {"sin": {}, "cos": {}}
 
     def partner(self, name: str, atom: int) -> int | None:
         """For an atom that is a sine (`name` "sin") or a cosine ("cos") its partner on the circle, else None."""
-        key = name, atom
-        if key not in self._partners:
+        known = self._partners[name]
+        if atom not in known:
             node = self._graph.nodes[atom]
             other = "cos" if name == "sin" else "sin"
-            self._partners[key] = self._graph.trig(other, node.args[0]).serial if node.op == name else None
-        return self._partners[key]
+            known[atom] = self._graph.trig(other, node.args[0]).serial if node.op == name else None
+        return known[atom]
 
     def square(self, name: str, key: Monomial) -> int | None:
         """The first sine or cosine that stands in the monomial as a square."""
@@ -142,7 +148,7 @@ class Circle:
 
 def reduced(circle: Circle, terms: Polynomial) -> Polynomial:
     """No square of a sine is left (which makes cancellation certain), then squares are put where they save terms."""
-    squared = [key for key in terms if any(power >= 2 for _, power in key)]
+    squared = _with_squares(terms)
     pending = [key for key in squared if circle.square("sin", key) is not None]
     if not pending and not any(circle.square("cos", key) is not None for key in squared):
         return terms
@@ -163,6 +169,16 @@ def reduced(circle: Circle, terms: Polynomial) -> Polynomial:
     return _with_sines(circle, work)
 
 
+def _with_squares(terms: Polynomial) -> list[Monomial]:
+    found = []
+    for key in terms:
+        for _, power in key:
+            if power >= 2:
+                found.append(key)
+                break
+    return found
+
+
 def _put(work: Polynomial, powers: dict[int, int], value: Coefficient) -> list[Monomial]:
     """Adds a term; returns its key where one stands now."""
     key = _key(powers)
@@ -177,7 +193,7 @@ def _put(work: Polynomial, powers: dict[int, int], value: Coefficient) -> list[M
 def _with_sines(circle: Circle, terms: Polynomial) -> Polynomial:
     """k T - k T c^2 = k T s^2 wherever both terms stand."""
     work = dict(terms)
-    for key in sorted(key for key in terms if circle.square("cos", key) is not None):
+    for key in sorted(key for key in _with_squares(terms) if circle.square("cos", key) is not None):
         value, square = work.get(key), circle.square("cos", key)
         if value is None or square is None:
             continue

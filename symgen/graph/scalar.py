@@ -34,11 +34,14 @@ class Scalar:
         self.args = args
         self.payload = payload
         # the value of a constant node, else None
-        self.constant: Fraction | None = payload if op == "const" and type(payload) is Fraction else None
+        self.constant: Fraction | None = payload if type(payload) is Fraction and op == "const" else None
         self.is_zero = self.constant is not None and self.constant == 0
         self.is_one = self.constant is not None and self.constant == 1
         # operations of the expression written out, and its value in the field of fingerprints
-        self.size: int = sum(a.size for a in args) + (op not in ("const", "symbol", "neg"))
+        size = 0 if op in ("const", "symbol", "neg") else 1
+        for argument in args:
+            size += argument.size
+        self.size: int = size
         self.value = 0
 
     def __add__(self, other: Number) -> Scalar:
@@ -79,6 +82,8 @@ class Graph:
 
     def __init__(self) -> None:
         self._nodes: dict[tuple[object, ...], Scalar] = {}
+        # by numerator and denominator, whose hash costs a fraction of a Fraction's
+        self._constants: dict[tuple[int, int], Scalar] = {}
         # every scalar at the place of its serial number
         self.nodes: list[Scalar] = []
         self.products = Products(self)
@@ -93,7 +98,7 @@ class Graph:
 
     def _node(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
         """The node, or a shorter one that is the same function."""
-        key = (op, payload, *map(id, args))
+        key = (op, args, payload)
         node = self._nodes.get(key)
         if node is None:
             node = self._new(key, op, args, payload)
@@ -131,7 +136,11 @@ class Graph:
 
     def const(self, value: int | Fraction) -> Scalar:
         """An exact constant."""
-        return self._node("const", (), Fraction(value))
+        key = value.numerator, value.denominator
+        node = self._constants.get(key)
+        if node is None:
+            node = self._constants[key] = self._node("const", (), Fraction(value))
+        return node
 
     def symbol(self, name: str) -> Scalar:
         """A named input."""
@@ -142,10 +151,10 @@ class Graph:
         if op in ("add", "mul") and args[0].constant is None:
             # the order of the constructors: numbers first, then by serial
             args = args if args[1].constant is None and args[0].serial < args[1].serial else args[::-1]
-        usual = self._nodes.get((op, payload, *map(id, args)))
+        usual = self._nodes.get((op, args, payload))
         if usual is not None and usual.op == op and usual.args == args:
             return usual
-        key = ("raw", op, payload, *map(id, args))
+        key = ("raw", op, args, payload)
         node = self._nodes.get(key)
         return self._new(key, op, args, payload) if node is None else node
 

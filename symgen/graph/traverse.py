@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.graph.scalar import Graph, Scalar
+
+# What counts as arithmetic, as an angle, or not at all; every other operation is a function.
+_NO_FUNCTIONS = frozenset({"add", "sub", "min", "max", "mul", "div", "ratio_or_zero", "sqrt", "sin", "cos"})
+_NO_FUNCTIONS |= {"const", "symbol", "neg", "abs", "copysign"}
 
 
 def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> list[Scalar]:
@@ -25,11 +30,30 @@ def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> lis
                 order.append(done)
             elif node not in seen and node not in known:
                 seen.add(node)
-                if node.args:
-                    stack += (node, None, *reversed(node.args))
-                else:
+                args = node.args
+                if not args:
                     order.append(node)
+                elif len(args) == 2:
+                    first, second = args
+                    # what has been seen need not be looked at twice
+                    stack += (node, None) if second in seen else (node, None, second)
+                    if first not in seen:
+                        stack.append(first)
+                else:
+                    stack += (node, None, *reversed(args))
     return order
+
+
+def reached(outputs: Iterable[Scalar]) -> set[Scalar]:
+    """Every node the outputs reach, in no order: faster than `topological` where the order does not matter."""
+    stack = list(outputs)
+    seen = set(stack)
+    while stack:
+        for argument in stack.pop().args:
+            if argument not in seen:
+                seen.add(argument)
+                stack.append(argument)
+    return seen
 
 
 def rebuild(graph: Graph, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
@@ -93,22 +117,14 @@ class Cost:
 
 def cost(outputs: Iterable[Scalar]) -> Cost:
     """Operations needed for the outputs, shared ones counted once."""
-    additive = multiplications = divisions = roots = functions = 0
-    angles: set[int] = set()
-    for node in topological(outputs):
-        match node.op:
-            case "add" | "sub" | "min" | "max":
-                additive += 1
-            case "mul":
-                multiplications += 1
-            case "div" | "ratio_or_zero":
-                divisions += 1
-            case "sqrt":
-                roots += 1
-            case "sin" | "cos":
-                angles.add(node.args[0].serial)
-            case "const" | "symbol" | "neg" | "abs" | "copysign":
-                pass
-            case _:
-                functions += 1
-    return Cost(additive, multiplications, divisions, roots, len(angles), functions)
+    nodes = reached(outputs)
+    count = Counter([node.op for node in nodes])
+    angles = {node.args[0] for node in nodes if node.op == "sin" or node.op == "cos"}
+    return Cost(
+        additive=count["add"] + count["sub"] + count["min"] + count["max"],
+        multiplications=count["mul"],
+        divisions=count["div"] + count["ratio_or_zero"],
+        roots=count["sqrt"],
+        angles=len(angles),
+        functions=sum(number for op, number in count.items() if op not in _NO_FUNCTIONS),
+    )

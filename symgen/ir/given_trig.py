@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, OperationName, Statement, Status
-from symgen.ir.split import names_in, names_of_blocks
+from symgen.ir.split import names_in
 
 # Coordinates in a sum, counted with their multiples, up to which addition is cheaper than another pair.
 LONGEST_SUM = 4
@@ -179,17 +179,24 @@ class _Rewriter:
 
 def _pruned(kernel: Kernel) -> Kernel:
     """The kernel without statements and loads that nothing needs."""
-    while True:
-        used = names_of_blocks(kernel.blocks) | names_in(kernel.outputs)
-        blocks = tuple(_kept(block, used) for block in kernel.blocks)
-        if blocks == kernel.blocks:
-            return replace(kernel, loads=tuple(load for load in kernel.loads if load.local in used))
-        kernel = replace(kernel, blocks=blocks)
+    used = names_in(kernel.outputs)
+    blocks = [_kept(block, used) for block in reversed(kernel.blocks)]
+    loads = tuple(load for load in kernel.loads if load.local in used)
+    return replace(kernel, loads=loads, blocks=tuple(reversed(blocks)))
 
 
 def _kept(block: Block, used: set[str]) -> Block:
-    checks = (c if c.first is None else replace(c, first=_kept(c.first, used)) for c in block.checks)
-    return Block(tuple(s for s in block.statements if used.intersection(s.targets)), tuple(checks))
+    """The block without statements that nothing after them needs; what it needs itself is added to `used`."""
+    checks = []
+    for check in reversed(block.checks):
+        used |= names_in((check.value, check.limit))
+        checks.append(check if check.first is None else replace(check, first=_kept(check.first, used)))
+    statements = []
+    for statement in reversed(block.statements):
+        if not used.isdisjoint(statement.targets):
+            used |= names_in(statement.operands)
+            statements.append(statement)
+    return Block(tuple(reversed(statements)), tuple(reversed(checks)))
 
 
 def _all_statements(block: Block) -> Iterator[Statement]:
