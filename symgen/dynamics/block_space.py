@@ -19,7 +19,7 @@ from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
 
 # A block with more minors than this is reflected.
-MINOR_LIMIT = 60
+BLOCK_MINOR_LIMIT = 60
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,6 @@ class BlockSpace:
 def _space(graph: Graph, rows: Matrix, places: Component) -> NullSpace:
     own = tuple(tuple(rows[i][j] for j in places.columns) for i in places.rows)
     width, rank = len(places.columns), len(places.rows)
-    if comb(width, rank) > MINOR_LIMIT:
+    if comb(width, rank) > BLOCK_MINOR_LIMIT:
         return HouseholderSpace(graph, own, width)
     return MinorSpace(graph, own, width, rank)

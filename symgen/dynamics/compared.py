@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from math import comb
-
 from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.motions import MOTION_NAMES, MotionName, candidates, motion
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
-from symgen.dynamics.select import MINOR_LIMIT
-from symgen.dynamics.spaces import MinorSpace, NullSpace
+from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace, NullSpace
 from symgen.graph.matrix import flatten
 from symgen.model.model import Model
 
@@ -37,7 +34,7 @@ def motions_of(model: Model) -> dict[str, tuple[Mechanics, tuple[Derived, ...]]]
 
 def _space(mechanics: Mechanics, generic: Genericity, name: str) -> NullSpace | None:
     graph, rows, n = mechanics.graph, mechanics.constraint_jacobian, mechanics.n
-    few = comb(n, generic.rank) * comb(len(rows), generic.rank) <= MINOR_LIMIT
+    few = generic.minors <= MINOR_LIMIT
     if rows and (name in ORTHONORMAL or (not few and name != "minor")):
         return reflected(graph, rows, n, generic.rank)
     return MinorSpace(graph, rows, n, generic.rank) if few and (rows or name not in ORTHONORMAL) else None

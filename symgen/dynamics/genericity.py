@@ -48,6 +48,11 @@ class Genericity:
         return self.n - self.geometric_rank
 
     @property
+    def minors(self) -> int:
+        """How many minors of the generic rank B has."""
+        return math.comb(self.n, self.rank) * math.comb(self.r, self.rank)
+
+    @property
     def full_actuation(self) -> bool:
         """Whether the inputs span every admissible direction."""
         return self.alpha == self.delta

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
-from math import comb
 
 from symgen.dynamics.block_space import BlockSpace
 from symgen.dynamics.blocks import components
@@ -13,17 +11,13 @@ from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, by_blocks, de
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.grouping import grouped as grouped_scalars
-from symgen.dynamics.inverse import FormChoice, InverseDynamics, derived_on
+from symgen.dynamics.inverse import CANCELLATION_WORTH, FACTORING_LIMIT, FormChoice, InverseDynamics, derived_on
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
-from symgen.dynamics.spaces import MinorSpace
+from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
 
-# Minors are built only while their number stays small; beyond, Householder reflections are cheaper anyway.
-FACTORING_LIMIT = 450
-CANCELLATION_WORTH = Fraction(1, 4)
-MINOR_LIMIT = 300
 # Their forms have multiplied out what may cancel.
 MOTIONS = ("forward_dynamics", "multipliers")
 
@@ -57,7 +51,7 @@ def ways(mechanics: Mechanics, generic: Genericity) -> dict[str, Derivation]:
     """The derivations that are valid at every regular configuration, by name."""
     rows, n = mechanics.constraint_jacobian, mechanics.n
     found: dict[str, Derivation] = {}
-    if comb(n, generic.rank) * comb(len(rows), generic.rank) <= MINOR_LIMIT:
+    if generic.minors <= MINOR_LIMIT:
         space = MinorSpace(mechanics.graph, rows, n, generic.rank)
         found["minors"] = Derivation(mechanics, generic, space)
     if rows:

@@ -16,6 +16,8 @@ from symgen.graph.matrix import Matrix, Vector, dot, identity, matvec, subtract_
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
 
+# Minors are built only while their number stays small; beyond, Householder reflections are cheaper anyway.
+MINOR_LIMIT = 300
 # Up to this many squared pivots are multiplied as they are.
 LONGEST_PRODUCT = 6
 

@@ -47,7 +47,6 @@ from symgen.verify.states import (
 from symgen.verify.tolerance import Expectation, expectations
 
 Progress: TypeAlias = Callable[[str], None]
-Expected: TypeAlias = Sequence[Mapping[str, Expectation]]
 LONGEST_EXCERPT = 2000
 NO_COMPILER = "no C compiler was found, the C is not verified: install gcc or clang, or name one in CC"
 

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from math import comb
-
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.form import Form, FormName, form
 from symgen.dynamics.forms.system import System
 from symgen.dynamics.pivoted import reflected
-from symgen.dynamics.spaces import MinorSpace
-
-# Minors are built only while their number stays small; beyond, reflections are cheaper anyway.
-MINOR_LIMIT = 300
+from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
 
 
 def minor_derivation(system: System) -> Derivation | str:
     """The derivation along the minors of B, or why there is none."""
     mechanics, generic = system.mechanics, system.generic
-    number = comb(generic.n, generic.rank) * comb(generic.r, generic.rank)
-    if number > MINOR_LIMIT:
-        return f"B has {number} minors"
+    if generic.minors > MINOR_LIMIT:
+        return f"B has {generic.minors} minors"
     space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
     return Derivation(mechanics, generic, space)
 
