@@ -86,7 +86,7 @@ class _Limits:
 
     def tests(self, guards: Sequence[Guard]) -> list[_Test]:
         """The tests in the order in which statuses are reported."""
-        return [self._test(guard) for guard in sorted(guards, key=lambda g: ORDER.index(g.status))]
+        return [self._test(guard) for guard in sorted(guards, key=_place)]
 
     def _test(self, guard: Guard) -> _Test:
         if guard not in self._known:
@@ -107,6 +107,11 @@ class _Limits:
         self._thresholds[name] = guard, factor
         threshold = self._mechanics.graph.symbol(name)
         return threshold * scale if constant is None else threshold
+
+
+def _place(guard: Guard) -> int:
+    """The place of a guard in `ORDER`: that of the earliest status it can lead to."""
+    return min(ORDER.index(guard.status), *map(_place, guard.first)) if guard.first else ORDER.index(guard.status)
 
 
 def _threshold(mechanics: Mechanics, guard: Guard, scalar: Scalar) -> Fraction:

@@ -11,7 +11,6 @@ because a force of B^T alone would then be in balance.  The form is valid at eve
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, unit, wedge_all
@@ -88,8 +87,8 @@ class _Core:
         elif internal > 1:
             u, guard = self._without_directions(u, tuple(z))
         if internal:
-            # at an input singularity the internal forces vanish with the core's minors: the core is asked first
-            guards.append(replace(guard, first=tuple(guards)))
+            # at an input singularity the internal forces vanish with the core's minors: the core stands first
+            guards.append(guard)
         return u, tuple(guards)
 
     def _inputs_of(self, values: Vector, homogeneous: bool) -> Vector:
