@@ -68,7 +68,10 @@ class CStatements:
             return f"-{operands[0]}"
         if operation == "ratio_or_zero":
             zero = "0.0f" if self.scalar == "float32" else "0.0"
-            return f"({operands[1]} != {zero}) ? ({operands[0]} / {operands[1]}) : {zero}"
+            one = "1.0f" if self.scalar == "float32" else "1.0"
+            # clang takes divisions out of branches, so no divisor may be 0 on either side
+            regular = f"{operands[1]} != {zero}"
+            return f"(({regular}) ? {operands[0]} : {zero}) / (({regular}) ? {operands[1]} : {one})"
         if operation in _CHOICES:
             return f"({operands[0]} {_CHOICES[operation]} {operands[1]}) ? {operands[0]} : {operands[1]}"
         return f"{self.function(operation)}({', '.join(operands)})"
