@@ -145,6 +145,37 @@ def test_wrong_use(asked: list[Options], arguments: list[str], capsys: pytest.Ca
     assert len(asked) <= 2
 
 
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--states", "many"], "'many' is no whole number from 8 up"),
+        (["--only", "c,rust"], "'rust' is none of c, python"),
+        (["--outputs", " , "], "expected names separated by commas"),
+    ],
+)
+def test_a_wrong_option_is_told_with_its_remedy(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert code(SKATE, *arguments) == 2
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--duration", "0"], "'0' is no positive number"),
+        (["--duration", "inf"], "'inf' is no positive number"),
+        (["--start", "x=1,y"], "'y' is not of the form x=1"),
+        (["--inputs", "a=1,b=nan"], "'b=nan' is not of the form x=1"),
+    ],
+)
+def test_a_wrong_option_of_simulate_is_told_with_its_remedy(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert code("simulate", SKATE, *arguments) == 2
+    assert message in capsys.readouterr().err
+
+
 def failing(error: BaseException) -> Callable[..., Result]:
     def generate(_path: Path, _options: Options, _progress: Callable[[str], None]) -> Result:
         raise error

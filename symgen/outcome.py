@@ -1,0 +1,53 @@
+"""Exit codes, and what a command answers when a model or symgen itself is at fault."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+from symgen.diagnostics import ModelError, SymgenBug
+from symgen.results import WrongUseError
+from symgen.terminal import Progress
+
+DONE, MODEL_WRONG, WRONG_USE = 0, 1, 2
+
+
+def each_file(models: Sequence[Path], quiet: bool, work: Callable[[Path, Progress], int]) -> int:
+    """Measures every model, also after one that failed; the highest exit code wins."""
+
+    def one(path: Path) -> int:
+        progress = Progress(path.stem, quiet)
+        try:
+            return work(path, progress)
+        finally:
+            progress.done()
+
+    check_present(models)
+    return max([guarded(partial(one, path)) for path in models])
+
+
+def check_present(models: Sequence[Path]) -> None:
+    """WrongUseError for the first file that is missing, before work on any of them starts."""
+    for path in models:
+        if not path.is_file():
+            raise WrongUseError(f"no such file: {path}")
+
+
+def guarded(work: Callable[[], int]) -> int:
+    """A user's mistake becomes its message and a fault of symgen a report; neither stops the next model."""
+    try:
+        return work()
+    except ModelError as error:
+        print(error.render(), end="", file=sys.stderr)
+        return MODEL_WRONG
+    except (WrongUseError, OSError):
+        raise
+    except SymgenBug as error:
+        print(f"symgen: internal error: {error}\nThis is a fault of symgen, not of the model.", file=sys.stderr)
+    except Exception:
+        traceback.print_exc()
+        print("symgen: internal error: this is a fault of symgen, not of the model.", file=sys.stderr)
+    return WRONG_USE
