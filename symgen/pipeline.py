@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,6 +31,7 @@ from symgen.ir.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean
+from symgen.records import dataclass
 from symgen.results import LargestError, Options, Result, Summary, WrongUseError
 
 if TYPE_CHECKING:
@@ -162,15 +163,11 @@ def _code(derived: _Derived, options: Options) -> dict[str, str | bytes]:
         from symgen.emit.python import emit_python
 
         files |= emit_python(derived.model, derived.program)
-    files["derivation.json"] = derivation_json(
-        derived.model, derived.derivations, derived.structure, derived.program
-    )
+    files["derivation.json"] = derivation_json(derived.model, derived.derivations, derived.structure, derived.program)
     return files
 
 
-def _verified(
-    derived: _Derived, files: dict[str, str | bytes], states: int, progress: Progress
-) -> Certificate | None:
+def _verified(derived: _Derived, files: dict[str, str | bytes], states: int, progress: Progress) -> Certificate | None:
     """What is wrong with the files just made; None when there is no code among them."""
     from symgen.verify.run import generated_sources, verify
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 from symgen.diagnostics import Notice
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
+from symgen.records import dataclass
 
 Part: TypeAlias = Literal["c", "python", "report", "package", "proof"]
 PARTS: tuple[Part, ...] = ("c", "python", "report", "package", "proof")

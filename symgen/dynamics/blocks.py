@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import comb
 
 from symgen.graph.matrix import Matrix
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +62,4 @@ def components(b: Matrix) -> Iterator[Component]:
 
 def named(component: Component, rows: Sequence[str], coordinates: Sequence[str], rank: int) -> Block:
     """The block of a component."""
-    return Block(
-        tuple(rows[i] for i in component.rows), tuple(coordinates[j] for j in component.columns), rank
-    )
+    return Block(tuple(rows[i] for i in component.rows), tuple(coordinates[j] for j in component.columns), rank)

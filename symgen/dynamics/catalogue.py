@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity
@@ -11,6 +10,7 @@ from symgen.dynamics.guards import Guard
 from symgen.graph.matrix import Vector, flatten
 from symgen.graph.scalar import Scalar
 from symgen.model.model import Model
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

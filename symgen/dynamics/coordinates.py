@@ -7,11 +7,11 @@ holds the links behind it.  u and lambda do not depend on the coordinates, accel
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from symgen.graph.matrix import Matrix, Vector, flatten
 from symgen.graph.scalar import Graph
 from symgen.graph.traverse import topological
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

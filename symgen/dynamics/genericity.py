@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from symgen.diagnostics import SymgenBug
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.matrix import flatten
 from symgen.graph.translate import translate
+from symgen.records import dataclass
 
 SEED = 20120731
 POINTS = 6
@@ -110,8 +110,10 @@ def _newton(point: dict[str, float], names: list[str], rows: int, evaluate: Eval
         jacobian = [values[rows + i * len(names) : rows + (i + 1) * len(names)] for i in range(rows)]
         scale = sum(x * x for row in jacobian for x in row) / rows
         normal = [
-            [sum(a * b for a, b in zip(p, q, strict=True)) + (damping * scale if i == j else 0.0)
-             for j, q in enumerate(jacobian)]
+            [
+                sum(a * b for a, b in zip(p, q, strict=True)) + (damping * scale if i == j else 0.0)
+                for j, q in enumerate(jacobian)
+            ]
             for i, p in enumerate(jacobian)
         ]
         weights = solve(normal, g)

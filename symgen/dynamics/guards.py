@@ -7,11 +7,11 @@ the absolute terms of D when every sine and cosine is 1 (interface, section 4).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import topological
 from symgen.ir.kernel import Status
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

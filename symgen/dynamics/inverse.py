@@ -8,7 +8,7 @@ householder; the others work on whole matrices and are there to be asked for.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 
@@ -32,6 +32,7 @@ from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.transplant import transplanted
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
+from symgen.records import dataclass
 
 AUTOMATIC = ("range", "minor", "nullspace", "householder")
 # Longer outputs are not multiplied out; multiplied out, terms that vanish have cancelled exactly, which is worth a few

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from symgen.dynamics.block_space import BlockSpace
 from symgen.dynamics.blocks import components
@@ -17,6 +17,7 @@ from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
+from symgen.records import dataclass
 
 # Their forms have multiplied out what may cancel.
 MOTIONS = ("forward_dynamics", "multipliers")

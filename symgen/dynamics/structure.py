@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import comb
 
 from symgen.dynamics.blocks import Block, Component, components, named
@@ -16,6 +15,7 @@ from symgen.graph.scalar import Scalar
 from symgen.graph.traverse import topological
 from symgen.model.model import ConstraintRow
 from symgen.model.names import counted
+from symgen.records import dataclass
 
 MOST_NAMES = 4
 

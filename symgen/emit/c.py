@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from symgen.emit.about import STATUS_MEANING, count_lines, renaming_lines, shape_text, symbol_lines, unit_text
@@ -18,6 +18,7 @@ from symgen.emit.statements import CStatements, c_type
 from symgen.ir.kernel import Kernel, Load, Local, Operand, Program, Statement, Status
 from symgen.model.model import Model
 from symgen.naming import file_stem
+from symgen.records import dataclass
 
 _WITHOUT_LIBRARY = frozenset({"add", "sub", "mul", "div", "neg", "ratio_or_zero", "min", "max"})
 
@@ -190,6 +191,9 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
                     lines += group_lines(program.scalar, f"{model.name}_sincos_group{_suffix(program)}", angles)
                     waiting |= _read_back(group, scalar, names)
                 continue
+            if statement.operation == "sincos":
+                # all angles before the first call of the library: what they are read from is not needed after it
+                lines += due(o for s in block.statements if s.operation == "sincos" for o in s.operands)
             lines += [*due(statement.operands), *printer.statement(statement)]
         for check in block.checks:
             lines += [*due(check_operands(check)), *printer.check(check)]

@@ -6,7 +6,7 @@ finite. The few states whose flag says no go through the kernel for one state, w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from symgen.emit.c import c_members, status_name
 from symgen.emit.comments import c_comment_lines
@@ -19,6 +19,7 @@ from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, 
 from symgen.ir.split import names_in, names_of_blocks, split, without_first
 from symgen.model.model import Model
 from symgen.naming import file_stem
+from symgen.records import dataclass
 
 # States a block: local arrays of rows of this length; a multiple of every vector length in use.
 BLOCK = 64

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from symgen.emit.c import c_members, kernel_body, status_name, uses_library
 from symgen.emit.comments import c_comment_lines
@@ -16,6 +16,7 @@ from symgen.ir.kernel import Block, Kernel, Program, Status
 from symgen.ir.prepare import Prepared, prepare
 from symgen.model.model import Model
 from symgen.naming import file_stem
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from symgen.emit.c import c_names, kernel_body, status_name, uses_library
 from symgen.emit.comments import c_comment, c_comment_lines
@@ -15,6 +15,7 @@ from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.model.model import Model
 from symgen.naming import file_stem
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from symgen.emit.quantities import output_argument
 from symgen.ir.kernel import Argument, Block, Check, Kernel, Local, Operand, Program, Statement
 from symgen.model.model import Model
 from symgen.naming import c_identifiers
+from symgen.records import dataclass
 
 ARGUMENT_NAMES = ("q", "qd", "qdd", "u", "p")
 # Names that the templates and statement printers use inside a kernel.

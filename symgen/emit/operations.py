@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from symgen.ir.kernel import Statement
+from symgen.records import dataclass
 
 _KIND = {
     "add": "add",

@@ -7,11 +7,11 @@ operations as the function of one angle, so the bits are the same on processors 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from symgen.emit.statements import CStatements, c_type
 from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
 from symgen.naming import c_identifiers
+from symgen.records import dataclass
 
 # Values in a vector of 16 bytes, which every 64-bit processor has.
 LANES: dict[Scalar, int] = {"float64": 2, "float32": 4}

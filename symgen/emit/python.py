@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from symgen.emit.about import STATUS_MEANING, count_lines, symbol_lines, unit_text
 from symgen.emit.comments import docstring_lines, indent_of, one_line
 from symgen.emit.defaults import default_values
@@ -15,6 +13,7 @@ from symgen.emit.statements import NumpyStatements
 from symgen.ir.kernel import Function, Kernel, Program, Status
 from symgen.model.model import Model
 from symgen.naming import c_identifiers, file_stem
+from symgen.records import dataclass
 
 _SINCOS = "_sincos"
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Container, Iterable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.graph.scalar import Graph, Scalar
+from symgen.records import dataclass
 
 # What counts as arithmetic, as an angle, or not at all; every other operation is a function.
 _NO_FUNCTIONS = frozenset({"add", "sub", "min", "max", "mul", "div", "ratio_or_zero", "sqrt", "sin", "cos"})

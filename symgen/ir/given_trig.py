@@ -6,10 +6,11 @@ Sines and cosines of sums of coordinates follow by addition; every other pair st
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, OperationName, Statement, Status
 from symgen.ir.split import names_in
+from symgen.records import dataclass
 
 # Coordinates in a sum, counted with their multiples, up to which addition is cheaper than another pair.
 LONGEST_SUM = 4

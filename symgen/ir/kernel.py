@@ -7,11 +7,12 @@ thresholds and the sine/cosine function differ between float64 and float32.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
 from typing import Literal as Choice
 from typing import TypeAlias
+
+from symgen.records import dataclass
 
 Scalar: TypeAlias = Choice["float64", "float32"]
 UNIT_ROUNDOFF: dict[Scalar, Fraction] = {"float64": Fraction(1, 2**53), "float32": Fraction(1, 2**24)}

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.ir.kernel import Kernel, Literal, Load, Local, Program, Statement
 from symgen.ir.split import Split, names_in, names_of_blocks, split
+from symgen.records import dataclass
 
 # A prepared kernel is made where it saves at least this share of the operations of a call.
 WORTHWHILE = Fraction(1, 10)

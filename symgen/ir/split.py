@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, Statement
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from symgen.diagnostics import Span
@@ -17,6 +17,7 @@ from symgen.model.reading import entries, items, member
 from symgen.model.scope import PARAMETERS, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 from symgen.model.walk import evaluate
+from symgen.records import dataclass
 
 PRELOAD = "preload"
 ONE_NAME_EACH = "rename that one; settings are called as the generated struct's members"
@@ -172,9 +173,7 @@ def _common_unit(units: Mapping[str, str | None], setting: _Setting, block: Node
 def _named(
     block: Node | None, part: str, name: Callable[[str], str], complete: set[str]
 ) -> tuple[tuple[str, str], ...]:
-    return tuple(
-        (key.value, name(key.value)) for key, _ in entries(member(block, part)) if name(key.value) in complete
-    )
+    return tuple((key.value, name(key.value)) for key, _ in entries(member(block, part)) if name(key.value) in complete)
 
 
 def _with_range(parameter: Parameter, values: Mapping[str, float], limits: list[Limit]) -> Parameter:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.model.combine import divided, minus, negated, plus, times
@@ -15,6 +14,7 @@ from symgen.model.model import Force
 from symgen.model.reading import entries, items, member
 from symgen.model.scope import PARAMETERS, STATE, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
+from symgen.records import dataclass
 
 HALF = Number(Fraction(1, 2))
 
@@ -94,9 +94,7 @@ def read_forces(scope: Scope, tree: MappingNode) -> tuple[Force, ...]:
     return tuple(forces)
 
 
-def _stretch(
-    scope: Scope, key: ScalarNode, node: Node, what: str
-) -> tuple[Expression | None, Expression | None]:
+def _stretch(scope: Scope, key: ScalarNode, node: Node, what: str) -> tuple[Expression | None, Expression | None]:
     """Length of a spring and the rate at which it grows."""
     joint = member(node, "joint")
     if isinstance(joint, ScalarNode):

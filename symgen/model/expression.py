@@ -6,11 +6,12 @@ Every later stage (scalar graph, SymPy ring, CasADi, the multi-precision referen
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Span
+from symgen.records import dataclass
 
 FunctionName: TypeAlias = Literal[
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log", "sinh", "cosh", "tanh"

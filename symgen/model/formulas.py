@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -14,6 +13,7 @@ from symgen.model.expression import Binary, Call, Expression, FunctionName, Name
 from symgen.model.mechanism import ZERO
 from symgen.model.model import Coordinate, Definition
 from symgen.model.walk import exact_value, names_in
+from symgen.records import dataclass
 
 FUNCTIONS: dict[str, FunctionName] = {"sin": "sin", "cos": "cos", "sqrt": "sqrt"}
 

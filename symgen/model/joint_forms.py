@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.diagnostics import Span
@@ -14,6 +13,7 @@ from symgen.model.model import ConstraintRow
 from symgen.model.reading import description_of, entries, items, member, text_of
 from symgen.model.scope import FRAME, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
+from symgen.records import dataclass
 
 ONE = Number(Fraction(1))
 Z_AXIS: Vector3 = (ZERO, ZERO, ONE)

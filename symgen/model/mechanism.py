@@ -6,12 +6,12 @@ coordinates, parameters and definitions of these.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Span
 from symgen.model.expression import Expression, Number
+from symgen.records import dataclass
 
 WORLD = "world"
 ZERO = Number(Fraction(0))

@@ -6,13 +6,13 @@ parameters, definitions (kept as names, in order of use), and in paths the time 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Notice, Span
 from symgen.model.expression import Expression
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
+from symgen.records import dataclass
 
 Range: TypeAlias = tuple[Fraction, Fraction]
 Matrix: TypeAlias = tuple[tuple[Expression, ...], ...]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
+
+from symgen.records import dataclass
 
 Argument: TypeAlias = Literal["q", "qd", "qdd", "u"]
 

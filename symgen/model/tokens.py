@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from dataclasses import dataclass
 from typing import Literal, TypeAlias, cast
+
+from symgen.records import dataclass
 
 TokenKind: TypeAlias = Literal["number", "name", "operator", "end"]
 

@@ -7,7 +7,6 @@ of ten is carried along, so that metres mixed with millimetres are found like me
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.diagnostics import Mistake
@@ -15,6 +14,7 @@ from symgen.model.expression import Binary, Expression, Name, Number, Power
 from symgen.model.names import did_you_mean
 from symgen.model.parser import parse_expression
 from symgen.model.source import ScalarNode
+from symgen.records import dataclass
 
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd")
 

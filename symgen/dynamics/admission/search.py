@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
 
@@ -21,6 +20,7 @@ from symgen.graph.matrix import flatten
 from symgen.graph.scalar import PI, Scalar
 from symgen.graph.translate import translate
 from symgen.graph.traverse import topological
+from symgen.records import dataclass
 
 SEED = 20120731
 STARTS = 12

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from symgen.dynamics.admission.formula import formula
 from symgen.dynamics.admission.proof import Proof
@@ -12,6 +11,7 @@ from symgen.dynamics.forms.form import Form
 from symgen.dynamics.forms.system import System
 from symgen.graph.scalar import Scalar
 from symgen.graph.transplant import transplanted
+from symgen.records import dataclass
 
 DECIMALS = 6  # of a state in a message
 FAILS = "this form is singular where"

@@ -7,7 +7,6 @@ Forms are data; one module builds each of them.  Whether a form may be chosen by
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from symgen.dynamics.guards import Guard
@@ -15,6 +14,7 @@ from symgen.graph.angles import share_angles
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Scalar
 from symgen.graph.traverse import cost, topological
+from symgen.records import dataclass
 
 FormName: TypeAlias = Literal["minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"]
 FORM_NAMES: tuple[FormName, ...] = ("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt")

@@ -5,7 +5,6 @@ G q_ddot + B^T lambda = f and B q_ddot = -a, with f = M u - C q_dot - Q + Q_a an
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 from symgen.dynamics.guards import Guard
@@ -14,6 +13,7 @@ from symgen.graph.angles import share_angles
 from symgen.graph.matrix import Matrix, Vector
 from symgen.graph.polynomial import Multiplier, refactored
 from symgen.graph.scalar import Graph, Scalar
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ rank: that determinant is one of the form's pivots.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations, islice, product
 
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product
@@ -22,6 +22,7 @@ from symgen.graph.matrix import Matrix, Vector, identity, matmul, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost
 from symgen.ir.kernel import Status
+from symgen.records import dataclass
 
 # Beyond this size the determinants of the rest cost more than reflections.
 LARGEST_REST = 4

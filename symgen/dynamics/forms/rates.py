@@ -8,12 +8,12 @@ is injective everywhere.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 
 from symgen.dynamics.forms.definite import Definite
 from symgen.graph.matrix import Matrix, Vector, identity
 from symgen.graph.scalar import Graph, Scalar
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)
