@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Span:
-    """A place in the model file; line and columns count from 1, `end_column` is one past the last character."""
+    """A place in the model file, or in `file` beside it; line and columns count from 1, `end_column` is one past the
+    last character."""
 
     line: int
     column: int
     end_column: int
+    file: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,17 +35,26 @@ class Notice:
 
 
 class ModelError(Exception):
-    """All mistakes of one model file, in the order of the file."""
+    """All mistakes of one model file, in the order of the file; then those of the file beside it, whose text is
+    `texts` by its name."""
 
-    def __init__(self, file: str, text: str, mistakes: tuple[Mistake, ...]) -> None:
+    def __init__(
+        self, file: str, text: str, mistakes: tuple[Mistake, ...], texts: Mapping[str, str] | None = None
+    ) -> None:
         self.file = file
         self.text = text
-        self.mistakes = tuple(sorted(mistakes, key=lambda m: m.span or Span(0, 0, 0)))
+        self.texts = dict(texts or {})
+        placed = [(m.span or Span(0, 0, 0), m) for m in mistakes]
+        self.mistakes = tuple(m for _, m in sorted(placed, key=lambda pair: (pair[0].file, pair[0])))
         super().__init__(self.render())
 
     def render(self) -> str:
         """Every mistake as `file:line:column: message`, the excerpt with a marker, and the remedy."""
-        return "\n".join(render_mistake(self.file, self.text, mistake) for mistake in self.mistakes)
+        return "\n".join(self._rendered(mistake) for mistake in self.mistakes)
+
+    def _rendered(self, mistake: Mistake) -> str:
+        file = mistake.span.file if mistake.span is not None else ""
+        return render_mistake(file or self.file, self.texts[file] if file else self.text, mistake)
 
 
 class SymgenBug(Exception):

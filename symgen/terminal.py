@@ -78,7 +78,7 @@ def summary_table(name: str, summary: Summary) -> str:
 
 def notice_line(file: str, notice: Notice) -> str:
     """A notice with its place."""
-    place = file if notice.span is None else f"{file}:{notice.span.line}:{notice.span.column}"
+    place = file if notice.span is None else f"{notice.span.file or file}:{notice.span.line}:{notice.span.column}"
     return f"{place}: notice: {notice.message}"
 
 

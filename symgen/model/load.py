@@ -27,12 +27,24 @@ def load_model(path: Path) -> Model:
 
 
 def load_text(text: str, file: str) -> Model:
-    """The model in `text`; `file` is its name in messages.  Raises ModelError with every mistake."""
+    """The model in `text`; `file` is its name in messages, and a robot description is looked for in its folder.
+
+    Raises ModelError with every mistake.
+    """
     tree, mistakes = read_tree(text)
     if tree is None:
         raise ModelError(file, text, mistakes)
     scope = Scope(mistakes=[*mistakes, *check_shape(MODEL, tree, "the model")])
-    model = resolve(scope, tree, text)
+    beside: dict[str, str] = {}
+    if tree.get("urdf") is not None and not scope.mistakes:
+        from symgen.model.urdf import import_robot
+
+        imported = import_robot(scope, tree, Path(file).parent)
+        tree, beside = imported.tree, {imported.file: imported.text}
+        if scope.mistakes:
+            # without the robot every name of it would be unknown
+            raise ModelError(file, text, tuple(scope.mistakes), beside)
+    model = resolve(scope, tree, "".join((text, *beside.values())))
     if scope.mistakes:
-        raise ModelError(file, text, tuple(scope.mistakes))
+        raise ModelError(file, text, tuple(scope.mistakes), beside)
     return replace(model, notices=tuple(scope.notices))

@@ -259,6 +259,17 @@ _ALLOCATION = Record(
     ),
 )
 
+_URDF = Record(
+    "`urdf`",
+    (
+        Field("file", Text(), "its path, below the folder of this file", required=True),
+        Field("coordinates", Table(Text()), "name of the coordinate: name of the joint, where they differ"),
+        Field("frames", Table(Text()), "name of the frame: name of the link, where they differ"),
+        Field("leave_out", Listing(Word()), "elements and attributes that symgen does not know, and may leave out"),
+        Field("friction_width", Formula(), "the rate at which dry friction of the joints has 76 % of its full size"),
+    ),
+)
+
 MODEL = Record(
     "the model",
     (
@@ -284,6 +295,11 @@ MODEL = Record(
                 ),
             ),
             "constraint rows by name",
+        ),
+        Field(
+            "urdf",
+            Either((Text(), _URDF)),
+            "a robot description beside this file: its links become frames, its joints coordinates",
         ),
         Field("gravity", _VECTOR, "acceleration of gravity in world axes, such as [0, 0, -g]; absent: 0"),
         Field("frames", Table(_FRAME), "axes that move with the bodies: a tree that hangs on `world`"),
@@ -323,7 +339,6 @@ MODEL = Record(
         Field("paths", Table(_PATH), "trajectories as functions of t, for charts and tests"),
         Field("report", Word(("full", "short")), "length of the report"),
     ),
-    later=("urdf",),
 )
 
 

@@ -81,7 +81,8 @@ class Scope:
             return False
         if name in self.kinds:
             taken = self.kinds[name]
-            where = f" (line {self.spans[name].line})" if name in self.spans else ""
+            span = self.spans.get(name)
+            where = "" if span is None else f" ({span.file}:{span.line})" if span.file else f" (line {span.line})"
             article = "an" if taken[0] in "ai" else "a"
             self.wrong(f"`{name}` is already {article} {taken}{where}", "give each thing a name of its own", node.span)
             return False

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from symgen.diagnostics import Mistake, Span
 from symgen.model.names import NAME_PATTERN, QUOTING, did_you_mean, is_name
 from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
+from symgen.records import dataclass
 
 MAXIMUM_TEXT = 2000
 JsonSchema: TypeAlias = dict[str, object]
@@ -62,11 +62,10 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """Fixed keys; those of `later` are known but not available in this version."""
+    """Fixed keys."""
 
     what: str
     fields: tuple[Field, ...]
-    later: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,12 +203,6 @@ def _check_record(shape: Record, node: MappingNode) -> Iterator[Mistake]:
     for key, value in node.entries:
         if key.value in known:
             yield from check_shape(known[key.value].shape, value, f"`{key.value}`")
-        elif key.value in shape.later:
-            yield Mistake(
-                f"`{key.value}` is not available in this version",
-                "remove it; write the system with coordinates, energies, constraints and `acts_on`",
-                key.span,
-            )
         elif not is_name(key.value):
             yield Mistake(f"`{key.value[:60]}` is no key of {shape.what}", QUOTING, key.span)
         else:

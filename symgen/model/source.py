@@ -7,7 +7,7 @@ aliases, merge keys and tags are refused before anything is built from them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import yaml
@@ -37,12 +37,12 @@ class ScalarNode:
         """The place of `value[offset : offset + length]`, also where the text is quoted or runs over several lines."""
         if self.raw == self.value:
             column = self.span.column + offset
-            return Span(self.span.line, column, column + max(1, length))
+            return replace(self.span, column=column, end_column=column + max(1, length))
         start = _raw_offset(self.raw, self.value, offset)
         before = self.raw[:start]
         line = self.span.line + before.count("\n")
         column = start - before.rfind("\n") if "\n" in before else self.span.column + start
-        return Span(line, column, column + max(1, length))
+        return Span(line, column, column + max(1, length), self.span.file)
 
 
 @dataclass(frozen=True, slots=True)

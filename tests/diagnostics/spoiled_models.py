@@ -79,8 +79,8 @@ SHAPE = {
     "mapping_for_a_text": GOOD + "description: {a: b}\n",
     "mapping_for_an_expression": GOOD + "potential_energy: {a: 1}\n",
     "scalar_for_a_coordinate": GOOD.replace("x: {unit: m}", "x: m"),
-    "bodies_form": GOOD
-    + "gravity: [0, 0, -9.81]\nbodies: {b: {mass: 1}}\nurdf: robot.urdf\n",
+    "urdf_without_a_file": GOOD + "urdf: absent/robot.urdf\n",
+    "urdf_elsewhere": GOOD + "urdf: ../robot.urdf\n",
     "comma_in_flow": GOOD + "inputs: {T: {acts_on: {a: atan2(x, l)}}}\n",
     "comma_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, from the vertical"),
     "comma_and_one_word_in_flow_text": GOOD.replace("unit: rad", "unit: rad, description: angle, absolute"),

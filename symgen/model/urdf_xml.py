@@ -1,0 +1,146 @@
+"""XML as a tree that knows its places, by expat; what could harm or mislead a reader is refused before it is built.
+
+Document types are refused as such, and with them entities of every kind: a robot description needs none.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+from symgen.diagnostics import Mistake, Span
+
+MAXIMUM_CHARACTERS = 1_000_000
+MAXIMUM_DEPTH = 24
+MAXIMUM_ELEMENTS = 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """The text of a file and its name in messages."""
+
+    text: str = field(repr=False)
+    file: str
+    line_starts: tuple[int, ...] = field(repr=False)
+
+    def span(self, offset: int, length: int) -> Span:
+        """The place of characters of the text, cut at the end of their line."""
+        line = bisect_right(self.line_starts, offset)
+        column = offset - self.line_starts[line - 1] + 1
+        end = self.text.find("\n", offset)
+        room = (len(self.text) if end < 0 else end) - offset
+        return Span(line, column, column + max(1, min(length, room)), self.file)
+
+
+@dataclass(slots=True)
+class Element:
+    """An element with its attributes and children in the order of the file; `text` is what stands between them."""
+
+    tag: str
+    attributes: dict[str, str]
+    document: Document = field(repr=False)
+    offset: int
+    children: list[Element] = field(default_factory=list)
+    text: str = ""
+
+    @property
+    def span(self) -> Span:
+        """The place of its opening bracket and name."""
+        return self.document.span(self.offset, len(self.tag) + 1)
+
+    def all(self, tag: str) -> list[Element]:
+        """The children of that name."""
+        return [child for child in self.children if child.tag == tag]
+
+    def place(self, attribute: str, start: int = 0, length: int | None = None) -> Span:
+        """The place of the value of an attribute, or of some characters of it."""
+        raw = re.compile(rf"\s{re.escape(attribute)}\s*=\s*(\"[^\"]*\"|'[^']*')")
+        found = raw.search(self.document.text, self.offset)
+        value = self.attributes.get(attribute, "")
+        if found is None:
+            return self.span
+        if found.group(1)[1:-1] != value:
+            # a character written as &#...;, so that places inside are not those of the text
+            start, length = 0, len(found.group(1)) - 2
+        return self.document.span(found.start(1) + 1 + start, len(value) if length is None else length)
+
+
+class _RefusedError(Exception):
+    pass
+
+
+def parse_xml(text: str, file: str) -> Element | Mistake:
+    """The root element, or the one mistake that keeps the file from being read."""
+    if len(text) > MAXIMUM_CHARACTERS:
+        message = f"the file has {len(text)} characters or more, at most {MAXIMUM_CHARACTERS} are read"
+        return Mistake(message, "remove what does not belong to the mechanism", Span(1, 1, 2, file))
+    lines = text.replace("\r\n", "\n").replace("\r", "\n")
+    starts = (0, *(match.end() for match in re.finditer("\n", lines)))
+    reading = _Reading(Document(lines, file, starts))
+    try:
+        return reading.root()
+    except _RefusedError:
+        assert reading.mistake is not None
+        return reading.mistake
+    except expat.ExpatError as error:
+        line, column = max(1, error.lineno), error.offset + 1
+        message = f"this is not XML: {expat.ErrorString(error.code)}"
+        return Mistake(message, "check brackets, quotes and closing tags", Span(line, column, column + 1, file))
+
+
+class _Reading:
+    """One pass of expat over a document."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.mistake: Mistake | None = None
+        self._open: list[Element] = []
+        self._root: Element | None = None
+        self._elements = 0
+        self._parser = expat.ParserCreate()
+        self._parser.buffer_text = True
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._characters
+        self._parser.StartDoctypeDeclHandler = self._document_type
+
+    def root(self) -> Element:
+        """The root; raises _RefusedError with a mistake noted, and expat's error."""
+        self._parser.Parse(self.document.text, True)
+        assert self._root is not None
+        return self._root
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        element = Element(tag, attributes, self.document, self._offset())
+        self._elements += 1
+        if len(self._open) >= MAXIMUM_DEPTH:
+            self._refuse(f"nested deeper than {MAXIMUM_DEPTH} levels", "flatten the file", element.span)
+        if self._elements > MAXIMUM_ELEMENTS:
+            remedy = "remove what does not belong to the mechanism"
+            self._refuse(f"more than {MAXIMUM_ELEMENTS} elements", remedy, element.span)
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self._root = element
+        self._open.append(element)
+
+    def _end(self, _tag: str) -> None:
+        self._open.pop()
+
+    def _characters(self, text: str) -> None:
+        if self._open:
+            self._open[-1].text += text.strip()
+
+    def _document_type(self, *_declaration: object) -> None:
+        remedy = "remove the line <!DOCTYPE ...> and write what its entities stand for"
+        self._refuse("document types and entities are not read", remedy, self.document.span(self._offset(), 9))
+
+    def _offset(self) -> int:
+        starts = self.document.line_starts
+        return starts[self._parser.CurrentLineNumber - 1] + self._parser.CurrentColumnNumber
+
+    def _refuse(self, message: str, remedy: str, span: Span) -> None:
+        self.mistake = Mistake(message, remedy, span)
+        raise _RefusedError
