@@ -105,7 +105,8 @@ class Derivation:
 
     @cached_property
     def _actuation(self) -> tuple[ActuationForms, Restriction]:
-        return self.space.actuation(self.mechanics.inputs, self.generic.alpha)
+        forms, restriction = self.space.actuation(self.mechanics.inputs, self.generic.alpha)
+        return forms.cancelled(self.mechanics.factoring.cancelled), restriction
 
     @property
     def actuation_guards(self) -> tuple[Guard, ...]:
@@ -228,7 +229,9 @@ class Derivation:
     @cached_property
     def _partition(self) -> tuple[ActuationForms, Restriction]:
         axes = identity(self.graph, self.n)
-        return self.space.actuation([axes[i] for i in self._independent], len(self._independent))
+        family = [axes[i] for i in self._independent]
+        forms, restriction = self.space.actuation(family, len(self._independent))
+        return forms.cancelled(self.mechanics.factoring.cancelled), restriction
 
     @cached_property
     def complement(self) -> Matrix:

@@ -9,7 +9,7 @@ one division, symmetric in rows, columns and inputs, hence valid wherever the ra
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import combinations
 from typing import TypeAlias
 
@@ -17,6 +17,9 @@ from symgen.graph.matrix import Matrix, Vector
 from symgen.graph.scalar import Graph, Scalar
 
 Multivector: TypeAlias = dict[int, Scalar]
+
+# Longer determinants are not multiplied out.
+LONGEST_DETERMINANT = 200
 
 
 def unit(graph: Graph) -> Multivector:
@@ -142,6 +145,17 @@ class ActuationForms:
         """The one determinant Delta of a `single` family."""
         (product,) = self.products[0]
         return product.get((1 << self.rows.n) - 1, self.graph.zero)
+
+    def cancelled(self, cancel: Callable[[Scalar], Scalar]) -> ActuationForms:
+        """The same family with Delta multiplied out by `cancel` when `single`.
+
+        What vanishes at a singularity is a factor then, not a difference of products that do not vanish.
+        """
+        if not self.single or self.determinant().size > LONGEST_DETERMINANT:
+            return self
+        other = ActuationForms(self.rows, self.inputs, self.degree, self.weights)
+        other.products = [[{(1 << self.rows.n) - 1: cancel(self.determinant())}]]
+        return other
 
     def importance(self, subset: tuple[int, ...]) -> Scalar:
         """The factor of a subset's determinants in the sums."""

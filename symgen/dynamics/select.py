@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from symgen.dynamics.block_space import BlockSpace
 from symgen.dynamics.blocks import components
-from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, Derived, by_blocks, derive, missing, scalars
+from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, PARTITION, Derived, by_blocks, derive, missing, scalars
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.grouping import grouped as grouped_scalars
@@ -107,6 +107,9 @@ def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") 
             candidates["blocks"] = derive(entry, blocks)
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
         best = min(costs, key=lambda way: costs[way])
+        # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
+        if entry.needs == PARTITION and "minors" in costs and costs["minors"] <= costs[best] * (1 + CANCELLATION_WORTH):
+            best = "minors"
         # minors of rows that depend on each other become small together: multiplied out, their squares would cancel
         if generic.rank == generic.r and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
             chosen, kept = candidates["minors"], derivations["minors"].common_speeds
