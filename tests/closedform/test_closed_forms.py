@@ -7,6 +7,7 @@ import mpmath
 import pytest
 import sympy
 from mpmath import mp
+from shipped import NAMES
 from sympy import Add, Matrix, Mul, Symbol, cos, sin
 
 from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
@@ -17,7 +18,6 @@ from symgen.model.load import load_model, load_text
 from symgen.model.model import Model, PublishedMatrix
 
 MODELS = Path(__file__).parents[2] / "models"
-SHIPPED = sorted(path.stem for path in MODELS.glob("*.yaml"))
 
 
 @cache
@@ -73,12 +73,12 @@ def check_projections(model: Model, forms: ClosedForms) -> None:
             assert mpmath.norm(evaluate(forms.forms["inverse_dynamics"], point) - inverse * load) < 1e-26
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", NAMES)
 def test_projections_of_the_shipped_models(name: str) -> None:
     check_projections(*shipped(name))
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", NAMES)
 def test_complement_and_skewness(name: str) -> None:
     model, forms = shipped(name)
     mechanics = forms.exact.mechanics

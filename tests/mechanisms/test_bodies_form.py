@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from shipped import ALL, NAMES
 
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.evaluate import Evaluator
@@ -21,8 +22,9 @@ from symgen.verify.reference import Reference, State
 
 HERE = Path(__file__).parent
 MODELS = HERE.parents[1] / "models"
-MECHANISMS = sorted(path.stem for path in HERE.glob("*.yaml"))
-SMALL = [name for name in MECHANISMS if name != "chain8"]
+OF_THE_TESTS = {path.stem: path for path in HERE.glob("*.yaml")}
+MECHANISMS = {name: MODELS / f"{name}.yaml" for name in ALL if name not in NAMES} | OF_THE_TESTS
+SMALL = sorted(name for name in MECHANISMS if name != "chain8")
 QUANTITIES = (
     "mass_matrix",
     "coriolis_force",
@@ -36,8 +38,8 @@ QUANTITIES = (
 
 
 def mechanism(name: str) -> Model:
-    """One of the models beside this file."""
-    return load_model(HERE / f"{name}.yaml")
+    """A shipped mechanism, or one of those beside this file."""
+    return load_model(MECHANISMS[name])
 
 
 def a_state(model: Model, seed: int) -> State:
@@ -141,7 +143,7 @@ def test_recursion_is_linear_in_the_number_of_links() -> None:
 
 
 def test_rows_across_the_plane_are_left_out() -> None:
-    text = (HERE / "rapkm_bodies.yaml").read_text(encoding="utf-8")
+    text = MECHANISMS["rapkm_bodies"].read_text(encoding="utf-8")
     head, _, tail = text.partition("constraints:")
     loops = "".join(f"  loop_1{i}: {{type: point, between: [tip_{i}, tip_1]}}\n" for i in (2, 3))
     model = load_text(f"{head}loops:\n{loops}inputs:{tail.partition('inputs:')[2]}", "m.yaml")
@@ -186,6 +188,6 @@ gravity: [0, 0, -10]
 @pytest.mark.parametrize("name", ["floating_body", "tilted_four_bar", "rolling_disc"])
 def test_generated_python_is_verified(name: str) -> None:
     """All the way from the file: kernels of u, accelerations and multipliers within the tolerance."""
-    result = generate(HERE / f"{name}.yaml", Options(parts=("python",), states=8), lambda _: None)
+    result = generate(MECHANISMS[name], Options(parts=("python",), states=8), lambda _: None)
     assert result.failures == ()
     assert result.certificate is not None

@@ -7,6 +7,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 import yaml
+from shipped import ALL, NAMES
 
 from symgen.model.load import load_model
 from symgen.model.mechanics import Mechanics
@@ -14,16 +15,6 @@ from symgen.model.model import Model, PublishedEquations, PublishedMatrix
 from symgen.model.schema import json_schema
 
 FOLDER = Path(__file__).parents[2] / "models"
-NAMES = [
-    "double_pendulum",
-    "front_car",
-    "front_car_wheelset",
-    "rapkm_2rrr_rr",
-    "rapkm_two_drives",
-    "rear_car",
-    "skate",
-    "slider_crank",
-]
 
 
 @pytest.fixture(params=NAMES)
@@ -44,11 +35,16 @@ def test_complete(model: Model) -> None:
     assert all(parameter.range is not None for parameter in model.parameters)
 
 
-def test_named_like_its_file(model: Model) -> None:
-    assert (FOLDER / f"{model.name}.yaml").exists()
+@pytest.mark.parametrize("name", ALL)
+def test_named_and_described(name: str) -> None:
+    model = load_model(FOLDER / f"{name}.yaml")
+    assert model.name == name
+    assert model.notices == ()
+    assert model.source
+    assert all(item.unit and item.description for item in (*model.coordinates, *model.parameters, *model.inputs))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ALL)
 def test_valid_by_the_schema(name: str) -> None:
     document = yaml.safe_load((FOLDER / f"{name}.yaml").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(json_schema())

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shipped import NAMES
 from witness_models import EXTRA
 
 from symgen.model.load import load_model, load_text
@@ -43,7 +44,7 @@ def case(name: str) -> Case:
     return Case(load_text(EXTRA[name], name) if name in EXTRA else load_model(MODELS / f"{name}.yaml"))
 
 
-EVERY = [*sorted(path.stem for path in MODELS.glob("*.yaml")), *EXTRA]
+EVERY = [*NAMES, *EXTRA]
 CONSTRAINED = [name for name in EVERY if name not in ("double_pendulum", "under_actuated")]
 
 

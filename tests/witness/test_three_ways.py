@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from shipped import NAMES, ROOT
 from sympy import lambdify
 from witness_models import EXTRA
 
@@ -24,7 +24,7 @@ from symgen.witness.configurations import configurations
 from symgen.witness.lagrange import differentiate
 from symgen.witness.translate import default_parameters
 
-SHIPPED = {path.stem: path for path in sorted((Path(__file__).parents[2] / "models").glob("*.yaml"))}
+SHIPPED = {name: ROOT / "models" / f"{name}.yaml" for name in NAMES}
 ALL_THREE = {
     "mass_matrix",
     "coriolis_matrix",
