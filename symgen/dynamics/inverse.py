@@ -17,6 +17,7 @@ from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.coordinates import absolute_angles
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.by_space import form_along, householder_derivation, minor_derivation
+from symgen.dynamics.forms.estimates import least_costs
 from symgen.dynamics.forms.form import FORM_NAMES, Form, form
 from symgen.dynamics.forms.nullspace import nullspace_form
 from symgen.dynamics.forms.printed import printed_form
@@ -26,11 +27,8 @@ from symgen.dynamics.forms.weighted import kkt_form, weighted_form
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
-from symgen.graph.angles import share_angles
-from symgen.graph.matrix import flatten
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.transplant import transplanted
-from symgen.graph.traverse import cost
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -40,8 +38,6 @@ AUTOMATIC = ("range", "minor", "nullspace", "householder")
 FACTORING_LIMIT = 450
 CANCELLATION_WORTH = Fraction(1, 4)
 FACTORING_GAIN = Fraction(1, 3)
-# A root and a division for each reflection are the least that the Householder form adds to its data.
-REFLECTION = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +75,7 @@ class InverseDynamics:
         self._model = model
         self._generic = generic
         self._offers: dict[str, Offer | str] = {}
+        self._verdicts: dict[str, Verdict] = {}
 
     @cached_property
     def minor(self) -> Derivation | str:
@@ -118,12 +115,8 @@ class InverseDynamics:
         return tuple((way, found.explanation) for way, found in verdicts if not found.admitted)
 
     def _cheapest(self) -> tuple[Offer, FormChoice] | str:
-        offers = {name: offer for name in AUTOMATIC[:-1] if isinstance(offer := self.offer(name), Offer)}
+        offers = self._built()
         weights = {name: offer.form.weight for name, offer in offers.items()}
-        if not weights or self._least_householder() < min(weights.values()):
-            householder = self.offer(AUTOMATIC[-1])
-            if isinstance(householder, Offer):
-                offers[householder.way], weights[householder.way] = householder, householder.form.weight
         remarks: dict[str, str] = {}
         verdicts: dict[str, Verdict] = {}
         chosen: str | None = None
@@ -131,14 +124,14 @@ class InverseDynamics:
             if chosen is not None:
                 remarks[name] = "not examined, because it is not cheaper"
                 continue
-            found = verdicts[name] = self.verdict(offers[name], first_only=True)
+            found = verdicts[name] = self._first_verdict(offers[name])
             remarks[name] = found.explanation
             if found.admitted:
                 chosen = name
         if chosen is None:
             return "no form is valid at every regular state"
         best = offers[chosen]
-        shorter = self._factored(best)
+        shorter = self._factored(best) if "minor" in offers else None
         if shorter is not None:
             weights[shorter.way] = weight = shorter.form.weight
             found = verdicts[shorter.way] = self.verdict(shorter, first_only=True)
@@ -149,6 +142,32 @@ class InverseDynamics:
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
         return best, FormChoice(best.way, verdicts[best.way], others)
 
+    def _built(self) -> dict[str, Offer]:
+        """The forms that may be the cheapest: those that cannot fall below an admitted range form are not derived."""
+        offers: dict[str, Offer] = {}
+        limit: int | None = None
+        for name in AUTOMATIC[:-1]:
+            if limit is not None and self._least_costs[name] > limit:
+                continue
+            offer = self.offer(name)
+            if isinstance(offer, str):
+                continue
+            offers[name] = offer
+            if name == "range" and self._first_verdict(offer).admitted:
+                limit = max(offer.form.weight, _factoring_limit(offer))
+        last = AUTOMATIC[-1]
+        if not offers or self._least_costs[last] < min(offer.form.weight for offer in offers.values()):
+            householder = self.offer(last)
+            if isinstance(householder, Offer):
+                offers[last] = householder
+        return offers
+
+    def _first_verdict(self, offer: Offer) -> Verdict:
+        """The verdict on a form by name, decided once."""
+        if offer.way not in self._verdicts:
+            self._verdicts[offer.way] = self.verdict(offer, first_only=True)
+        return self._verdicts[offer.way]
+
     def _factored(self, best: Offer) -> Offer | None:
         """The minor form multiplied out and factored, where it is short enough to compete.
 
@@ -156,7 +175,7 @@ class InverseDynamics:
         The other forms have nothing to cancel that their steps have left.
         """
         minor = self.offer("minor")
-        limit = min(FACTORING_LIMIT, int(best.form.weight * (1 + FACTORING_GAIN)))
+        limit = _factoring_limit(best)
         if self._generic.rank < self._generic.r or isinstance(minor, str) or not 0 < minor.form.weight <= limit:
             return None
         kept = frozenset[Scalar]() if isinstance(self.minor, str) else self.minor.common_speeds
@@ -165,12 +184,11 @@ class InverseDynamics:
         made = form(minor.form.name, minor.form.quantity, outputs, minor.form.guards, system.given)
         return Offer("minor factored", system, made)
 
-    def _least_householder(self) -> int:
-        """A cost that the Householder form exceeds: its data, and a root and a division for each reflection."""
+    @cached_property
+    def _least_costs(self) -> dict[str, int]:
         offer = next((offer for offer in self._offers.values() if isinstance(offer, Offer)), None)
         mechanics = Mechanics(self._model) if offer is None else offer.system.mechanics
-        data = [*mechanics.balance, *flatten(mechanics.constraint_jacobian), *flatten(mechanics.control_matrix)]
-        return cost(share_angles(mechanics.graph, data)).weight + REFLECTION * mechanics.r
+        return least_costs(mechanics, self._generic)
 
     @property
     def minor_measures(self) -> list[Scalar]:
@@ -187,6 +205,11 @@ class InverseDynamics:
         if not found and offer.form.name == "range":
             return [guard.denominator for guard in offer.form.guards]
         return found
+
+
+def _factoring_limit(best: Offer) -> int:
+    """The cost up to which the minor form is multiplied out to compete with the best."""
+    return min(FACTORING_LIMIT, int(best.form.weight * (1 + FACTORING_GAIN)))
 
 
 def _denominators(derivation: Derivation) -> list[Scalar]:

@@ -18,6 +18,8 @@ from symgen.model.names import counted
 from symgen.records import dataclass
 
 MOST_NAMES = 4
+# A mass matrix with more entries is not formed to be looked through: u does without it.
+MOST_ENTRIES = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,26 +130,39 @@ def _constraint_decisions(
 
 
 def _force_decisions(mechanics: Mechanics) -> Iterator[Decision]:
-    n = mechanics.n
-    g = [mechanics.mass_matrix[i][j] for i in range(n) for j in range(i, n)]
-    if not _moving(mechanics, g):
-        yield Decision("Coriolis forces", "the mass matrix is constant, so C = 0")
-    elif all(entry.is_zero for entry in mechanics.coriolis_force):
-        yield Decision("Coriolis forces", "the quadratic velocity terms cancel, so C q_dot = 0")
+    if mechanics.n * (mechanics.n + 1) // 2 <= MOST_ENTRIES:
+        yield from _inertia_decisions(mechanics)
     else:
-        yield from _zeros("Coriolis forces", mechanics.coriolis_force)
-    zeros = sum(mechanics.mass_matrix[i][j].is_zero for i in range(n) for j in range(i))
-    if zeros:
-        yield Decision(f"{zeros} of {n * (n - 1) // 2} couplings in G", _are(zeros, "zero"))
-    fixed = len([x for x in g if not x.is_zero]) - len(_moving(mechanics, g))
-    if fixed and _moving(mechanics, g):
-        yield Decision(f"derivatives of {fixed} of {len(g)} entries of G", _are(fixed, "constant"))
+        yield from _velocity_decisions(mechanics)
     if all(entry.is_zero for entry in mechanics.potential_force):
         yield Decision("potential forces", "the potential energy is constant, so Q = 0")
     else:
         yield from _zeros("potential forces", mechanics.potential_force)
     if not mechanics.model.has_applied_forces:
         yield Decision("applied forces", "the model declares none")
+
+
+def _inertia_decisions(mechanics: Mechanics) -> Iterator[Decision]:
+    n = mechanics.n
+    g = [mechanics.mass_matrix[i][j] for i in range(n) for j in range(i, n)]
+    moving = _moving(mechanics, g)
+    if not moving:
+        yield Decision("Coriolis forces", "the mass matrix is constant, so C = 0")
+    else:
+        yield from _velocity_decisions(mechanics)
+    zeros = sum(mechanics.mass_matrix[i][j].is_zero for i in range(n) for j in range(i))
+    if zeros:
+        yield Decision(f"{zeros} of {n * (n - 1) // 2} couplings in G", _are(zeros, "zero"))
+    fixed = len([x for x in g if not x.is_zero]) - len(moving)
+    if fixed and moving:
+        yield Decision(f"derivatives of {fixed} of {len(g)} entries of G", _are(fixed, "constant"))
+
+
+def _velocity_decisions(mechanics: Mechanics) -> Iterator[Decision]:
+    if all(entry.is_zero for entry in mechanics.coriolis_force):
+        yield Decision("Coriolis forces", "the quadratic velocity terms cancel, so C q_dot = 0")
+    else:
+        yield from _zeros("Coriolis forces", mechanics.coriolis_force)
 
 
 def _input_decisions(mechanics: Mechanics, generic: Genericity) -> Iterator[Decision]:

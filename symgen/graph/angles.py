@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import topological
+from symgen.graph.traverse import reached, topological
+
+BASE, MODULUS = 0x9E3779B97F4A7C15, 2**61 - 1
 
 
 def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Scalar] = ()) -> list[Scalar]:
@@ -18,12 +20,14 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Sc
     The pairs of the angles in `evaluated` exist already.
     """
     needed = [angle for angle in angles_of(outputs) if angle not in evaluated]
-    kept = [(angle, graph.angle_form(angle)) for angle in evaluated]
+    kept = _Kept()
+    for angle in evaluated:
+        kept.add(angle, graph.angle_form(angle))
     image: dict[Scalar, Scalar] = {}
     for angle in needed:
         form = graph.angle_form(angle)
-        parts = _as_sum(form, kept)
-        kept.append((angle, form))
+        parts = kept.as_sum(form)
+        kept.add(angle, form)
         if parts is None:
             continue
         (a, sign_a), (b, sign_b) = parts
@@ -41,7 +45,7 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Sc
 
 def angles_of(outputs: Sequence[Scalar]) -> list[Scalar]:
     """The arguments of all sines and cosines, simple ones first."""
-    arguments = {node.args[0] for node in topological(outputs) if node.op in ("sin", "cos")}
+    arguments = {node.args[0] for node in reached(outputs) if node.op in ("sin", "cos")}
     graph = next(iter(arguments)).graph if arguments else None
     if graph is None:
         return []
@@ -49,19 +53,44 @@ def angles_of(outputs: Sequence[Scalar]) -> list[Scalar]:
     return sorted(arguments, key=lambda a: (len(forms[a]), sum(map(abs, forms[a].values())), a.serial))
 
 
-def _as_sum(
-    form: dict[Scalar, int], kept: Sequence[tuple[Scalar, dict[Scalar, int]]]
-) -> tuple[tuple[Scalar, int], tuple[Scalar, int]] | None:
-    by_form = {_key(known): angle for angle, known in kept}
-    for angle, known in kept:
-        for sign in (1, -1):
-            rest = {leaf: form.get(leaf, 0) - sign * known.get(leaf, 0) for leaf in (*form, *known)}
-            rest = {leaf: count for leaf, count in rest.items() if count}
-            for rest_sign in (1, -1):
-                key = _key({leaf: rest_sign * count for leaf, count in rest.items()})
-                if key in by_form:
-                    return (angle, sign), (by_form[key], rest_sign)
-    return None
+class _Kept:
+    """Angles whose pairs exist, in the order in which they are tried.
+
+    A sum over the leaves, linear like the form, tells nearly always that a difference is none of them: the pairs of
+    angles are as many as the square of a chain's length.
+    """
+
+    def __init__(self) -> None:
+        self._angles: list[tuple[Scalar, dict[Scalar, int], int]] = []
+        self._by_form: dict[tuple[tuple[int, int], ...], Scalar] = {}
+        self._sums: set[int] = set()
+
+    def add(self, angle: Scalar, form: dict[Scalar, int]) -> None:
+        """One more angle."""
+        known = _linear(form)
+        self._angles.append((angle, form, known))
+        self._by_form[_key(form)] = angle
+        self._sums.add(known)
+
+    def as_sum(self, form: dict[Scalar, int]) -> tuple[tuple[Scalar, int], tuple[Scalar, int]] | None:
+        """The first two angles, each with a sign, whose sum is the form."""
+        wanted, sums = _linear(form), self._sums
+        for angle, known, size in self._angles:
+            for sign in (1, -1):
+                left = wanted - sign * size
+                if left not in sums and -left not in sums:
+                    continue
+                rest = {leaf: form.get(leaf, 0) - sign * known.get(leaf, 0) for leaf in (*form, *known)}
+                for rest_sign in (1, -1):
+                    key = _key({leaf: rest_sign * count for leaf, count in rest.items() if count})
+                    if key in self._by_form:
+                        return (angle, sign), (self._by_form[key], rest_sign)
+        return None
+
+
+def _linear(form: dict[Scalar, int]) -> int:
+    """sum of count times a number of each leaf that hardly any other combination shares."""
+    return sum(count * pow(BASE, leaf.serial + 1, MODULUS) for leaf, count in form.items())
 
 
 def _key(form: dict[Scalar, int]) -> tuple[tuple[int, int], ...]:
