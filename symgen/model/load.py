@@ -36,13 +36,15 @@ def load_text(text: str, file: str) -> Model:
         raise ModelError(file, text, mistakes)
     scope = Scope(mistakes=[*mistakes, *check_shape(MODEL, tree, "the model")])
     beside: dict[str, str] = {}
-    if tree.get("urdf") is not None and not scope.mistakes:
+    if tree.get("urdf") is not None:
+        if scope.mistakes:
+            raise ModelError(file, text, tuple(scope.mistakes))
         from symgen.model.urdf import import_robot
 
         imported = import_robot(scope, tree, Path(file).parent)
         tree, beside = imported.tree, {imported.file: imported.text}
+        # without the robot every name of it would be unknown
         if scope.mistakes:
-            # without the robot every name of it would be unknown
             raise ModelError(file, text, tuple(scope.mistakes), beside)
     model = resolve(scope, tree, "".join((text, *beside.values())))
     if scope.mistakes:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from symgen.diagnostics import Mistake, Notice, Span
+from symgen.diagnostics import Mistake, Notice, Span, printable
 from symgen.model.reading import items, key_span, member, text_of
 from symgen.model.scope import Scope
 from symgen.model.source import MappingNode, ScalarNode
@@ -66,7 +66,9 @@ def import_robot(scope: Scope, tree: MappingNode, folder: Path) -> Imported:
     scope.mistakes.extend(check_joints(robot, {joint for joint, name in names.coordinates.items() if name in own}))
     if not scope.mistakes:
         tree = with_robot(scope, tree, robot, names, span)
-        scope.notices.extend((*_notices(robot, span), *judge_links(robot)))
+        found = (*_notices(robot, span), *judge_links(robot))
+        # names in the file are any text
+        scope.notices.extend(Notice(printable(notice.message), notice.span) for notice in found)
     return Imported(tree, text, file)
 
 

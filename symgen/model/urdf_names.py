@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from symgen.diagnostics import Mistake, Notice, Span
+from symgen.diagnostics import Mistake, Notice, Span, printable
 from symgen.model.mechanism import WORLD
 from symgen.model.names import MAXIMUM_NAME, did_you_mean, name_mistake
 from symgen.model.reading import entries, member, text_of
@@ -43,7 +43,7 @@ def read_names(scope: Scope, node: Node | None, robot: Robot, key_span: Span) ->
     changed = [f"{own} is {name}" for own, name in pairs if name == _plain(own) != own]
     if changed:
         message = f"names of the URDF with characters that names of a model cannot have: {', '.join(changed)}"
-        scope.notices.append(Notice(message, key_span))
+        scope.notices.append(Notice(printable(message), key_span))
     return Names(coordinates, frames)
 
 

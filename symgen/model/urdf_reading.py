@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from symgen.diagnostics import Mistake, Span
 from symgen.model.names import did_you_mean
-from symgen.model.urdf_numbers import Quantity, quantity
+from symgen.model.urdf_numbers import MAXIMUM_DIGITS, MAXIMUM_EXPONENT, Quantity, quantity
 from symgen.model.urdf_robot import KINDS, Inertial, Link, Mimic, Origin, Robot, UrdfJoint
 from symgen.model.urdf_xml import Element
 
@@ -213,7 +213,8 @@ class _Reading:
             return None
         value = quantity(text.strip(), element.place(key))
         if value is None:
-            self.wrong(f"`{key}` of {what} is `{text[:40]}`", "write a finite decimal number", element.place(key))
+            remedy = f"write a decimal number, of at most {MAXIMUM_DIGITS} digits and within 1e{MAXIMUM_EXPONENT}"
+            self.wrong(f"`{key}` of {what} is `{text[:40]}`", remedy, element.place(key))
         return value
 
     def _vector(self, element: Element, key: str, what: str) -> tuple[Quantity, ...]:
@@ -229,7 +230,8 @@ class _Reading:
             if value is not None:
                 entries.append(value)
         if len(entries) != 3 or len(text.split()) != 3:
-            self.wrong(f"{what} is `{text[:60]}`", "write three finite decimal numbers", element.place(key))
+            remedy = "write three decimal numbers with spaces between"
+            self.wrong(f"{what} is `{text[:60]}`", remedy, element.place(key))
             return ()
         return tuple(entries)
 

@@ -135,7 +135,9 @@ class _Reading:
 
     def _document_type(self, *_declaration: object) -> None:
         remedy = "remove the line <!DOCTYPE ...> and write what its entities stand for"
-        self._refuse("document types and entities are not read", remedy, self.document.span(self._offset(), 9))
+        # expat is at the end of the declaration's head by now
+        start = self.document.text.rfind("<!DOCTYPE", 0, self._offset() + 1)
+        self._refuse("document types and entities are not read", remedy, self.document.span(max(0, start), 9))
 
     def _offset(self) -> int:
         starts = self.document.line_starts
