@@ -20,6 +20,9 @@ class Factoring:
 
     def fixed(self, node: Scalar) -> bool:
         """Whether a scalar depends on parameters only."""
+        known = self._fixed.get(node)
+        if known is not None:
+            return known
         for inner in topological([node], self._fixed):
             self._fixed[inner] = inner.op == "const" or (bool(inner.args) and all(self._fixed[a] for a in inner.args))
         return self._fixed[node]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 
 from symgen.emit.literals import c_literal, numpy_literal
 from symgen.ir.kernel import Block, Check, Literal, Local, Operand, Scalar, Statement, Status
+from symgen.records import dataclass
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 _CHOICES = {"min": "<", "max": ">"}
@@ -35,11 +35,7 @@ class CStatements:
 
     def operand(self, operand: Operand) -> str:
         """A local's identifier or a constant."""
-        match operand:
-            case Local(name):
-                return self.names[name]
-            case Literal(value):
-                return c_literal(self.scalar, value)
+        return self.names[operand.name] if isinstance(operand, Local) else c_literal(self.scalar, operand.value)
 
     def function(self, name: str) -> str:
         """The math.h function of the scalar type."""

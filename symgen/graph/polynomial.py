@@ -221,7 +221,7 @@ def factored(graph: Graph, terms: Polynomial, first: Callable[[Scalar], bool]) -
     if len(inner) == 1:
         ((key, value),) = inner.items()
         return _multiply(graph, value, _product(key, shared), first)
-    counts = Counter(atom for key in inner for atom, power in key if power > 0)
+    counts = Counter([atom for key in inner for atom, power in key if power > 0])
     best = max(counts, key=lambda atom: (counts[atom], -atom), default=None)
     if best is None or counts[best] == 1:
         total = graph.sum(_multiply(graph, value, key, first) for key, value in sorted(inner.items()))

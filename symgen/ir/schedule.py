@@ -6,7 +6,7 @@ Statements come depth first, operands just before the operation that needs them,
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from symgen.diagnostics import SymgenBug
@@ -34,6 +34,7 @@ from symgen.ir.kernel import (
 )
 from symgen.ir.sincos import angle_limit, sincos
 from symgen.model.quantities import QUANTITIES
+from symgen.records import dataclass
 
 # The order in which statuses are reported (interface, section 4).
 ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
