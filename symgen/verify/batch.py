@@ -7,9 +7,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from symgen.emit.locals import array_arguments
 from symgen.emit.quantities import BATCHED
 from symgen.ir.kernel import Kernel, Scalar
-from symgen.verify.compile import C_TYPES, SUFFIXES, CFunction, Outcome, c_array, signature
+from symgen.verify.compile import C_TYPES, SUFFIXES, CFunction, Outcome, c_array
 from symgen.verify.reference import State
 from symgen.verify.states import Sample
 
@@ -32,7 +33,7 @@ class BatchFunction:
         self._size = math.prod(kernel.shape)
         self._result = C_TYPES[scalar] * (self._size * self._stride)
         self._rows = []
-        for argument in signature(kernel):
+        for argument in array_arguments(kernel):
             columns = [[float(v) for v in getattr(s, argument.name)] for s in states]
             columns += [[value] * argument.length for value in HARD]
             spare = [0.0] * SPARE
@@ -79,7 +80,7 @@ def run_batch(
                 break
         parameters = c_array(scalar, states[0].parameters)
         for value, many in zip(HARD, rows[0][len(states) :], strict=True):
-            arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in signature(kernel)}
+            arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in array_arguments(kernel)}
             if single(arrays, parameters).status != many.status:
                 failures.append(f"{where}: other status than alone where every input is {value}")
     return outcomes, failures

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from symgen.ir.kernel import Argument, Kernel, Scalar, Status
+from symgen.emit.locals import array_arguments
+from symgen.ir.kernel import Kernel, Scalar, Status
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
 LONGEST_COMPILATION = 600.0
@@ -98,11 +99,6 @@ class Compilation:
             self._process.wait()
 
 
-def signature(kernel: Kernel) -> tuple[Argument, ...]:
-    """The array arguments of generated functions: those of length 0 are left out."""
-    return tuple(argument for argument in kernel.arguments if argument.length)
-
-
 class CFunction:
     """One kernel of a library: arrays, then the parameter struct, then the result."""
 
@@ -110,7 +106,7 @@ class CFunction:
         self._function = library[f"{model}_{kernel.name}{SUFFIXES[scalar]}"]
         self._function.restype = ctypes.c_int
         self._scalar = C_TYPES[scalar]
-        self._arguments = tuple(argument.name for argument in signature(kernel))
+        self._arguments = tuple(argument.name for argument in array_arguments(kernel))
         self._result = self._scalar * max(1, math.prod(kernel.shape))
 
     def __call__(self, arrays: dict[str, Any], parameters: Any) -> Outcome:

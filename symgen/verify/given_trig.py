@@ -10,9 +10,10 @@ from typing import Any
 
 from flint import arb, ctx
 
+from symgen.emit.locals import array_arguments
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
-from symgen.verify.compile import C_TYPES, SUFFIXES, Outcome, c_array, signature
+from symgen.verify.compile import C_TYPES, SUFFIXES, Outcome, c_array
 from symgen.verify.states import Sample
 
 BITS = 160
@@ -49,7 +50,7 @@ def run_given_trig(
         for sample in samples:
             state = sample.state
             given = c_array(scalar, exact_trig(model, header, state.q))
-            arrays: list[Any] = [c_array(scalar, getattr(state, a.name)) for a in signature(kernel)]
+            arrays: list[Any] = [c_array(scalar, getattr(state, a.name)) for a in array_arguments(kernel)]
             result = kind(*([math.nan] * kind._length_))
             status = function(given, *arrays, c_array(scalar, state.parameters), result)
             outcomes[kernel.name].append(Outcome(int(status), tuple(result)))

@@ -8,9 +8,10 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from symgen.emit.locals import array_arguments
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.batch import HARD
-from symgen.verify.compile import C_TYPES, SUFFIXES, CFunction, Outcome, c_array, signature
+from symgen.verify.compile import C_TYPES, SUFFIXES, CFunction, Outcome, c_array
 from symgen.verify.states import Sample
 
 
@@ -25,7 +26,7 @@ class PreparedFunction:
         self._prepare.restype = struct
         self._function = library[f"{model}_{kernel.name}_prepared{suffix}"]
         self._function.restype = ctypes.c_int
-        self._arguments = tuple(argument.name for argument in signature(kernel))
+        self._arguments = tuple(argument.name for argument in array_arguments(kernel))
         self._result = C_TYPES[scalar] * math.prod(kernel.shape)
 
     def __call__(self, arrays: dict[str, Any], parameters: Any) -> Outcome:
@@ -58,7 +59,7 @@ def run_prepared(
         where = f"C {scalar} prepared, {kernel.name}"
         outcomes[kernel.name] = [
             prepared(
-                {a.name: c_array(scalar, getattr(sample.state, a.name)) for a in signature(kernel)},
+                {a.name: c_array(scalar, getattr(sample.state, a.name)) for a in array_arguments(kernel)},
                 c_array(scalar, sample.state.parameters),
             )
             for sample in samples
@@ -69,7 +70,7 @@ def run_prepared(
                 break
         parameters = c_array(scalar, samples[0].state.parameters)
         for value in HARD:
-            arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in signature(kernel)}
+            arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in array_arguments(kernel)}
             if plain(arrays, parameters).status != prepared(arrays, parameters).status:
                 failures.append(f"{where}: other status than the plain kernel's where every input is {value}")
     return outcomes, failures

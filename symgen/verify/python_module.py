@@ -8,8 +8,9 @@ import types
 from collections.abc import Sequence
 from typing import Any
 
+from symgen.emit.locals import array_arguments
 from symgen.ir.kernel import Kernel, Status
-from symgen.verify.compile import Outcome, signature
+from symgen.verify.compile import Outcome
 from symgen.verify.reference import State
 
 MODULE_NAME = "symgen_verified_module"
@@ -30,7 +31,7 @@ class PythonModule:
         """All states in one vectorised call; a state without result has NaN entries and no status of its own."""
         import numpy as np
 
-        arrays = [np.array([getattr(s, a.name) for s in states], dtype=np.float64) for a in signature(kernel)]
+        arrays = [np.array([getattr(s, a.name) for s in states], dtype=np.float64) for a in array_arguments(kernel)]
         columns = [np.array(column) for column in zip(*(s.parameters for s in states), strict=True)]
         result = getattr(self.module, kernel.name)(*arrays, p=self.module.Parameters(*columns))
         rows: list[list[float]] = result.reshape(len(states), -1).tolist()
@@ -38,7 +39,7 @@ class PythonModule:
 
     def run_single(self, kernel: Kernel, state: State) -> Outcome:
         """One state without leading axes."""
-        arrays: list[Any] = [list(getattr(state, argument.name)) for argument in signature(kernel)]
+        arrays: list[Any] = [list(getattr(state, argument.name)) for argument in array_arguments(kernel)]
         try:
             result = getattr(self.module, kernel.name)(*arrays, p=self.module.Parameters(*state.parameters))
         except self.module.StateError as refusal:
