@@ -15,7 +15,7 @@ from symgen.model.mechanism import WORLD
 from symgen.model.reading import entries, member, text_of
 from symgen.model.scope import Scope
 from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
-from symgen.model.urdf_bodies import body_entries, carried_links
+from symgen.model.urdf_bodies import body_entries, carried_links, placed_links
 from symgen.model.urdf_names import Names
 from symgen.model.urdf_numbers import Quantity, angle_text, written
 from symgen.model.urdf_robot import ENDINGS, Origin, Robot, UrdfJoint
@@ -117,8 +117,9 @@ def _axis(joint: UrdfJoint) -> Node:
 
 def _bodies(scope: Scope, tree: MappingNode, robot: Robot, names: Names) -> Iterable[Entry]:
     taken = {key.value: key.span for key, _ in entries(tree.get("bodies"))}
-    for carrier, links in carried_links(robot).items():
-        made = body_entries(robot, links)
+    places = placed_links(robot)
+    for carrier, links in carried_links(places).items():
+        made = body_entries(robot, links, places)
         if made is None:
             continue
         name = names.frames[carrier]

@@ -24,9 +24,10 @@ from symgen.model.urdf_numbers import (
     transposed,
     written,
 )
-from symgen.model.urdf_robot import Inertial, Robot
+from symgen.model.urdf_robot import Inertial, Robot, UrdfJoint
 
 ZERO = Fraction(0)
+NOWHERE: Vector = (ZERO, ZERO, ZERO)
 # where the elements xx, yy, zz, xy, xz, yz stand in the matrix
 PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
@@ -40,10 +41,47 @@ class Solid:
     tensor: Matrix
 
 
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a link sits in the axes of the link that carries it."""
+
+    carrier: str
+    shift: Vector
+    axes: Matrix
+
+
+def placed_links(robot: Robot) -> dict[str, Place]:
+    """Every link, parents first; a link that moves by itself, and the root, carry themselves."""
+    held: dict[str, list[UrdfJoint]] = {}
+    for joint in robot.joints.values():
+        held.setdefault(joint.parent, []).append(joint)
+    places = {robot.root: Place(robot.root, NOWHERE, IDENTITY)}
+    waiting = [robot.root]
+    for name in waiting:
+        place = places[name]
+        for joint in held.get(name, ()):
+            waiting.append(joint.child)
+            if joint.kind == "fixed":
+                shift = added(place.shift, applied(place.axes, joint.origin.shift))
+                places[joint.child] = Place(place.carrier, shift, product(place.axes, joint.origin.axes))
+            else:
+                places[joint.child] = Place(joint.child, NOWHERE, IDENTITY)
+    return {name: places[name] for name in robot.links}
+
+
+def carried_links(places: dict[str, Place]) -> dict[str, list[str]]:
+    """For each carrier the links that move with it: itself first."""
+    groups: dict[str, list[str]] = {}
+    for name, place in places.items():
+        groups.setdefault(place.carrier, []).append(name)
+    return {name: sorted(links, key=name.__ne__) for name, links in groups.items()}
+
+
 def judge_links(robot: Robot) -> Iterator[Notice]:
     """Links on fixed joints whose masses or inertias no body has: the sum is judged like every other body."""
     bodies = []
-    for link in (robot.links[name] for links in carried_links(robot).values() if len(links) > 1 for name in links):
+    groups = carried_links(placed_links(robot)).values()
+    for link in (robot.links[name] for links in groups if len(links) > 1 for name in links):
         if link.inertial is not None:
             mass, *entries = (Number(q.value, q.span) for q in (link.inertial.mass, *link.inertial.tensor))
             elements = dict(zip(INERTIA_ELEMENTS, entries, strict=True))
@@ -52,39 +90,15 @@ def judge_links(robot: Robot) -> Iterator[Notice]:
         yield Notice(mistake.message, mistake.span)
 
 
-def carried_links(robot: Robot) -> dict[str, list[str]]:
-    """For each link that moves by itself, and the root, those that move with it: itself first."""
-    carriers: dict[str, str] = {}
-
-    def carrier(name: str) -> str:
-        line = []
-        while name not in carriers:
-            holder = robot.holder(name)
-            line.append(name)
-            if holder is None or holder.kind != "fixed":
-                carriers[name] = name
-                break
-            name = holder.parent
-        for one in line:
-            carriers[one] = carriers[name]
-        return carriers[name]
-
-    groups: dict[str, list[str]] = {}
-    for name in robot.links:
-        groups.setdefault(carrier(name), []).append(name)
-    return {name: sorted(links, key=name.__ne__) for name, links in groups.items()}
-
-
-def body_entries(robot: Robot, links: list[str]) -> tuple[Node, Span] | None:
+def body_entries(robot: Robot, links: list[str], places: dict[str, Place]) -> tuple[Node, Span] | None:
     """The body of links that move together, in the axes of the first; None without mass and inertia."""
     solids: list[Solid] = []
     inertials: list[Inertial] = []
     for name in links:
         inertial = robot.links[name].inertial
         if inertial is not None and any(entry.value for entry in (inertial.mass, *inertial.tensor)):
-            shift, axes = _placed(robot, name, links[0])
             inertials.append(inertial)
-            solids.append(_solid(inertial, shift, axes))
+            solids.append(_solid(inertial, places[name].shift, places[name].axes))
     if not solids:
         return None
     first = inertials[0]
@@ -108,19 +122,6 @@ def body_entries(robot: Robot, links: list[str]) -> tuple[Node, Span] | None:
     if elements:
         entries.append((_key("inertia", first.span), MappingNode(tuple(elements), first.span, True)))
     return MappingNode(tuple(entries), first.span, True), first.span
-
-
-def _placed(robot: Robot, name: str, carrier: str) -> tuple[Vector, Matrix]:
-    """Origin and axes of a link in those of the link that carries it."""
-    shift: Vector = (ZERO, ZERO, ZERO)
-    axes = IDENTITY
-    while name != carrier:
-        joint = robot.holder(name)
-        assert joint is not None
-        turns = joint.origin.axes
-        shift, axes = added(joint.origin.shift, applied(turns, shift)), product(turns, axes)
-        name = joint.parent
-    return shift, axes
 
 
 def _solid(inertial: Inertial, shift: Vector, axes: Matrix) -> Solid:

@@ -18,6 +18,7 @@ from symgen.model.source import ScalarNode
 MAXIMUM_DIGITS = 40
 MAXIMUM_EXPONENT = 300
 QUARTER_TOLERANCE = 1e-8
+FINEST = 400
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d{1,4}))?", re.ASCII)
 
 Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
@@ -93,7 +94,7 @@ def product(left: Matrix, right: Matrix) -> Matrix:
 
 def applied(matrix: Matrix, vector: Vector) -> Vector:
     """matrix vector."""
-    x, y, z = (sum((a * b for a, b in zip(row, vector, strict=True)), Fraction(0)) for row in matrix)
+    x, y, z = (_short(sum((a * b for a, b in zip(row, vector, strict=True)), Fraction(0))) for row in matrix)
     return x, y, z
 
 
@@ -106,3 +107,10 @@ def transposed(matrix: Matrix) -> Matrix:
 def added(left: Vector, right: Vector) -> Vector:
     """left + right."""
     return left[0] + right[0], left[1] + right[1], left[2] + right[2]
+
+
+def _short(value: Fraction) -> Fraction:
+    """The value, rounded at 2^-400 where its denominator has grown through many turns."""
+    if value.denominator.bit_length() <= FINEST:
+        return value
+    return Fraction(round(value * 2**FINEST), 2**FINEST)

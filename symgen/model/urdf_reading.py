@@ -11,6 +11,7 @@ from symgen.model.urdf_robot import KINDS, Inertial, Link, Mimic, Origin, Robot,
 from symgen.model.urdf_xml import Element
 
 TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+MAXIMUM_LINKS = 500
 LIMITS = ("lower", "upper", "velocity", "effort", "acceleration")
 # what says nothing about the mechanics; each is told to the user
 GEOMETRY = ("visual", "collision")
@@ -55,6 +56,10 @@ class _Reading:
         self._attributes(root, ("name", "version"))
         self.owner = root.attributes.get("name", "")
         self._children(root, ("link", "joint"), "robot")
+        if len(root.all("link")) > MAXIMUM_LINKS or len(root.all("joint")) > MAXIMUM_LINKS:
+            message = f"the robot has more than {MAXIMUM_LINKS} links or joints"
+            self.wrong(message, "import the part of it that moves", root.span)
+            return Robot({}, {}, {})
         links: dict[str, Link] = {}
         for element in root.all("link"):
             link = self._link(element)

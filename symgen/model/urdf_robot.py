@@ -95,7 +95,3 @@ class Robot:
     joints: dict[str, UrdfJoint] = field(hash=False)
     left_out: dict[str, tuple[str, ...]] = field(hash=False)
     root: str = ""
-
-    def holder(self, link: str) -> UrdfJoint | None:
-        """The joint that a link hangs on; None for the root."""
-        return next((joint for joint in self.joints.values() if joint.child == link), None)

@@ -64,6 +64,7 @@ PATHS: dict[str, Case] = {
 }
 TREE: dict[str, Case] = {
     "not_a_robot": ("<sdf><model/></sdf>\n", HEAD),
+    "too_many_links": ('<robot name="r">\n' + '<link name="a"/>' * 501 + "</robot>\n", HEAD),
     "no_links": ('<robot name="r"/>\n', HEAD),
     "unknown_parent": changed('<parent link="upper"/>', '<parent link="uper"/>'),
     "two_roots": changed('<link name="base"/>', '<link name="base"/><link name="stray"/>'),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import cos, sin
 from pathlib import Path
 
 import pytest
@@ -196,6 +197,27 @@ def test_numbers_stay_as_they_are_written(tmp_path: Path) -> None:
     model = load(tmp_path, ARM.replace('value="1.5"', 'value="+1.234567890123456789"'))
     mass = next(body.mass for body in model.mechanism.bodies if body.name == "lower")
     assert mass == Number(Fraction("1.234567890123456789"))
+
+
+def test_a_long_line_of_fixed_links_is_added_up_at_once(tmp_path: Path) -> None:
+    """200 small masses along a line that turns back and forth, against their sum in doubles."""
+    count = 200
+    parts = [link("base", 0), *(link(f"l{k}", 0.01, 1e-5) for k in range(count))]
+    joints = [joint("turn", "continuous", "base", "l0", '<axis xyz="0 0 1"/>')]
+    for k in range(1, count):
+        angle = 0.3 if k % 2 else -0.3
+        joints.append(joint(f"w{k}", "fixed", f"l{k - 1}", f"l{k}", f'<origin xyz="0.01 0 0" rpy="0 0 {angle}"/>'))
+    x = y = total = 0.0
+    for k in range(count):
+        total += 1e-5 + 0.01 * (x * x + y * y)
+        x, y = x + 0.01 * cos(0.3 * (k % 2)), y + 0.01 * sin(0.3 * (k % 2))
+    model = load(tmp_path, robot(*parts, *joints))
+    assert len(model.mechanism.bodies) == 1
+    assert mass_matrix(model, {"turn": 0.1}) == pytest.approx([total], rel=1e-12)
+
+
+def test_the_robot_is_part_of_the_model_s_identity(tmp_path: Path) -> None:
+    assert load(tmp_path, ARM).text_hash != load(tmp_path, ARM.replace("1.5", "1.6")).text_hash
 
 
 FOUR_BAR = robot(
