@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from fractions import Fraction
 from math import cos, sin
 from pathlib import Path
@@ -251,3 +253,12 @@ def test_a_loop_in_the_model_file_closes_a_four_bar_verified_all_the_way(tmp_pat
     result = generate(tmp_path / "robot.yaml", Options(parts=("python",), states=8), lambda _: None)
     assert result.failures == ()
     assert result.certificate is not None
+
+
+def test_the_reader_is_loaded_where_it_is_used_only(tmp_path: Path) -> None:
+    script = (
+        "import sys; from symgen.model.load import load_text; "
+        "load_text('model: m\\ncoordinates: {x: {}}\\nkinetic_energy: x_dot**2\\n', 'm.yaml'); print(*sys.modules)"
+    )
+    made = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=tmp_path)
+    assert not [name for name in made.stdout.split() if "urdf" in name or "expat" in name]
