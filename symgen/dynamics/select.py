@@ -9,6 +9,8 @@ from symgen.dynamics.block_space import BlockSpace
 from symgen.dynamics.blocks import components
 from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, PARTITION, Derived, by_blocks, derive, missing, scalars
 from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
+from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.grouping import grouped as grouped_scalars
 from symgen.dynamics.inverse import CANCELLATION_WORTH, FACTORING_LIMIT, FormChoice, InverseDynamics, derived_on
@@ -21,6 +23,7 @@ from symgen.records import dataclass
 
 # Their forms have multiplied out what may cancel.
 MOTIONS = ("forward_dynamics", "multipliers")
+ABSOLUTE = "householder in absolute angles"
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +71,18 @@ def block_way(mechanics: Mechanics, generic: Genericity) -> Derivation | None:
     return Derivation(mechanics, generic, BlockSpace(mechanics.graph, rows, mechanics.n))
 
 
+def absolute_way(model: Model, generic: Genericity) -> Derivation | None:
+    """The derivation of q_ddot and lambda along reflections in absolute angles, on a graph of its own.
+
+    Taken where angles are relative and minors too many: the rounding errors of G in relative angles grow with the
+    length of a chain.
+    """
+    seen = in_absolute_angles(model) if model.constraints and generic.delta > LARGEST_DELTA else None
+    if seen is None:
+        return None
+    return Derivation(seen, generic, reflected(seen.graph, seen.constraint_jacobian, seen.n, generic.rank))
+
+
 def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
     """The names to derive, in catalogue order, and what was asked for that this system does not have."""
     everything = "all" in outputs
@@ -89,6 +104,7 @@ def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") 
     generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
     derivations, blocks = ways(mechanics, generic), block_way(mechanics, generic)
+    absolute = absolute_way(model, generic) if any(name in MOTIONS for name in present) else None
     quantities: list[Derived] = []
     choices: list[Choice] = []
     chosen_form: FormChoice | None = None
@@ -102,7 +118,10 @@ def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") 
             choices.append(Choice(name, chosen_form.way, chosen_form.costs))
             continue
         entry = BY_NAME[name]
-        candidates = {way: derive(entry, derivation) for way, derivation in derivations.items()}
+        if name in MOTIONS and absolute is not None:
+            candidates = {ABSOLUTE: brought_back(mechanics.graph, absolute.mechanics, derive(entry, absolute))}
+        else:
+            candidates = {way: derive(entry, derivation) for way, derivation in derivations.items()}
         if blocks is not None and by_blocks(entry):
             candidates["blocks"] = derive(entry, blocks)
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}

@@ -6,20 +6,24 @@ replace a form by an equal function that was derived before.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import topological
 
 
-def transplanted(graph: Graph, outputs: Iterable[Scalar]) -> list[Scalar]:
-    """The same scalars as nodes of `graph`; symbols keep their names."""
+def transplanted(
+    graph: Graph, outputs: Iterable[Scalar], symbols: Mapping[str, Scalar] = MappingProxyType({})
+) -> list[Scalar]:
+    """The same scalars as nodes of `graph`; symbols keep their names, or take the place that `symbols` gives them."""
     outputs = list(outputs)
     image: dict[Scalar, Scalar] = {}
     for node in topological(outputs):
         args = tuple(image[argument] for argument in node.args)
         if node.op == "symbol":
-            image[node] = graph.symbol(str(node.payload))
+            name = str(node.payload)
+            image[node] = symbols[name] if name in symbols else graph.symbol(name)
         elif node.constant is not None:
             image[node] = graph.const(node.constant)
         elif node.op in ("sin", "cos"):

@@ -1,0 +1,53 @@
+"""A system in absolute angles, and what was derived there in terms of the model's coordinates again.
+
+Accelerations of a chain in relative angles are badly scaled: with each link more its G has larger entries in the
+corner and a smaller smallest eigenvalue.  In absolute angles G keeps the links' own sizes, and q_ddot = S y_ddot takes
+one difference for each joint (lambda and u stay as they are).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from symgen.dynamics.catalogue import Derived
+from symgen.dynamics.coordinates import absolute_angles
+from symgen.dynamics.guards import Guard
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.transplant import transplanted
+from symgen.model.model import Model
+
+
+def in_absolute_angles(model: Model) -> Mechanics | None:
+    """The system in absolute angles on a graph of its own; None where no angle is relative to another."""
+    mechanics = Mechanics(model)
+    change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
+    return None if change.is_identity else Mechanics(model, mechanics, change)
+
+
+def brought_back(graph: Graph, mechanics: Mechanics, derived: Derived) -> Derived:
+    """q_ddot or lambda that was derived on `mechanics` in absolute angles, on `graph` in the symbols of the model.
+
+    Carried over as they stand: beside the nodes they were derived from, equal functions would take their place.
+    """
+    change, coordinates = mechanics.change, mechanics.model.coordinates
+    assert change is not None
+    outputs = change.relative(derived.outputs) if derived.name == "forward_dynamics" else derived.outputs
+    symbols: dict[str, Scalar] = {}
+    for own, names in (
+        (mechanics.q, [c.name for c in coordinates]),
+        (mechanics.qd, [c.rate for c in coordinates]),
+        (mechanics.qdd, [c.acceleration for c in coordinates]),
+    ):
+        given = change.absolute(tuple(map(graph.symbol, names)))
+        symbols |= {str(symbol.payload): value for symbol, value in zip(own, given, strict=True)}
+    guards = tuple(_moved(graph, guard, symbols) for guard in derived.guards)
+    return replace(derived, outputs=tuple(transplanted(graph, outputs, symbols)), guards=guards)
+
+
+def _moved(graph: Graph, guard: Guard, symbols: Mapping[str, Scalar]) -> Guard:
+    (denominator,) = transplanted(graph, [guard.denominator], symbols)
+    scale = None if guard.scale is None else transplanted(graph, [guard.scale], symbols)[0]
+    first = tuple(_moved(graph, cause, symbols) for cause in guard.first)
+    return replace(guard, denominator=denominator, scale=scale, first=first)

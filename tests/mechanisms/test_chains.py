@@ -1,0 +1,39 @@
+"""Long chains: forms that cannot be the cheapest are not built, u grows linearly, accelerations use absolute angles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from chains import chain
+
+from symgen.dynamics.select import ABSOLUTE, Derivations, derive_quantities
+from symgen.graph.traverse import topological
+from symgen.model.load import load_model
+
+
+def derived(links: int, folder: Path, *outputs: str) -> Derivations:
+    path = folder / f"chain{links}.yaml"
+    path.write_text(chain(links), encoding="utf-8")
+    return derive_quantities(load_model(path), outputs)
+
+
+def test_u_grows_linearly(tmp_path: Path) -> None:
+    weights = []
+    for links in (8, 16, 32):
+        found = derived(links, tmp_path, "inverse_dynamics").form
+        assert found is not None
+        assert [name for name, _ in found.costs] == ["range"]
+        weights += [weight for _, weight in found.costs]
+    assert weights[2] - weights[1] == pytest.approx(2 * (weights[1] - weights[0]), rel=0.05)
+
+
+def test_accelerations_in_absolute_angles(tmp_path: Path) -> None:
+    found = derived(6, tmp_path, "forward_dynamics", "multipliers")
+    assert [choice.way for choice in found.choices] == [ABSOLUTE, ABSOLUTE]
+    known = {c.name for c in found.mechanics.model.coordinates}
+    for quantity in found.quantities:
+        guards = [guard.denominator for guard in quantity.guards]
+        symbols = {str(x.payload) for x in topological([*quantity.outputs, *guards]) if x.op == "symbol"}
+        assert known <= symbols
+        assert not [name for name in symbols if "absolute" in name]
