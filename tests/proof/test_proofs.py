@@ -21,7 +21,7 @@ from symgen.proof.fuzz import emit_fuzz
 from symgen.proof.gappa import emit_gappa
 from symgen.proof.slices import slices
 
-SANITIZE = ["-g", "-O1", "-std=c99", "-ffp-contract=off", "-fno-sanitize-recover=all", "-DSTANDALONE"]
+SANITIZE = ["-O1", "-std=c99", "-ffp-contract=off", "-fno-sanitize-recover=all", "-DSTANDALONE"]
 
 
 def run(*command: str | Path, folder: Path | None = None) -> str:
