@@ -1,11 +1,13 @@
-"""Parameter groups: numbers are multiplied into factors that depend on parameters only.
+"""Parameter groups: products are taken in the order in which least is computed at each state.
 
-The constructors move numbers outwards so that terms are recognised; 1/2 (h s) and 1/2 (h c) are then two products more
-than (h/2) s and (h/2) c.
+The constructors move numbers outwards and leave factors in the order in which they came, so that terms are recognised.
+Here numbers go into factors that depend on parameters only, parameters join a product of parameters that exists
+anyway, and a reciprocal that serves one product becomes its quotient.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from symgen.dynamics.factoring import Factoring
@@ -14,7 +16,36 @@ from symgen.graph.traverse import cost, topological
 
 
 def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
-    """The outputs with numbers moved into parameter groups, or as they are where that saves nothing."""
+    """The outputs with their products regrouped, each step taken where it saves operations."""
+    best = list(outputs)
+    for step in (_with_common_factors, _with_numbers_moved, _with_parameters_joined, _with_quotients):
+        found = step(graph, factoring, best)
+        if cost(found).weight < cost(best).weight:
+            best = found
+    return best
+
+
+def _with_common_factors(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """f a + f b as f (a + b) where nothing else needs the products."""
+    order = topological(outputs)
+    uses = _uses(order, outputs)
+    products = graph.products
+    image: dict[Scalar, Scalar] = {}
+    for node in order:
+        args = tuple(image[argument] for argument in node.args)
+        image[node] = _as_it_stands(graph, node, args)
+        if node.op not in ("add", "sub") or any(a.op != "mul" or uses[a] > 1 for a in node.args):
+            continue
+        left, right = (products.monomial(a)[1] for a in node.args)
+        common = {f: 1 for f, count in left.items() if count > 0 and right.get(f, 0) > 0 and f.op != "const"}
+        if common and all(f in image for f in common):
+            rest = tuple(image.get(q, q) for q in (products.quotient(a, common) for a in node.args))
+            factor = graph.product(image[f] for f in common)
+            image[node] = graph.raw("mul", (factor, graph.raw(node.op, rest)))
+    return [image[output] for output in outputs]
+
+
+def _with_numbers_moved(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     image: dict[Scalar, Scalar] = {}
     for node in topological(outputs):
         args = tuple(image[argument] for argument in node.args)
@@ -23,9 +54,8 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
             moved = _into_parameters(graph, factoring, args[0], args[1])
             image[node] = graph.raw("mul", args) if moved is None else moved
         else:
-            image[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
-    moved_outputs = [image[output] for output in outputs]
-    return moved_outputs if cost(moved_outputs).weight < cost(outputs).weight else list(outputs)
+            image[node] = _as_it_stands(graph, node, args)
+    return [image[output] for output in outputs]
 
 
 def _into_parameters(graph: Graph, factoring: Factoring, number: Scalar, product: Scalar) -> Scalar | None:
@@ -45,3 +75,48 @@ def _into_parameters(graph: Graph, factoring: Factoring, number: Scalar, product
         moved = _into_parameters(graph, factoring, number, product.args[0])
         return None if moved is None else graph.raw("div", (moved, product.args[1]))
     return None
+
+
+def _with_parameters_joined(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """a (b x) as (a b) x where the product of the parameters a and b is computed anyway."""
+    order = topological(outputs)
+    uses = _uses(order, outputs)
+    fixed = (node for node in order if node.op == "mul" and all(map(factoring.fixed, node.args)))
+    pairs = {frozenset(map(id, node.args)): node for node in fixed}
+    image: dict[Scalar, Scalar] = {}
+    for node in order:
+        args = tuple(image[argument] for argument in node.args)
+        joined = None
+        if node.op == "mul":
+            for a, inner in (node.args, node.args[::-1]):
+                if inner.op != "mul" or uses[inner] > 1 or not factoring.fixed(a) or a.constant is not None:
+                    continue
+                for b, x in (inner.args, inner.args[::-1]):
+                    product = pairs.get(frozenset((id(a), id(b))))
+                    if product is not None and product is not node:
+                        joined = joined or graph.raw("mul", (image.get(product, product), image[x]))
+        image[node] = _as_it_stands(graph, node, args) if joined is None else joined
+    return [image[output] for output in outputs]
+
+
+def _with_quotients(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """(1 / b) a as a / b where nothing else needs 1 / b."""
+    order = topological(outputs)
+    uses = _uses(order, outputs)
+    image: dict[Scalar, Scalar] = {}
+    for node in order:
+        args = tuple(image[argument] for argument in node.args)
+        image[node] = _as_it_stands(graph, node, args)
+        if node.op == "mul":
+            for a, inverse in (node.args, node.args[::-1]):
+                if inverse.op == "div" and inverse.args[0].is_one and uses[inverse] == 1:
+                    image[node] = graph.raw("div", (image[a], image[inverse.args[1]]))
+    return [image[output] for output in outputs]
+
+
+def _uses(order: Sequence[Scalar], outputs: Sequence[Scalar]) -> Counter[Scalar]:
+    return Counter([*(argument for node in order for argument in node.args), *outputs])
+
+
+def _as_it_stands(graph: Graph, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
+    return node if args == node.args else graph.raw(node.op, args, node.payload)

@@ -214,15 +214,14 @@ def _place(load: Load, names: Names) -> str:
 
 
 def _finite_test(model: Model, program: Program, kernel: Kernel, names: Names) -> list[str]:
-    """x - x is 0 for finite x and NaN otherwise; one comparison decides for all outputs."""
+    """x - x is 0 for finite x and NaN otherwise; one test decides for all outputs."""
     results = [names.locals[o.name] for o in dict.fromkeys(kernel.outputs) if isinstance(o, Local)]
     if not results:
         return []
-    scalar, zero = c_type(program.scalar), "0.0" if program.scalar == "float64" else "0.0f"
     return [
-        f"{scalar} rest = {results[0]} - {results[0]};",
+        f"{c_type(program.scalar)} rest = {results[0]} - {results[0]};",
         *(f"rest += {name} - {name};" for name in results[1:]),
-        f"if (!(rest >= {zero})) {{",
+        "if (isnan(rest) != 0) {",
         f"    return {status_name(model, Status.NOT_FINITE)};",
         "}",
     ]
@@ -239,7 +238,9 @@ def _read_back(group: Sequence[Statement], scalar: str, names: Names) -> dict[st
 
 
 def uses_library(program: Program) -> bool:
-    """Whether a file with these kernels calls functions of math.h."""
+    """Whether a file with these kernels needs math.h: for a function, or to test whether results are finite."""
+    if any(isinstance(output, Local) for kernel in program.kernels for output in kernel.outputs):
+        return True
     own = () if program.sincos is None else program.sincos.statements
     free = _WITHOUT_LIBRARY if program.sincos is None else _WITHOUT_LIBRARY | {"sincos"}
     statements = [*own, *(statement for kernel in program.kernels for statement in all_statements(kernel))]

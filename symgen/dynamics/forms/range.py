@@ -49,7 +49,7 @@ def range_form(mechanics: Mechanics, generic: Genericity) -> Form | None:
     definite = Definite(mechanics)
     u, guards = solved.inputs(internal)
     open_guards = [guard for guard in guards if not definite.holds(guard.denominator)]
-    back = _symbols_back(mechanics, mechanics.change)
+    back = _symbols_back(mechanics, mechanics.change) | _positive_sizes(mechanics)
     outputs = tuple(substitute(graph, u, back))
     moved = [_moved(graph, guard, back) for guard in open_guards]
     return form("range", "inverse_dynamics", outputs, moved, substitute(graph, mechanics.balance, back))
@@ -189,6 +189,13 @@ def _symbols_back(mechanics: Mechanics, change: AbsoluteAngles | None) -> dict[S
         absolute = change.absolute(tuple(graph.symbol(name) for name in names))
         found |= dict(zip(own, absolute, strict=True))
     return found
+
+
+def _positive_sizes(mechanics: Mechanics) -> dict[Scalar, Scalar]:
+    """|p| = p for parameters that are declared positive."""
+    graph = mechanics.graph
+    positive = [graph.symbol(p.name) for p in mechanics.model.parameters if p.range is not None and p.range[0] > 0]
+    return {graph.function("abs", (p,)): p for p in positive}
 
 
 def _moved(graph: Graph, guard: Guard, back: dict[Scalar, Scalar]) -> Guard:
