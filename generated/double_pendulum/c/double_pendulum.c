@@ -175,7 +175,7 @@ double_pendulum_status double_pendulum_mass_matrix(const double q[2], const doub
     double rest = t24 - t24;
     rest += t25 - t25;
     rest += t18 - t18;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G[0] = t24;
@@ -197,28 +197,27 @@ double_pendulum_status double_pendulum_coriolis_matrix(const double q[2], const 
     const double l_1 = p->l_1;
     const double c_2 = p->c_2;
     const double t4 = l_1 * c_2;
-    const double t5 = t4 * t2;
     const double m_2 = p->m_2;
-    const double t6 = m_2 * t5;
+    const double t5 = m_2 * t4;
+    const double t6 = t5 * t2;
     const double q_2_dot = qd[1];
     const double t7 = q_2_dot * t6;
     const double t8 = -t7;
-    const double t9 = m_2 * t4;
     const double q_1_dot = qd[0];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t10 = turn_2 * t2;
-    const double t11 = t9 * t10;
-    const double t12 = -t11;
-    const double t13 = q_1_dot * t6;
+    const double t9 = turn_2 * t2;
+    const double t10 = t5 * t9;
+    const double t11 = -t10;
+    const double t12 = q_1_dot * t6;
     double rest = t8 - t8;
+    rest += t11 - t11;
     rest += t12 - t12;
-    rest += t13 - t13;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C[0] = t8;
-    C[1] = t12;
-    C[2] = t13;
+    C[1] = t11;
+    C[2] = t12;
     C[3] = 0.0;
     return DOUBLE_PENDULUM_OK;
 }
@@ -246,16 +245,15 @@ double_pendulum_status double_pendulum_coriolis_force(const double q[2], const d
     const double t10 = t5 * t9;
     const double t11 = -t10;
     const double t12 = q_1_dot * q_1_dot;
-    const double t13 = t4 * t2;
-    const double t14 = m_2 * t13;
-    const double t15 = t12 * t14;
+    const double t13 = t5 * t2;
+    const double t14 = t12 * t13;
     double rest = t11 - t11;
-    rest += t15 - t15;
-    if (!(rest >= 0.0)) {
+    rest += t14 - t14;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_qd[0] = t11;
-    C_qd[1] = t15;
+    C_qd[1] = t14;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -294,7 +292,7 @@ double_pendulum_status double_pendulum_potential_force(const double q[2], const 
     const double t15 = t9 + t14;
     double rest = t15 - t15;
     rest += t9 - t9;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q[0] = t15;
@@ -314,7 +312,7 @@ double_pendulum_status double_pendulum_applied_force(const double q[2], const do
     const double t4 = -t3;
     double rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a[0] = t2;
@@ -434,7 +432,7 @@ double_pendulum_status double_pendulum_projected_mass_matrix(const double q[2], 
     double rest = t24 - t24;
     rest += t25 - t25;
     rest += t18 - t18;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_tilde[0] = t24;
@@ -456,28 +454,27 @@ double_pendulum_status double_pendulum_projected_coriolis_matrix(const double q[
     const double l_1 = p->l_1;
     const double c_2 = p->c_2;
     const double t4 = l_1 * c_2;
-    const double t5 = t4 * t2;
     const double m_2 = p->m_2;
-    const double t6 = m_2 * t5;
+    const double t5 = m_2 * t4;
+    const double t6 = t5 * t2;
     const double q_2_dot = qd[1];
     const double t7 = q_2_dot * t6;
     const double t8 = -t7;
-    const double t9 = m_2 * t4;
     const double q_1_dot = qd[0];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t10 = turn_2 * t2;
-    const double t11 = t9 * t10;
-    const double t12 = -t11;
-    const double t13 = q_1_dot * t6;
+    const double t9 = turn_2 * t2;
+    const double t10 = t5 * t9;
+    const double t11 = -t10;
+    const double t12 = q_1_dot * t6;
     double rest = t8 - t8;
+    rest += t11 - t11;
     rest += t12 - t12;
-    rest += t13 - t13;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_tilde[0] = t8;
-    C_tilde[1] = t12;
-    C_tilde[2] = t13;
+    C_tilde[1] = t11;
+    C_tilde[2] = t12;
     C_tilde[3] = 0.0;
     return DOUBLE_PENDULUM_OK;
 }
@@ -517,7 +514,7 @@ double_pendulum_status double_pendulum_projected_potential_force(const double q[
     const double t15 = t9 + t14;
     double rest = t15 - t15;
     rest += t9 - t9;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_tilde[0] = t15;
@@ -537,7 +534,7 @@ double_pendulum_status double_pendulum_projected_applied_force(const double q[2]
     const double t4 = -t3;
     double rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a_tilde[0] = t2;
@@ -586,7 +583,7 @@ double_pendulum_status double_pendulum_minimal_mass_matrix(const double q[2], co
     double rest = t24 - t24;
     rest += t25 - t25;
     rest += t18 - t18;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_bar[0] = t24;
@@ -608,28 +605,27 @@ double_pendulum_status double_pendulum_minimal_coriolis_matrix(const double q[2]
     const double l_1 = p->l_1;
     const double c_2 = p->c_2;
     const double t4 = l_1 * c_2;
-    const double t5 = t4 * t2;
     const double m_2 = p->m_2;
-    const double t6 = m_2 * t5;
+    const double t5 = m_2 * t4;
+    const double t6 = t5 * t2;
     const double q_2_dot = qd[1];
     const double t7 = q_2_dot * t6;
     const double t8 = -t7;
-    const double t9 = m_2 * t4;
     const double q_1_dot = qd[0];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t10 = turn_2 * t2;
-    const double t11 = t9 * t10;
-    const double t12 = -t11;
-    const double t13 = q_1_dot * t6;
+    const double t9 = turn_2 * t2;
+    const double t10 = t5 * t9;
+    const double t11 = -t10;
+    const double t12 = q_1_dot * t6;
     double rest = t8 - t8;
+    rest += t11 - t11;
     rest += t12 - t12;
-    rest += t13 - t13;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_bar[0] = t8;
-    C_bar[1] = t12;
-    C_bar[2] = t13;
+    C_bar[1] = t11;
+    C_bar[2] = t12;
     C_bar[3] = 0.0;
     return DOUBLE_PENDULUM_OK;
 }
@@ -669,7 +665,7 @@ double_pendulum_status double_pendulum_minimal_potential_force(const double q[2]
     const double t15 = t9 + t14;
     double rest = t15 - t15;
     rest += t9 - t9;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_bar[0] = t15;
@@ -689,7 +685,7 @@ double_pendulum_status double_pendulum_minimal_applied_force(const double q[2], 
     const double t4 = -t3;
     double rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a_bar[0] = t2;
@@ -714,7 +710,7 @@ double_pendulum_status double_pendulum_admissible_velocity(const double q[2], co
     const double q_2_dot = qd[1];
     double rest = q_1_dot - q_1_dot;
     rest += q_2_dot - q_2_dot;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qd_admissible[0] = q_1_dot;
@@ -730,7 +726,7 @@ double_pendulum_status double_pendulum_admissible_acceleration(const double q[2]
     const double q_2_ddot = qdd[1];
     double rest = q_1_ddot - q_1_ddot;
     rest += q_2_ddot - q_2_ddot;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd_admissible[0] = q_1_ddot;
@@ -744,7 +740,7 @@ double_pendulum_status double_pendulum_projected_configuration(const double q[2]
     const double q_2 = q[1];
     double rest = q_1 - q_1;
     rest += q_2 - q_2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     q_projected[0] = q_1;
@@ -753,102 +749,101 @@ double_pendulum_status double_pendulum_projected_configuration(const double q[2]
 }
 
 double_pendulum_status double_pendulum_inverse_dynamics(const double q[2], const double qd[2], const double qdd[2], const double_pendulum_params *p, double u[2]) {
-    const double q_2 = q[1];
-    const double t1 = fabs(q_2);
     const double q_1 = q[0];
-    const double t2 = fabs(q_1);
+    const double t1 = fabs(q_1);
+    const double q_2 = q[1];
+    const double t2 = fabs(q_2);
     if (!(100000.0 >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (!(100000.0 >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    const double angle[2] = {q_2, q_1};
+    const double angle[2] = {q_1, q_2};
     double sine[2];
     double cosine[2];
     double_pendulum_sincos_group(2, angle, sine, cosine);
     const double q_1_dot = qd[0];
     const double d_1 = p->d_1;
     const double t7 = q_1_dot * d_1;
-    const double c_1 = p->c_1;
-    const double t8 = c_1 * c_1;
-    const double m_1 = p->m_1;
-    const double t9 = m_1 * t8;
-    const double J_1 = p->J_1;
-    const double t10 = J_1 + t9;
-    const double t11 = 0.5 * t10;
-    const double l_1 = p->l_1;
-    const double t12 = l_1 * l_1;
     const double m_2 = p->m_2;
-    const double t13 = m_2 * t12;
-    const double t14 = 0.5 * t13;
-    const double t15 = t11 + t14;
-    const double q_1_ddot = qdd[0];
-    const double t16 = q_1_ddot * t15;
+    const double g = p->g;
+    const double t8 = m_2 * g;
+    const double l_1 = p->l_1;
+    const double t9 = l_1 * t8;
+    const double c_1 = p->c_1;
+    const double m_1 = p->m_1;
+    const double t10 = c_1 * m_1;
+    const double t11 = g * t10;
+    const double t12 = t9 + t11;
+    const double t3 = sine[0];
+    const double t13 = t12 * t3;
     const double c_2 = p->c_2;
-    const double t17 = l_1 * c_2;
+    const double t14 = c_2 * t8;
+    const double t6 = cosine[1];
+    const double t15 = t6 * t3;
+    const double t5 = sine[1];
     const double t4 = cosine[0];
-    const double t18 = t17 * t4;
+    const double t16 = t5 * t4;
+    const double t17 = t15 + t16;
+    const double t18 = t14 * t17;
+    const double t19 = t13 + t18;
+    const double t20 = l_1 * l_1;
+    const double t21 = m_2 * t20;
+    const double t22 = 0.5 * t21;
+    const double t23 = c_1 * t10;
+    const double J_1 = p->J_1;
+    const double t24 = J_1 + t23;
+    const double t25 = 0.5 * t24;
+    const double t26 = t22 + t25;
+    const double q_1_ddot = qdd[0];
+    const double t27 = q_1_ddot * t26;
+    const double t28 = l_1 * c_2;
+    const double t29 = t28 * t6;
     const double q_2_ddot = qdd[1];
-    const double t19 = q_1_ddot + q_2_ddot;
-    const double t20 = m_2 * t19;
-    const double t21 = t18 * t20;
+    const double t30 = q_1_ddot + q_2_ddot;
+    const double t31 = m_2 * t30;
+    const double t32 = t29 * t31;
     const double q_2_dot = qd[1];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t22 = m_2 * turn_2;
-    const double t3 = sine[0];
-    const double t23 = q_2_dot * t3;
-    const double t24 = t17 * t23;
-    const double t25 = t22 * t24;
-    const double t26 = t21 - t25;
+    const double t33 = m_2 * turn_2;
+    const double t34 = q_2_dot * t5;
+    const double t35 = t28 * t34;
+    const double t36 = t33 * t35;
+    const double t37 = t32 - t36;
     const double J_2 = p->J_2;
-    const double t27 = 0.5 * J_2;
-    const double t28 = c_2 * c_2;
-    const double t29 = m_2 * t28;
-    const double t30 = 0.5 * t29;
-    const double t31 = t27 + t30;
-    const double t32 = t31 * t19;
-    const double t33 = q_1_ddot * t18;
-    const double t34 = q_1_dot * t24;
-    const double t35 = t33 - t34;
-    const double t36 = m_2 * t35;
-    const double t37 = t32 + t36;
-    const double t38 = t32 + t37;
-    const double t39 = t26 + t38;
-    const double t40 = t16 + t39;
-    const double t41 = t16 + t40;
-    const double g = p->g;
-    const double t42 = m_2 * g;
-    const double t43 = l_1 * t42;
-    const double t44 = c_1 * m_1;
-    const double t45 = g * t44;
-    const double t46 = t43 + t45;
-    const double t5 = sine[1];
-    const double t47 = t46 * t5;
-    const double t48 = c_2 * t42;
-    const double t49 = t4 * t5;
-    const double t6 = cosine[1];
-    const double t50 = t3 * t6;
-    const double t51 = t49 + t50;
-    const double t52 = t48 * t51;
-    const double t53 = t47 + t52;
-    const double t54 = t41 + t53;
-    const double t55 = t7 + t54;
+    const double t38 = 0.5 * J_2;
+    const double t39 = c_2 * c_2;
+    const double t40 = m_2 * t39;
+    const double t41 = 0.5 * t40;
+    const double t42 = t38 + t41;
+    const double t43 = t42 * t30;
+    const double t44 = q_1_ddot * t29;
+    const double t45 = q_1_dot * t35;
+    const double t46 = t44 - t45;
+    const double t47 = m_2 * t46;
+    const double t48 = t43 + t47;
+    const double t49 = t43 + t48;
+    const double t50 = t37 + t49;
+    const double t51 = t50 + t27;
+    const double t52 = t27 + t51;
+    const double t53 = t19 + t52;
+    const double t54 = t7 + t53;
     const double d_2 = p->d_2;
-    const double t56 = q_2_dot * d_2;
-    const double t57 = q_1_dot * t22;
-    const double t58 = t17 * t57;
-    const double t59 = t3 * t58;
-    const double t60 = t59 + t38;
-    const double t61 = t60 + t52;
-    const double t62 = t56 + t61;
-    double rest = t55 - t55;
-    rest += t62 - t62;
-    if (!(rest >= 0.0)) {
+    const double t55 = q_2_dot * d_2;
+    const double t56 = q_1_dot * t33;
+    const double t57 = t28 * t56;
+    const double t58 = t5 * t57;
+    const double t59 = t58 + t49;
+    const double t60 = t59 + t18;
+    const double t61 = t55 + t60;
+    double rest = t54 - t54;
+    rest += t61 - t61;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    u[0] = t55;
-    u[1] = t62;
+    u[0] = t54;
+    u[1] = t61;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -869,7 +864,7 @@ double_pendulum_status double_pendulum_actuator_velocity(const double q[2], cons
     const double q_2_dot = qd[1];
     double rest = q_1_dot - q_1_dot;
     rest += q_2_dot - q_2_dot;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     nu[0] = q_1_dot;
@@ -918,7 +913,7 @@ double_pendulum_status double_pendulum_actuator_mass_matrix(const double q[2], c
     double rest = t24 - t24;
     rest += t25 - t25;
     rest += t18 - t18;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_nu[0] = t24;
@@ -965,37 +960,36 @@ double_pendulum_status double_pendulum_actuator_bias(const double q[2], const do
     const double t17 = m_2 * t16;
     const double c_2 = p->c_2;
     const double t18 = c_2 * t17;
-    const double t19 = m_2 * g;
-    const double t20 = l_1 * t19;
+    const double d_1 = p->d_1;
+    const double t19 = q_1_dot * d_1;
     const double c_1 = p->c_1;
     const double m_1 = p->m_1;
-    const double t21 = c_1 * m_1;
-    const double t22 = g * t21;
-    const double t23 = t20 + t22;
-    const double t24 = t23 * t5;
-    const double d_1 = p->d_1;
-    const double t25 = q_1_dot * d_1;
-    const double t26 = t24 + t25;
-    const double t27 = t18 + t26;
+    const double t20 = c_1 * m_1;
+    const double t21 = l_1 * m_2;
+    const double t22 = t20 + t21;
+    const double t23 = g * t22;
+    const double t24 = t5 * t23;
+    const double t25 = t19 + t24;
+    const double t26 = t18 + t25;
     const double d_2 = p->d_2;
-    const double t28 = q_2_dot * d_2;
-    const double t29 = q_1_dot * q_1_dot;
-    const double t30 = t29 * t3;
-    const double t31 = l_1 * t30;
-    const double t32 = t3 * t6;
-    const double t33 = t14 + t32;
-    const double t34 = g * t33;
-    const double t35 = t31 + t34;
-    const double t36 = m_2 * t35;
-    const double t37 = c_2 * t36;
-    const double t38 = t28 + t37;
-    double rest = t27 - t27;
-    rest += t38 - t38;
-    if (!(rest >= 0.0)) {
+    const double t27 = q_2_dot * d_2;
+    const double t28 = q_1_dot * q_1_dot;
+    const double t29 = t28 * t3;
+    const double t30 = l_1 * t29;
+    const double t31 = t3 * t6;
+    const double t32 = t14 + t31;
+    const double t33 = g * t32;
+    const double t34 = t30 + t33;
+    const double t35 = m_2 * t34;
+    const double t36 = c_2 * t35;
+    const double t37 = t27 + t36;
+    double rest = t26 - t26;
+    rest += t37 - t37;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    bias_nu[0] = t27;
-    bias_nu[1] = t38;
+    bias_nu[0] = t26;
+    bias_nu[1] = t37;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1014,28 +1008,28 @@ double_pendulum_status double_pendulum_forward_dynamics(const double q[2], const
     double sine[2];
     double cosine[2];
     double_pendulum_sincos_group(2, angle, sine, cosine);
-    const double c_1 = p->c_1;
-    const double t7 = c_1 * c_1;
-    const double m_1 = p->m_1;
-    const double t8 = m_1 * t7;
     const double l_1 = p->l_1;
-    const double t9 = l_1 * l_1;
+    const double t7 = l_1 * l_1;
+    const double J_2 = p->J_2;
+    const double t8 = J_2 * t7;
+    const double c_2 = p->c_2;
+    const double t9 = c_2 * c_2;
     const double m_2 = p->m_2;
-    const double t10 = m_2 * t9;
+    const double t10 = m_2 * t7;
     const double t3 = sine[0];
     const double t11 = t3 * t3;
     const double t12 = t10 * t11;
-    const double t13 = t8 + t12;
+    const double c_1 = p->c_1;
+    const double m_1 = p->m_1;
+    const double t13 = c_1 * m_1;
+    const double t14 = c_1 * t13;
+    const double t15 = t12 + t14;
     const double J_1 = p->J_1;
-    const double t14 = J_1 + t13;
-    const double c_2 = p->c_2;
-    const double t15 = c_2 * t14;
-    const double t16 = c_2 * t15;
-    const double J_2 = p->J_2;
-    const double t17 = J_2 * t9;
-    const double t18 = t16 + t17;
+    const double t16 = J_1 + t15;
+    const double t17 = t9 * t16;
+    const double t18 = t8 + t17;
     const double t19 = m_2 * t18;
-    const double t20 = J_1 + t8;
+    const double t20 = J_1 + t14;
     const double t21 = J_2 * t20;
     const double t22 = t19 + t21;
     const double t23 = fabs(t22);
@@ -1070,75 +1064,73 @@ double_pendulum_status double_pendulum_forward_dynamics(const double q[2], const
     const double t48 = t47 * t4;
     const double t49 = m_2 * t48;
     const double t50 = 0.5 * J_2;
-    const double t51 = c_2 * c_2;
-    const double t52 = m_2 * t51;
-    const double t53 = 0.5 * t52;
-    const double t54 = t50 + t53;
-    const double t55 = 2.0 * t54;
-    const double t56 = t49 + t55;
+    const double t51 = m_2 * t9;
+    const double t52 = 0.5 * t51;
+    const double t53 = t50 + t52;
+    const double t54 = 2.0 * t53;
+    const double t55 = t49 + t54;
     const double q_2_dot = qd[1];
     const double d_2 = p->d_2;
-    const double t57 = q_2_dot * d_2;
+    const double t56 = q_2_dot * d_2;
     const double q_1_dot = qd[0];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t58 = m_2 * turn_2;
-    const double t59 = q_1_dot * t58;
-    const double t60 = t47 * t59;
-    const double t61 = t3 * t60;
-    const double t62 = q_2_dot * t3;
-    const double t63 = t47 * t62;
-    const double t64 = q_1_dot * t63;
-    const double t65 = m_2 * t64;
-    const double t66 = t61 - t65;
+    const double t57 = m_2 * turn_2;
+    const double t58 = q_1_dot * t57;
+    const double t59 = t47 * t58;
+    const double t60 = t3 * t59;
+    const double t61 = q_2_dot * t3;
+    const double t62 = t47 * t61;
+    const double t63 = q_1_dot * t62;
+    const double t64 = m_2 * t63;
+    const double t65 = t60 - t64;
     const double g = p->g;
-    const double t67 = m_2 * g;
-    const double t68 = c_2 * t67;
+    const double t66 = m_2 * g;
+    const double t67 = c_2 * t66;
     const double t5 = sine[1];
-    const double t69 = t4 * t5;
+    const double t68 = t4 * t5;
     const double t6 = cosine[1];
-    const double t70 = t3 * t6;
-    const double t71 = t69 + t70;
-    const double t72 = t68 * t71;
-    const double t73 = t66 + t72;
-    const double t74 = t57 + t73;
+    const double t69 = t3 * t6;
+    const double t70 = t68 + t69;
+    const double t71 = t67 * t70;
+    const double t72 = t65 + t71;
+    const double t73 = t56 + t72;
     const double elbow = u[1];
-    const double t75 = elbow - t74;
-    const double t76 = t56 * t75;
+    const double t74 = elbow - t73;
+    const double t75 = t55 * t74;
     const double d_1 = p->d_1;
-    const double t77 = q_1_dot * d_1;
-    const double t78 = l_1 * t67;
-    const double t79 = c_1 * m_1;
-    const double t80 = g * t79;
-    const double t81 = t78 + t80;
-    const double t82 = t81 * t5;
-    const double t83 = t82 + t72;
-    const double t84 = t58 * t63;
-    const double t85 = t84 + t65;
-    const double t86 = t83 - t85;
-    const double t87 = t77 + t86;
+    const double t76 = q_1_dot * d_1;
+    const double t77 = l_1 * t66;
+    const double t78 = g * t13;
+    const double t79 = t77 + t78;
+    const double t80 = t79 * t5;
+    const double t81 = t80 + t71;
+    const double t82 = t57 * t62;
+    const double t83 = t82 + t64;
+    const double t84 = t81 - t83;
+    const double t85 = t76 + t84;
     const double shoulder = u[0];
-    const double t88 = t87 - shoulder;
-    const double t89 = t55 * t88;
-    const double t90 = t76 + t89;
-    const double t91 = t46 * t90;
-    const double t92 = -t91;
-    const double t93 = t49 + t56;
+    const double t86 = t85 - shoulder;
+    const double t87 = t54 * t86;
+    const double t88 = t75 + t87;
+    const double t89 = t46 * t88;
+    const double t90 = -t89;
+    const double t91 = t55 * t86;
+    const double t92 = t49 + t55;
+    const double t93 = 0.5 * t10;
     const double t94 = 0.5 * t20;
-    const double t95 = 0.5 * t10;
-    const double t96 = t94 + t95;
-    const double t97 = 2.0 * t96;
-    const double t98 = t93 + t97;
-    const double t99 = t98 * t75;
-    const double t100 = t56 * t88;
-    const double t101 = t99 + t100;
-    const double t102 = t46 * t101;
-    double rest = t92 - t92;
-    rest += t102 - t102;
-    if (!(rest >= 0.0)) {
+    const double t95 = t93 + t94;
+    const double t96 = 2.0 * t95;
+    const double t97 = t92 + t96;
+    const double t98 = t74 * t97;
+    const double t99 = t91 + t98;
+    const double t100 = t46 * t99;
+    double rest = t90 - t90;
+    rest += t100 - t100;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    qdd[0] = t92;
-    qdd[1] = t102;
+    qdd[0] = t90;
+    qdd[1] = t100;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1157,64 +1149,61 @@ double_pendulum_status double_pendulum_energy(const double q[2], const double qd
     double sine[2];
     double cosine[2];
     double_pendulum_sincos_group(2, angle, sine, cosine);
-    const double c_1 = p->c_1;
-    const double t7 = c_1 * c_1;
-    const double m_1 = p->m_1;
-    const double t8 = m_1 * t7;
-    const double J_1 = p->J_1;
-    const double t9 = J_1 + t8;
     const double q_1_dot = qd[0];
-    const double t10 = q_1_dot * q_1_dot;
-    const double t11 = t9 * t10;
-    const double t12 = 0.5 * t11;
     const double q_2_dot = qd[1];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t13 = turn_2 * turn_2;
-    const double J_2 = p->J_2;
-    const double t14 = J_2 * t13;
-    const double t15 = 0.5 * t14;
-    const double t16 = t12 + t15;
-    const double l_1 = p->l_1;
-    const double t17 = l_1 * l_1;
-    const double t18 = t10 * t17;
+    const double t7 = turn_2 * turn_2;
     const double c_2 = p->c_2;
-    const double t19 = l_1 * c_2;
+    const double t8 = c_2 * c_2;
+    const double t9 = t7 * t8;
+    const double l_1 = p->l_1;
+    const double t10 = q_1_dot * l_1;
+    const double t11 = c_2 * turn_2;
     const double t4 = cosine[0];
-    const double t20 = t19 * t4;
-    const double t21 = q_1_dot * t20;
-    const double t22 = turn_2 * t21;
-    const double t23 = 2.0 * t22;
-    const double t24 = t18 + t23;
-    const double t25 = c_2 * c_2;
-    const double t26 = t13 * t25;
-    const double t27 = t24 + t26;
+    const double t12 = t4 * t11;
+    const double t13 = 2.0 * t12;
+    const double t14 = t10 + t13;
+    const double t15 = t10 * t14;
+    const double t16 = t9 + t15;
     const double m_2 = p->m_2;
-    const double t28 = m_2 * t27;
-    const double t29 = 0.5 * t28;
-    const double t30 = t16 + t29;
-    const double t31 = c_1 * m_1;
+    const double t17 = m_2 * t16;
+    const double t18 = 0.5 * t17;
+    const double J_2 = p->J_2;
+    const double t19 = J_2 * t7;
+    const double t20 = 0.5 * t19;
+    const double t21 = q_1_dot * q_1_dot;
+    const double c_1 = p->c_1;
+    const double m_1 = p->m_1;
+    const double t22 = c_1 * m_1;
+    const double t23 = c_1 * t22;
+    const double J_1 = p->J_1;
+    const double t24 = J_1 + t23;
+    const double t25 = t21 * t24;
+    const double t26 = 0.5 * t25;
+    const double t27 = t20 + t26;
+    const double t28 = t18 + t27;
     const double t6 = cosine[1];
-    const double t32 = t31 * t6;
-    const double t33 = l_1 * t6;
-    const double t34 = t4 * t6;
+    const double t29 = t22 * t6;
+    const double t30 = l_1 * t6;
+    const double t31 = t4 * t6;
     const double t3 = sine[0];
     const double t5 = sine[1];
-    const double t35 = t3 * t5;
-    const double t36 = t34 - t35;
-    const double t37 = c_2 * t36;
-    const double t38 = t33 + t37;
-    const double t39 = m_2 * t38;
-    const double t40 = t32 + t39;
+    const double t32 = t3 * t5;
+    const double t33 = t31 - t32;
+    const double t34 = c_2 * t33;
+    const double t35 = t30 + t34;
+    const double t36 = m_2 * t35;
+    const double t37 = t29 + t36;
     const double g = p->g;
-    const double t41 = g * t40;
-    const double t42 = -t41;
-    double rest = t30 - t30;
-    rest += t42 - t42;
-    if (!(rest >= 0.0)) {
+    const double t38 = g * t37;
+    const double t39 = -t38;
+    double rest = t28 - t28;
+    rest += t39 - t39;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    T_U[0] = t30;
-    T_U[1] = t42;
+    T_U[0] = t28;
+    T_U[1] = t39;
     return DOUBLE_PENDULUM_OK;
 }
 

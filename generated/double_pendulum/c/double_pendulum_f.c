@@ -167,7 +167,7 @@ double_pendulum_status double_pendulum_mass_matrix_f(const float q[2], const dou
     float rest = t24 - t24;
     rest += t25 - t25;
     rest += t18 - t18;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G[0] = t24;
@@ -189,28 +189,27 @@ double_pendulum_status double_pendulum_coriolis_matrix_f(const float q[2], const
     const float l_1 = p->l_1;
     const float c_2 = p->c_2;
     const float t4 = l_1 * c_2;
-    const float t5 = t4 * t2;
     const float m_2 = p->m_2;
-    const float t6 = m_2 * t5;
+    const float t5 = m_2 * t4;
+    const float t6 = t5 * t2;
     const float q_2_dot = qd[1];
     const float t7 = q_2_dot * t6;
     const float t8 = -t7;
-    const float t9 = m_2 * t4;
     const float q_1_dot = qd[0];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t10 = turn_2 * t2;
-    const float t11 = t9 * t10;
-    const float t12 = -t11;
-    const float t13 = q_1_dot * t6;
+    const float t9 = turn_2 * t2;
+    const float t10 = t5 * t9;
+    const float t11 = -t10;
+    const float t12 = q_1_dot * t6;
     float rest = t8 - t8;
+    rest += t11 - t11;
     rest += t12 - t12;
-    rest += t13 - t13;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C[0] = t8;
-    C[1] = t12;
-    C[2] = t13;
+    C[1] = t11;
+    C[2] = t12;
     C[3] = 0.0f;
     return DOUBLE_PENDULUM_OK;
 }
@@ -238,16 +237,15 @@ double_pendulum_status double_pendulum_coriolis_force_f(const float q[2], const 
     const float t10 = t5 * t9;
     const float t11 = -t10;
     const float t12 = q_1_dot * q_1_dot;
-    const float t13 = t4 * t2;
-    const float t14 = m_2 * t13;
-    const float t15 = t12 * t14;
+    const float t13 = t5 * t2;
+    const float t14 = t12 * t13;
     float rest = t11 - t11;
-    rest += t15 - t15;
-    if (!(rest >= 0.0f)) {
+    rest += t14 - t14;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_qd[0] = t11;
-    C_qd[1] = t15;
+    C_qd[1] = t14;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -286,7 +284,7 @@ double_pendulum_status double_pendulum_potential_force_f(const float q[2], const
     const float t15 = t9 + t14;
     float rest = t15 - t15;
     rest += t9 - t9;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q[0] = t15;
@@ -306,7 +304,7 @@ double_pendulum_status double_pendulum_applied_force_f(const float q[2], const f
     const float t4 = -t3;
     float rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a[0] = t2;
@@ -426,7 +424,7 @@ double_pendulum_status double_pendulum_projected_mass_matrix_f(const float q[2],
     float rest = t24 - t24;
     rest += t25 - t25;
     rest += t18 - t18;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_tilde[0] = t24;
@@ -448,28 +446,27 @@ double_pendulum_status double_pendulum_projected_coriolis_matrix_f(const float q
     const float l_1 = p->l_1;
     const float c_2 = p->c_2;
     const float t4 = l_1 * c_2;
-    const float t5 = t4 * t2;
     const float m_2 = p->m_2;
-    const float t6 = m_2 * t5;
+    const float t5 = m_2 * t4;
+    const float t6 = t5 * t2;
     const float q_2_dot = qd[1];
     const float t7 = q_2_dot * t6;
     const float t8 = -t7;
-    const float t9 = m_2 * t4;
     const float q_1_dot = qd[0];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t10 = turn_2 * t2;
-    const float t11 = t9 * t10;
-    const float t12 = -t11;
-    const float t13 = q_1_dot * t6;
+    const float t9 = turn_2 * t2;
+    const float t10 = t5 * t9;
+    const float t11 = -t10;
+    const float t12 = q_1_dot * t6;
     float rest = t8 - t8;
+    rest += t11 - t11;
     rest += t12 - t12;
-    rest += t13 - t13;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_tilde[0] = t8;
-    C_tilde[1] = t12;
-    C_tilde[2] = t13;
+    C_tilde[1] = t11;
+    C_tilde[2] = t12;
     C_tilde[3] = 0.0f;
     return DOUBLE_PENDULUM_OK;
 }
@@ -509,7 +506,7 @@ double_pendulum_status double_pendulum_projected_potential_force_f(const float q
     const float t15 = t9 + t14;
     float rest = t15 - t15;
     rest += t9 - t9;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_tilde[0] = t15;
@@ -529,7 +526,7 @@ double_pendulum_status double_pendulum_projected_applied_force_f(const float q[2
     const float t4 = -t3;
     float rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a_tilde[0] = t2;
@@ -578,7 +575,7 @@ double_pendulum_status double_pendulum_minimal_mass_matrix_f(const float q[2], c
     float rest = t24 - t24;
     rest += t25 - t25;
     rest += t18 - t18;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_bar[0] = t24;
@@ -600,28 +597,27 @@ double_pendulum_status double_pendulum_minimal_coriolis_matrix_f(const float q[2
     const float l_1 = p->l_1;
     const float c_2 = p->c_2;
     const float t4 = l_1 * c_2;
-    const float t5 = t4 * t2;
     const float m_2 = p->m_2;
-    const float t6 = m_2 * t5;
+    const float t5 = m_2 * t4;
+    const float t6 = t5 * t2;
     const float q_2_dot = qd[1];
     const float t7 = q_2_dot * t6;
     const float t8 = -t7;
-    const float t9 = m_2 * t4;
     const float q_1_dot = qd[0];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t10 = turn_2 * t2;
-    const float t11 = t9 * t10;
-    const float t12 = -t11;
-    const float t13 = q_1_dot * t6;
+    const float t9 = turn_2 * t2;
+    const float t10 = t5 * t9;
+    const float t11 = -t10;
+    const float t12 = q_1_dot * t6;
     float rest = t8 - t8;
+    rest += t11 - t11;
     rest += t12 - t12;
-    rest += t13 - t13;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_bar[0] = t8;
-    C_bar[1] = t12;
-    C_bar[2] = t13;
+    C_bar[1] = t11;
+    C_bar[2] = t12;
     C_bar[3] = 0.0f;
     return DOUBLE_PENDULUM_OK;
 }
@@ -661,7 +657,7 @@ double_pendulum_status double_pendulum_minimal_potential_force_f(const float q[2
     const float t15 = t9 + t14;
     float rest = t15 - t15;
     rest += t9 - t9;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_bar[0] = t15;
@@ -681,7 +677,7 @@ double_pendulum_status double_pendulum_minimal_applied_force_f(const float q[2],
     const float t4 = -t3;
     float rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a_bar[0] = t2;
@@ -706,7 +702,7 @@ double_pendulum_status double_pendulum_admissible_velocity_f(const float q[2], c
     const float q_2_dot = qd[1];
     float rest = q_1_dot - q_1_dot;
     rest += q_2_dot - q_2_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qd_admissible[0] = q_1_dot;
@@ -722,7 +718,7 @@ double_pendulum_status double_pendulum_admissible_acceleration_f(const float q[2
     const float q_2_ddot = qdd[1];
     float rest = q_1_ddot - q_1_ddot;
     rest += q_2_ddot - q_2_ddot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd_admissible[0] = q_1_ddot;
@@ -736,7 +732,7 @@ double_pendulum_status double_pendulum_projected_configuration_f(const float q[2
     const float q_2 = q[1];
     float rest = q_1 - q_1;
     rest += q_2 - q_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     q_projected[0] = q_1;
@@ -745,102 +741,101 @@ double_pendulum_status double_pendulum_projected_configuration_f(const float q[2
 }
 
 double_pendulum_status double_pendulum_inverse_dynamics_f(const float q[2], const float qd[2], const float qdd[2], const double_pendulum_params_f *p, float u[2]) {
-    const float q_2 = q[1];
-    const float t1 = fabsf(q_2);
     const float q_1 = q[0];
-    const float t2 = fabsf(q_1);
+    const float t1 = fabsf(q_1);
+    const float q_2 = q[1];
+    const float t2 = fabsf(q_2);
     if (!(100.0f >= t1)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    const float angle[4] = {q_2, q_1, q_1, q_1};
+    const float angle[4] = {q_1, q_2, q_2, q_2};
     float sine[4];
     float cosine[4];
     double_pendulum_sincos_group_f(2, angle, sine, cosine);
     const float q_1_dot = qd[0];
     const float d_1 = p->d_1;
     const float t7 = q_1_dot * d_1;
-    const float c_1 = p->c_1;
-    const float t8 = c_1 * c_1;
-    const float m_1 = p->m_1;
-    const float t9 = m_1 * t8;
-    const float J_1 = p->J_1;
-    const float t10 = J_1 + t9;
-    const float t11 = 0.5f * t10;
-    const float l_1 = p->l_1;
-    const float t12 = l_1 * l_1;
     const float m_2 = p->m_2;
-    const float t13 = m_2 * t12;
-    const float t14 = 0.5f * t13;
-    const float t15 = t11 + t14;
-    const float q_1_ddot = qdd[0];
-    const float t16 = q_1_ddot * t15;
+    const float g = p->g;
+    const float t8 = m_2 * g;
+    const float l_1 = p->l_1;
+    const float t9 = l_1 * t8;
+    const float c_1 = p->c_1;
+    const float m_1 = p->m_1;
+    const float t10 = c_1 * m_1;
+    const float t11 = g * t10;
+    const float t12 = t9 + t11;
+    const float t3 = sine[0];
+    const float t13 = t12 * t3;
     const float c_2 = p->c_2;
-    const float t17 = l_1 * c_2;
+    const float t14 = c_2 * t8;
+    const float t6 = cosine[1];
+    const float t15 = t6 * t3;
+    const float t5 = sine[1];
     const float t4 = cosine[0];
-    const float t18 = t17 * t4;
+    const float t16 = t5 * t4;
+    const float t17 = t15 + t16;
+    const float t18 = t14 * t17;
+    const float t19 = t13 + t18;
+    const float t20 = l_1 * l_1;
+    const float t21 = m_2 * t20;
+    const float t22 = 0.5f * t21;
+    const float t23 = c_1 * t10;
+    const float J_1 = p->J_1;
+    const float t24 = J_1 + t23;
+    const float t25 = 0.5f * t24;
+    const float t26 = t22 + t25;
+    const float q_1_ddot = qdd[0];
+    const float t27 = q_1_ddot * t26;
+    const float t28 = l_1 * c_2;
+    const float t29 = t28 * t6;
     const float q_2_ddot = qdd[1];
-    const float t19 = q_1_ddot + q_2_ddot;
-    const float t20 = m_2 * t19;
-    const float t21 = t18 * t20;
+    const float t30 = q_1_ddot + q_2_ddot;
+    const float t31 = m_2 * t30;
+    const float t32 = t29 * t31;
     const float q_2_dot = qd[1];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t22 = m_2 * turn_2;
-    const float t3 = sine[0];
-    const float t23 = q_2_dot * t3;
-    const float t24 = t17 * t23;
-    const float t25 = t22 * t24;
-    const float t26 = t21 - t25;
+    const float t33 = m_2 * turn_2;
+    const float t34 = q_2_dot * t5;
+    const float t35 = t28 * t34;
+    const float t36 = t33 * t35;
+    const float t37 = t32 - t36;
     const float J_2 = p->J_2;
-    const float t27 = 0.5f * J_2;
-    const float t28 = c_2 * c_2;
-    const float t29 = m_2 * t28;
-    const float t30 = 0.5f * t29;
-    const float t31 = t27 + t30;
-    const float t32 = t31 * t19;
-    const float t33 = q_1_ddot * t18;
-    const float t34 = q_1_dot * t24;
-    const float t35 = t33 - t34;
-    const float t36 = m_2 * t35;
-    const float t37 = t32 + t36;
-    const float t38 = t32 + t37;
-    const float t39 = t26 + t38;
-    const float t40 = t16 + t39;
-    const float t41 = t16 + t40;
-    const float g = p->g;
-    const float t42 = m_2 * g;
-    const float t43 = l_1 * t42;
-    const float t44 = c_1 * m_1;
-    const float t45 = g * t44;
-    const float t46 = t43 + t45;
-    const float t5 = sine[1];
-    const float t47 = t46 * t5;
-    const float t48 = c_2 * t42;
-    const float t49 = t4 * t5;
-    const float t6 = cosine[1];
-    const float t50 = t3 * t6;
-    const float t51 = t49 + t50;
-    const float t52 = t48 * t51;
-    const float t53 = t47 + t52;
-    const float t54 = t41 + t53;
-    const float t55 = t7 + t54;
+    const float t38 = 0.5f * J_2;
+    const float t39 = c_2 * c_2;
+    const float t40 = m_2 * t39;
+    const float t41 = 0.5f * t40;
+    const float t42 = t38 + t41;
+    const float t43 = t42 * t30;
+    const float t44 = q_1_ddot * t29;
+    const float t45 = q_1_dot * t35;
+    const float t46 = t44 - t45;
+    const float t47 = m_2 * t46;
+    const float t48 = t43 + t47;
+    const float t49 = t43 + t48;
+    const float t50 = t37 + t49;
+    const float t51 = t50 + t27;
+    const float t52 = t27 + t51;
+    const float t53 = t19 + t52;
+    const float t54 = t7 + t53;
     const float d_2 = p->d_2;
-    const float t56 = q_2_dot * d_2;
-    const float t57 = q_1_dot * t22;
-    const float t58 = t17 * t57;
-    const float t59 = t3 * t58;
-    const float t60 = t59 + t38;
-    const float t61 = t60 + t52;
-    const float t62 = t56 + t61;
-    float rest = t55 - t55;
-    rest += t62 - t62;
-    if (!(rest >= 0.0f)) {
+    const float t55 = q_2_dot * d_2;
+    const float t56 = q_1_dot * t33;
+    const float t57 = t28 * t56;
+    const float t58 = t5 * t57;
+    const float t59 = t58 + t49;
+    const float t60 = t59 + t18;
+    const float t61 = t55 + t60;
+    float rest = t54 - t54;
+    rest += t61 - t61;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    u[0] = t55;
-    u[1] = t62;
+    u[0] = t54;
+    u[1] = t61;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -861,7 +856,7 @@ double_pendulum_status double_pendulum_actuator_velocity_f(const float q[2], con
     const float q_2_dot = qd[1];
     float rest = q_1_dot - q_1_dot;
     rest += q_2_dot - q_2_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     nu[0] = q_1_dot;
@@ -910,7 +905,7 @@ double_pendulum_status double_pendulum_actuator_mass_matrix_f(const float q[2], 
     float rest = t24 - t24;
     rest += t25 - t25;
     rest += t18 - t18;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_nu[0] = t24;
@@ -957,37 +952,36 @@ double_pendulum_status double_pendulum_actuator_bias_f(const float q[2], const f
     const float t17 = m_2 * t16;
     const float c_2 = p->c_2;
     const float t18 = c_2 * t17;
-    const float t19 = m_2 * g;
-    const float t20 = l_1 * t19;
+    const float d_1 = p->d_1;
+    const float t19 = q_1_dot * d_1;
     const float c_1 = p->c_1;
     const float m_1 = p->m_1;
-    const float t21 = c_1 * m_1;
-    const float t22 = g * t21;
-    const float t23 = t20 + t22;
-    const float t24 = t23 * t5;
-    const float d_1 = p->d_1;
-    const float t25 = q_1_dot * d_1;
-    const float t26 = t24 + t25;
-    const float t27 = t18 + t26;
+    const float t20 = c_1 * m_1;
+    const float t21 = l_1 * m_2;
+    const float t22 = t20 + t21;
+    const float t23 = g * t22;
+    const float t24 = t5 * t23;
+    const float t25 = t19 + t24;
+    const float t26 = t18 + t25;
     const float d_2 = p->d_2;
-    const float t28 = q_2_dot * d_2;
-    const float t29 = q_1_dot * q_1_dot;
-    const float t30 = t29 * t3;
-    const float t31 = l_1 * t30;
-    const float t32 = t3 * t6;
-    const float t33 = t14 + t32;
-    const float t34 = g * t33;
-    const float t35 = t31 + t34;
-    const float t36 = m_2 * t35;
-    const float t37 = c_2 * t36;
-    const float t38 = t28 + t37;
-    float rest = t27 - t27;
-    rest += t38 - t38;
-    if (!(rest >= 0.0f)) {
+    const float t27 = q_2_dot * d_2;
+    const float t28 = q_1_dot * q_1_dot;
+    const float t29 = t28 * t3;
+    const float t30 = l_1 * t29;
+    const float t31 = t3 * t6;
+    const float t32 = t14 + t31;
+    const float t33 = g * t32;
+    const float t34 = t30 + t33;
+    const float t35 = m_2 * t34;
+    const float t36 = c_2 * t35;
+    const float t37 = t27 + t36;
+    float rest = t26 - t26;
+    rest += t37 - t37;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    bias_nu[0] = t27;
-    bias_nu[1] = t38;
+    bias_nu[0] = t26;
+    bias_nu[1] = t37;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1006,28 +1000,28 @@ double_pendulum_status double_pendulum_forward_dynamics_f(const float q[2], cons
     float sine[4];
     float cosine[4];
     double_pendulum_sincos_group_f(2, angle, sine, cosine);
-    const float c_1 = p->c_1;
-    const float t7 = c_1 * c_1;
-    const float m_1 = p->m_1;
-    const float t8 = m_1 * t7;
     const float l_1 = p->l_1;
-    const float t9 = l_1 * l_1;
+    const float t7 = l_1 * l_1;
+    const float J_2 = p->J_2;
+    const float t8 = J_2 * t7;
+    const float c_2 = p->c_2;
+    const float t9 = c_2 * c_2;
     const float m_2 = p->m_2;
-    const float t10 = m_2 * t9;
+    const float t10 = m_2 * t7;
     const float t3 = sine[0];
     const float t11 = t3 * t3;
     const float t12 = t10 * t11;
-    const float t13 = t8 + t12;
+    const float c_1 = p->c_1;
+    const float m_1 = p->m_1;
+    const float t13 = c_1 * m_1;
+    const float t14 = c_1 * t13;
+    const float t15 = t12 + t14;
     const float J_1 = p->J_1;
-    const float t14 = J_1 + t13;
-    const float c_2 = p->c_2;
-    const float t15 = c_2 * t14;
-    const float t16 = c_2 * t15;
-    const float J_2 = p->J_2;
-    const float t17 = J_2 * t9;
-    const float t18 = t16 + t17;
+    const float t16 = J_1 + t15;
+    const float t17 = t9 * t16;
+    const float t18 = t8 + t17;
     const float t19 = m_2 * t18;
-    const float t20 = J_1 + t8;
+    const float t20 = J_1 + t14;
     const float t21 = J_2 * t20;
     const float t22 = t19 + t21;
     const float t23 = fabsf(t22);
@@ -1062,75 +1056,73 @@ double_pendulum_status double_pendulum_forward_dynamics_f(const float q[2], cons
     const float t48 = t47 * t4;
     const float t49 = m_2 * t48;
     const float t50 = 0.5f * J_2;
-    const float t51 = c_2 * c_2;
-    const float t52 = m_2 * t51;
-    const float t53 = 0.5f * t52;
-    const float t54 = t50 + t53;
-    const float t55 = 2.0f * t54;
-    const float t56 = t49 + t55;
+    const float t51 = m_2 * t9;
+    const float t52 = 0.5f * t51;
+    const float t53 = t50 + t52;
+    const float t54 = 2.0f * t53;
+    const float t55 = t49 + t54;
     const float q_2_dot = qd[1];
     const float d_2 = p->d_2;
-    const float t57 = q_2_dot * d_2;
+    const float t56 = q_2_dot * d_2;
     const float q_1_dot = qd[0];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t58 = m_2 * turn_2;
-    const float t59 = q_1_dot * t58;
-    const float t60 = t47 * t59;
-    const float t61 = t3 * t60;
-    const float t62 = q_2_dot * t3;
-    const float t63 = t47 * t62;
-    const float t64 = q_1_dot * t63;
-    const float t65 = m_2 * t64;
-    const float t66 = t61 - t65;
+    const float t57 = m_2 * turn_2;
+    const float t58 = q_1_dot * t57;
+    const float t59 = t47 * t58;
+    const float t60 = t3 * t59;
+    const float t61 = q_2_dot * t3;
+    const float t62 = t47 * t61;
+    const float t63 = q_1_dot * t62;
+    const float t64 = m_2 * t63;
+    const float t65 = t60 - t64;
     const float g = p->g;
-    const float t67 = m_2 * g;
-    const float t68 = c_2 * t67;
+    const float t66 = m_2 * g;
+    const float t67 = c_2 * t66;
     const float t5 = sine[1];
-    const float t69 = t4 * t5;
+    const float t68 = t4 * t5;
     const float t6 = cosine[1];
-    const float t70 = t3 * t6;
-    const float t71 = t69 + t70;
-    const float t72 = t68 * t71;
-    const float t73 = t66 + t72;
-    const float t74 = t57 + t73;
+    const float t69 = t3 * t6;
+    const float t70 = t68 + t69;
+    const float t71 = t67 * t70;
+    const float t72 = t65 + t71;
+    const float t73 = t56 + t72;
     const float elbow = u[1];
-    const float t75 = elbow - t74;
-    const float t76 = t56 * t75;
+    const float t74 = elbow - t73;
+    const float t75 = t55 * t74;
     const float d_1 = p->d_1;
-    const float t77 = q_1_dot * d_1;
-    const float t78 = l_1 * t67;
-    const float t79 = c_1 * m_1;
-    const float t80 = g * t79;
-    const float t81 = t78 + t80;
-    const float t82 = t81 * t5;
-    const float t83 = t82 + t72;
-    const float t84 = t58 * t63;
-    const float t85 = t84 + t65;
-    const float t86 = t83 - t85;
-    const float t87 = t77 + t86;
+    const float t76 = q_1_dot * d_1;
+    const float t77 = l_1 * t66;
+    const float t78 = g * t13;
+    const float t79 = t77 + t78;
+    const float t80 = t79 * t5;
+    const float t81 = t80 + t71;
+    const float t82 = t57 * t62;
+    const float t83 = t82 + t64;
+    const float t84 = t81 - t83;
+    const float t85 = t76 + t84;
     const float shoulder = u[0];
-    const float t88 = t87 - shoulder;
-    const float t89 = t55 * t88;
-    const float t90 = t76 + t89;
-    const float t91 = t46 * t90;
-    const float t92 = -t91;
-    const float t93 = t49 + t56;
+    const float t86 = t85 - shoulder;
+    const float t87 = t54 * t86;
+    const float t88 = t75 + t87;
+    const float t89 = t46 * t88;
+    const float t90 = -t89;
+    const float t91 = t55 * t86;
+    const float t92 = t49 + t55;
+    const float t93 = 0.5f * t10;
     const float t94 = 0.5f * t20;
-    const float t95 = 0.5f * t10;
-    const float t96 = t94 + t95;
-    const float t97 = 2.0f * t96;
-    const float t98 = t93 + t97;
-    const float t99 = t98 * t75;
-    const float t100 = t56 * t88;
-    const float t101 = t99 + t100;
-    const float t102 = t46 * t101;
-    float rest = t92 - t92;
-    rest += t102 - t102;
-    if (!(rest >= 0.0f)) {
+    const float t95 = t93 + t94;
+    const float t96 = 2.0f * t95;
+    const float t97 = t92 + t96;
+    const float t98 = t74 * t97;
+    const float t99 = t91 + t98;
+    const float t100 = t46 * t99;
+    float rest = t90 - t90;
+    rest += t100 - t100;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    qdd[0] = t92;
-    qdd[1] = t102;
+    qdd[0] = t90;
+    qdd[1] = t100;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1149,64 +1141,61 @@ double_pendulum_status double_pendulum_energy_f(const float q[2], const float qd
     float sine[4];
     float cosine[4];
     double_pendulum_sincos_group_f(2, angle, sine, cosine);
-    const float c_1 = p->c_1;
-    const float t7 = c_1 * c_1;
-    const float m_1 = p->m_1;
-    const float t8 = m_1 * t7;
-    const float J_1 = p->J_1;
-    const float t9 = J_1 + t8;
     const float q_1_dot = qd[0];
-    const float t10 = q_1_dot * q_1_dot;
-    const float t11 = t9 * t10;
-    const float t12 = 0.5f * t11;
     const float q_2_dot = qd[1];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t13 = turn_2 * turn_2;
-    const float J_2 = p->J_2;
-    const float t14 = J_2 * t13;
-    const float t15 = 0.5f * t14;
-    const float t16 = t12 + t15;
-    const float l_1 = p->l_1;
-    const float t17 = l_1 * l_1;
-    const float t18 = t10 * t17;
+    const float t7 = turn_2 * turn_2;
     const float c_2 = p->c_2;
-    const float t19 = l_1 * c_2;
+    const float t8 = c_2 * c_2;
+    const float t9 = t7 * t8;
+    const float l_1 = p->l_1;
+    const float t10 = q_1_dot * l_1;
+    const float t11 = c_2 * turn_2;
     const float t4 = cosine[0];
-    const float t20 = t19 * t4;
-    const float t21 = q_1_dot * t20;
-    const float t22 = turn_2 * t21;
-    const float t23 = 2.0f * t22;
-    const float t24 = t18 + t23;
-    const float t25 = c_2 * c_2;
-    const float t26 = t13 * t25;
-    const float t27 = t24 + t26;
+    const float t12 = t4 * t11;
+    const float t13 = 2.0f * t12;
+    const float t14 = t10 + t13;
+    const float t15 = t10 * t14;
+    const float t16 = t9 + t15;
     const float m_2 = p->m_2;
-    const float t28 = m_2 * t27;
-    const float t29 = 0.5f * t28;
-    const float t30 = t16 + t29;
-    const float t31 = c_1 * m_1;
+    const float t17 = m_2 * t16;
+    const float t18 = 0.5f * t17;
+    const float J_2 = p->J_2;
+    const float t19 = J_2 * t7;
+    const float t20 = 0.5f * t19;
+    const float t21 = q_1_dot * q_1_dot;
+    const float c_1 = p->c_1;
+    const float m_1 = p->m_1;
+    const float t22 = c_1 * m_1;
+    const float t23 = c_1 * t22;
+    const float J_1 = p->J_1;
+    const float t24 = J_1 + t23;
+    const float t25 = t21 * t24;
+    const float t26 = 0.5f * t25;
+    const float t27 = t20 + t26;
+    const float t28 = t18 + t27;
     const float t6 = cosine[1];
-    const float t32 = t31 * t6;
-    const float t33 = l_1 * t6;
-    const float t34 = t4 * t6;
+    const float t29 = t22 * t6;
+    const float t30 = l_1 * t6;
+    const float t31 = t4 * t6;
     const float t3 = sine[0];
     const float t5 = sine[1];
-    const float t35 = t3 * t5;
-    const float t36 = t34 - t35;
-    const float t37 = c_2 * t36;
-    const float t38 = t33 + t37;
-    const float t39 = m_2 * t38;
-    const float t40 = t32 + t39;
+    const float t32 = t3 * t5;
+    const float t33 = t31 - t32;
+    const float t34 = c_2 * t33;
+    const float t35 = t30 + t34;
+    const float t36 = m_2 * t35;
+    const float t37 = t29 + t36;
     const float g = p->g;
-    const float t41 = g * t40;
-    const float t42 = -t41;
-    float rest = t30 - t30;
-    rest += t42 - t42;
-    if (!(rest >= 0.0f)) {
+    const float t38 = g * t37;
+    const float t39 = -t38;
+    float rest = t28 - t28;
+    rest += t39 - t39;
+    if (isnan(rest) != 0) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    T_U[0] = t30;
-    T_U[1] = t42;
+    T_U[0] = t28;
+    T_U[1] = t39;
     return DOUBLE_PENDULUM_OK;
 }
 

@@ -11,8 +11,8 @@ Inputs u:
 
 Operations                          + -      *      /   sqrt sincos  other
 mass_matrix                           6     16      0      0      1      0
-coriolis_matrix                       1      8      0      0      1      0
-coriolis_force                        1     10      0      0      1      0
+coriolis_matrix                       1      7      0      0      1      0
+coriolis_force                        1      9      0      0      1      0
 potential_force                       3      7      0      0      2      0
 applied_force                         0      2      0      0      0      0
 nullspace_projector                   0      0      0      0      0      0
@@ -23,24 +23,24 @@ projected_control_matrix              0      0      0      0      0      0
 projected_control_pseudoinverse       0      0      0      0      0      0
 orthogonal_complement                 0      0      0      0      0      0
 projected_mass_matrix                 6     16      0      0      1      0
-projected_coriolis_matrix             1      8      0      0      1      0
+projected_coriolis_matrix             1      7      0      0      1      0
 projected_potential_force             3      7      0      0      2      0
 projected_applied_force               0      2      0      0      0      0
 minimal_mass_matrix                   6     16      0      0      1      0
-minimal_coriolis_matrix               1      8      0      0      1      0
+minimal_coriolis_matrix               1      7      0      0      1      0
 minimal_potential_force               3      7      0      0      2      0
 minimal_applied_force                 0      2      0      0      0      0
 minimal_control_matrix                0      0      0      0      0      0
 admissible_velocity                   0      0      0      0      0      0
 admissible_acceleration               0      0      0      0      0      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                     20     37      0      0      2      0
+inverse_dynamics                     20     36      0      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     0      0      0      0      0      0
 actuator_mass_matrix                  6     16      0      0      1      0
-actuator_bias                         9     23      0      0      2      0
-forward_dynamics                     29     58      1      0      2      0
-energy                                9     27      0      0      2      0
+actuator_bias                         9     22      0      0      2      0
+forward_dynamics                     29     56      1      0      2      0
+energy                                9     24      0      0      2      0
 singularity                           0      0      0      0      0      0
 (changes of sign are not counted)
 
@@ -258,20 +258,19 @@ def coriolis_matrix(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(q_2)
         t4 = l_1 * c_2
-        t5 = t4 * t2
-        t6 = m_2 * t5
+        t5 = m_2 * t4
+        t6 = t5 * t2
         t7 = q_2_dot * t6
         t8 = -t7
-        t9 = m_2 * t4
         turn_2 = q_1_dot + q_2_dot
-        t10 = turn_2 * t2
-        t11 = t9 * t10
-        t12 = -t11
-        t13 = q_1_dot * t6
+        t9 = turn_2 * t2
+        t10 = t5 * t9
+        t11 = -t10
+        t12 = q_1_dot * t6
         entries = (
             t8,
+            t11,
             t12,
-            t13,
             0.0,
         )
         return _result("coriolis_matrix", status, batch, (2, 2), entries)
@@ -303,12 +302,11 @@ def coriolis_force(q, qd, p=PARAMETERS):
         t10 = t5 * t9
         t11 = -t10
         t12 = q_1_dot * q_1_dot
-        t13 = t4 * t2
-        t14 = m_2 * t13
-        t15 = t12 * t14
+        t13 = t5 * t2
+        t14 = t12 * t13
         entries = (
             t11,
-            t15,
+            t14,
         )
         return _result("coriolis_force", status, batch, (2,), entries)
 
@@ -554,20 +552,19 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(q_2)
         t4 = l_1 * c_2
-        t5 = t4 * t2
-        t6 = m_2 * t5
+        t5 = m_2 * t4
+        t6 = t5 * t2
         t7 = q_2_dot * t6
         t8 = -t7
-        t9 = m_2 * t4
         turn_2 = q_1_dot + q_2_dot
-        t10 = turn_2 * t2
-        t11 = t9 * t10
-        t12 = -t11
-        t13 = q_1_dot * t6
+        t9 = turn_2 * t2
+        t10 = t5 * t9
+        t11 = -t10
+        t12 = q_1_dot * t6
         entries = (
             t8,
+            t11,
             t12,
-            t13,
             0.0,
         )
         return _result("projected_coriolis_matrix", status, batch, (2, 2), entries)
@@ -701,20 +698,19 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(q_2)
         t4 = l_1 * c_2
-        t5 = t4 * t2
-        t6 = m_2 * t5
+        t5 = m_2 * t4
+        t6 = t5 * t2
         t7 = q_2_dot * t6
         t8 = -t7
-        t9 = m_2 * t4
         turn_2 = q_1_dot + q_2_dot
-        t10 = turn_2 * t2
-        t11 = t9 * t10
-        t12 = -t11
-        t13 = q_1_dot * t6
+        t9 = turn_2 * t2
+        t10 = t5 * t9
+        t11 = -t10
+        t12 = q_1_dot * t6
         entries = (
             t8,
+            t11,
             t12,
-            t13,
             0.0,
         )
         return _result("minimal_coriolis_matrix", status, batch, (2, 2), entries)
@@ -873,72 +869,71 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         g = np.float64(p.g)
         d_1 = np.float64(p.d_1)
         d_2 = np.float64(p.d_2)
-        t1 = np.abs(q_2)
-        t2 = np.abs(q_1)
+        t1 = np.abs(q_1)
+        t2 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(q_2)
-        t5, t6 = _sincos(q_1)
+        t3, t4 = _sincos(q_1)
+        t5, t6 = _sincos(q_2)
         t7 = q_1_dot * d_1
-        t8 = c_1 * c_1
-        t9 = m_1 * t8
-        t10 = J_1 + t9
-        t11 = 0.5 * t10
-        t12 = l_1 * l_1
-        t13 = m_2 * t12
-        t14 = 0.5 * t13
-        t15 = t11 + t14
-        t16 = q_1_ddot * t15
-        t17 = l_1 * c_2
-        t18 = t17 * t4
-        t19 = q_1_ddot + q_2_ddot
-        t20 = m_2 * t19
-        t21 = t18 * t20
+        t8 = m_2 * g
+        t9 = l_1 * t8
+        t10 = c_1 * m_1
+        t11 = g * t10
+        t12 = t9 + t11
+        t13 = t12 * t3
+        t14 = c_2 * t8
+        t15 = t6 * t3
+        t16 = t5 * t4
+        t17 = t15 + t16
+        t18 = t14 * t17
+        t19 = t13 + t18
+        t20 = l_1 * l_1
+        t21 = m_2 * t20
+        t22 = 0.5 * t21
+        t23 = c_1 * t10
+        t24 = J_1 + t23
+        t25 = 0.5 * t24
+        t26 = t22 + t25
+        t27 = q_1_ddot * t26
+        t28 = l_1 * c_2
+        t29 = t28 * t6
+        t30 = q_1_ddot + q_2_ddot
+        t31 = m_2 * t30
+        t32 = t29 * t31
         turn_2 = q_1_dot + q_2_dot
-        t22 = m_2 * turn_2
-        t23 = q_2_dot * t3
-        t24 = t17 * t23
-        t25 = t22 * t24
-        t26 = t21 - t25
-        t27 = 0.5 * J_2
-        t28 = c_2 * c_2
-        t29 = m_2 * t28
-        t30 = 0.5 * t29
-        t31 = t27 + t30
-        t32 = t31 * t19
-        t33 = q_1_ddot * t18
-        t34 = q_1_dot * t24
-        t35 = t33 - t34
-        t36 = m_2 * t35
-        t37 = t32 + t36
-        t38 = t32 + t37
-        t39 = t26 + t38
-        t40 = t16 + t39
-        t41 = t16 + t40
-        t42 = m_2 * g
-        t43 = l_1 * t42
-        t44 = c_1 * m_1
-        t45 = g * t44
-        t46 = t43 + t45
-        t47 = t46 * t5
-        t48 = c_2 * t42
-        t49 = t4 * t5
-        t50 = t3 * t6
-        t51 = t49 + t50
-        t52 = t48 * t51
-        t53 = t47 + t52
-        t54 = t41 + t53
-        t55 = t7 + t54
-        t56 = q_2_dot * d_2
-        t57 = q_1_dot * t22
-        t58 = t17 * t57
-        t59 = t3 * t58
-        t60 = t59 + t38
-        t61 = t60 + t52
-        t62 = t56 + t61
+        t33 = m_2 * turn_2
+        t34 = q_2_dot * t5
+        t35 = t28 * t34
+        t36 = t33 * t35
+        t37 = t32 - t36
+        t38 = 0.5 * J_2
+        t39 = c_2 * c_2
+        t40 = m_2 * t39
+        t41 = 0.5 * t40
+        t42 = t38 + t41
+        t43 = t42 * t30
+        t44 = q_1_ddot * t29
+        t45 = q_1_dot * t35
+        t46 = t44 - t45
+        t47 = m_2 * t46
+        t48 = t43 + t47
+        t49 = t43 + t48
+        t50 = t37 + t49
+        t51 = t50 + t27
+        t52 = t27 + t51
+        t53 = t19 + t52
+        t54 = t7 + t53
+        t55 = q_2_dot * d_2
+        t56 = q_1_dot * t33
+        t57 = t28 * t56
+        t58 = t5 * t57
+        t59 = t58 + t49
+        t60 = t59 + t18
+        t61 = t55 + t60
         entries = (
-            t55,
-            t62,
+            t54,
+            t61,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -1063,29 +1058,28 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t16 = t13 + t15
         t17 = m_2 * t16
         t18 = c_2 * t17
-        t19 = m_2 * g
-        t20 = l_1 * t19
-        t21 = c_1 * m_1
-        t22 = g * t21
-        t23 = t20 + t22
-        t24 = t23 * t5
-        t25 = q_1_dot * d_1
-        t26 = t24 + t25
-        t27 = t18 + t26
-        t28 = q_2_dot * d_2
-        t29 = q_1_dot * q_1_dot
-        t30 = t29 * t3
-        t31 = l_1 * t30
-        t32 = t3 * t6
-        t33 = t14 + t32
-        t34 = g * t33
-        t35 = t31 + t34
-        t36 = m_2 * t35
-        t37 = c_2 * t36
-        t38 = t28 + t37
+        t19 = q_1_dot * d_1
+        t20 = c_1 * m_1
+        t21 = l_1 * m_2
+        t22 = t20 + t21
+        t23 = g * t22
+        t24 = t5 * t23
+        t25 = t19 + t24
+        t26 = t18 + t25
+        t27 = q_2_dot * d_2
+        t28 = q_1_dot * q_1_dot
+        t29 = t28 * t3
+        t30 = l_1 * t29
+        t31 = t3 * t6
+        t32 = t14 + t31
+        t33 = g * t32
+        t34 = t30 + t33
+        t35 = m_2 * t34
+        t36 = c_2 * t35
+        t37 = t27 + t36
         entries = (
-            t27,
-            t38,
+            t26,
+            t37,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
 
@@ -1121,20 +1115,20 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(q_2)
         t5, t6 = _sincos(q_1)
-        t7 = c_1 * c_1
-        t8 = m_1 * t7
-        t9 = l_1 * l_1
-        t10 = m_2 * t9
+        t7 = l_1 * l_1
+        t8 = J_2 * t7
+        t9 = c_2 * c_2
+        t10 = m_2 * t7
         t11 = t3 * t3
         t12 = t10 * t11
-        t13 = t8 + t12
-        t14 = J_1 + t13
-        t15 = c_2 * t14
-        t16 = c_2 * t15
-        t17 = J_2 * t9
-        t18 = t16 + t17
+        t13 = c_1 * m_1
+        t14 = c_1 * t13
+        t15 = t12 + t14
+        t16 = J_1 + t15
+        t17 = t9 * t16
+        t18 = t8 + t17
         t19 = m_2 * t18
-        t20 = J_1 + t8
+        t20 = J_1 + t14
         t21 = J_2 * t20
         t22 = t19 + t21
         t23 = np.abs(t22)
@@ -1166,62 +1160,60 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t48 = t47 * t4
         t49 = m_2 * t48
         t50 = 0.5 * J_2
-        t51 = c_2 * c_2
-        t52 = m_2 * t51
-        t53 = 0.5 * t52
-        t54 = t50 + t53
-        t55 = 2.0 * t54
-        t56 = t49 + t55
-        t57 = q_2_dot * d_2
+        t51 = m_2 * t9
+        t52 = 0.5 * t51
+        t53 = t50 + t52
+        t54 = 2.0 * t53
+        t55 = t49 + t54
+        t56 = q_2_dot * d_2
         turn_2 = q_1_dot + q_2_dot
-        t58 = m_2 * turn_2
-        t59 = q_1_dot * t58
-        t60 = t47 * t59
-        t61 = t3 * t60
-        t62 = q_2_dot * t3
-        t63 = t47 * t62
-        t64 = q_1_dot * t63
-        t65 = m_2 * t64
-        t66 = t61 - t65
-        t67 = m_2 * g
-        t68 = c_2 * t67
-        t69 = t4 * t5
-        t70 = t3 * t6
-        t71 = t69 + t70
-        t72 = t68 * t71
-        t73 = t66 + t72
-        t74 = t57 + t73
-        t75 = elbow - t74
-        t76 = t56 * t75
-        t77 = q_1_dot * d_1
-        t78 = l_1 * t67
-        t79 = c_1 * m_1
-        t80 = g * t79
-        t81 = t78 + t80
-        t82 = t81 * t5
-        t83 = t82 + t72
-        t84 = t58 * t63
-        t85 = t84 + t65
-        t86 = t83 - t85
-        t87 = t77 + t86
-        t88 = t87 - shoulder
-        t89 = t55 * t88
-        t90 = t76 + t89
-        t91 = t46 * t90
-        t92 = -t91
-        t93 = t49 + t56
+        t57 = m_2 * turn_2
+        t58 = q_1_dot * t57
+        t59 = t47 * t58
+        t60 = t3 * t59
+        t61 = q_2_dot * t3
+        t62 = t47 * t61
+        t63 = q_1_dot * t62
+        t64 = m_2 * t63
+        t65 = t60 - t64
+        t66 = m_2 * g
+        t67 = c_2 * t66
+        t68 = t4 * t5
+        t69 = t3 * t6
+        t70 = t68 + t69
+        t71 = t67 * t70
+        t72 = t65 + t71
+        t73 = t56 + t72
+        t74 = elbow - t73
+        t75 = t55 * t74
+        t76 = q_1_dot * d_1
+        t77 = l_1 * t66
+        t78 = g * t13
+        t79 = t77 + t78
+        t80 = t79 * t5
+        t81 = t80 + t71
+        t82 = t57 * t62
+        t83 = t82 + t64
+        t84 = t81 - t83
+        t85 = t76 + t84
+        t86 = t85 - shoulder
+        t87 = t54 * t86
+        t88 = t75 + t87
+        t89 = t46 * t88
+        t90 = -t89
+        t91 = t55 * t86
+        t92 = t49 + t55
+        t93 = 0.5 * t10
         t94 = 0.5 * t20
-        t95 = 0.5 * t10
-        t96 = t94 + t95
-        t97 = 2.0 * t96
-        t98 = t93 + t97
-        t99 = t98 * t75
-        t100 = t56 * t88
-        t101 = t99 + t100
-        t102 = t46 * t101
+        t95 = t93 + t94
+        t96 = 2.0 * t95
+        t97 = t92 + t96
+        t98 = t74 * t97
+        t99 = t91 + t98
+        t100 = t46 * t99
         entries = (
-            t92,
-            t102,
+            t90,
+            t100,
         )
         return _result("forward_dynamics", status, batch, (2,), entries)
 
@@ -1252,46 +1244,43 @@ def energy(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(q_2)
         t5, t6 = _sincos(q_1)
-        t7 = c_1 * c_1
-        t8 = m_1 * t7
-        t9 = J_1 + t8
-        t10 = q_1_dot * q_1_dot
-        t11 = t9 * t10
-        t12 = 0.5 * t11
         turn_2 = q_1_dot + q_2_dot
-        t13 = turn_2 * turn_2
-        t14 = J_2 * t13
-        t15 = 0.5 * t14
-        t16 = t12 + t15
-        t17 = l_1 * l_1
-        t18 = t10 * t17
-        t19 = l_1 * c_2
-        t20 = t19 * t4
-        t21 = q_1_dot * t20
-        t22 = turn_2 * t21
-        t23 = 2.0 * t22
-        t24 = t18 + t23
-        t25 = c_2 * c_2
-        t26 = t13 * t25
-        t27 = t24 + t26
-        t28 = m_2 * t27
-        t29 = 0.5 * t28
-        t30 = t16 + t29
-        t31 = c_1 * m_1
-        t32 = t31 * t6
-        t33 = l_1 * t6
-        t34 = t4 * t6
-        t35 = t3 * t5
-        t36 = t34 - t35
-        t37 = c_2 * t36
-        t38 = t33 + t37
-        t39 = m_2 * t38
-        t40 = t32 + t39
-        t41 = g * t40
-        t42 = -t41
+        t7 = turn_2 * turn_2
+        t8 = c_2 * c_2
+        t9 = t7 * t8
+        t10 = q_1_dot * l_1
+        t11 = c_2 * turn_2
+        t12 = t4 * t11
+        t13 = 2.0 * t12
+        t14 = t10 + t13
+        t15 = t10 * t14
+        t16 = t9 + t15
+        t17 = m_2 * t16
+        t18 = 0.5 * t17
+        t19 = J_2 * t7
+        t20 = 0.5 * t19
+        t21 = q_1_dot * q_1_dot
+        t22 = c_1 * m_1
+        t23 = c_1 * t22
+        t24 = J_1 + t23
+        t25 = t21 * t24
+        t26 = 0.5 * t25
+        t27 = t20 + t26
+        t28 = t18 + t27
+        t29 = t22 * t6
+        t30 = l_1 * t6
+        t31 = t4 * t6
+        t32 = t3 * t5
+        t33 = t31 - t32
+        t34 = c_2 * t33
+        t35 = t30 + t34
+        t36 = m_2 * t35
+        t37 = t29 + t36
+        t38 = g * t37
+        t39 = -t38
         entries = (
-            t30,
-            t42,
+            t28,
+            t39,
         )
         return _result("energy", status, batch, (2,), entries)
 

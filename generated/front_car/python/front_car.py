@@ -13,7 +13,7 @@ Inputs u:
   u[1] T [N*m] steering torque
 
 Operations                          + -      *      /   sqrt sincos  other
-mass_matrix                           2      5      0      0      1      0
+mass_matrix                           2      4      0      0      1      0
 coriolis_matrix                       0      4      0      0      1      0
 coriolis_force                        0      6      0      0      1      0
 potential_force                       0      0      0      0      0      0
@@ -23,32 +23,32 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     17      1      0      2      0
 nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     49      3      0      2      0
-weighted_nullspace_projector         14     53      4      0      2      0
+weighted_pseudoinverse               17     47      3      0      2      0
+weighted_nullspace_projector         14     52      4      0      2      0
 control_matrix                        1      1      0      0      2      0
 projected_control_matrix              3     14      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
-orthogonal_complement                 1      6      2      0      2      0
-projected_mass_matrix                10     45      3      0      2      0
-projected_coriolis_matrix            74    205      3      0      2      0
+orthogonal_complement                 1      5      2      0      2      0
+projected_mass_matrix                10     43      3      0      2      0
+projected_coriolis_matrix            73    196      3      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
-minimal_mass_matrix                   3     12      1      0      2      0
-minimal_coriolis_matrix              13     41      1      0      2      0
+minimal_mass_matrix                   3     11      1      0      2      0
+minimal_coriolis_matrix              13     36      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      6      1      0      2      0
-admissible_velocity                   5     21      2      0      2      0
-admissible_acceleration              17     76      2      0      2      0
+admissible_velocity                   5     20      2      0      2      0
+admissible_acceleration              17     75      2      0      2      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                      7     17      1      0      2      0
+inverse_dynamics                      7     14      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
-actuator_mass_matrix                  2      8      1      0      1      0
-actuator_bias                        11     28      1      0      2      0
-forward_dynamics                     36     94      1      0      2      0
-multipliers                          39     91      1      0      2      0
-energy                                7     16      0      0      1      0
+actuator_mass_matrix                  2      6      1      0      1      0
+actuator_bias                        11     27      1      0      2      0
+forward_dynamics                     36     93      1      0      2      0
+multipliers                          39     90      1      0      2      0
+energy                                7     15      0      0      1      0
 singularity                          12     26      5      1      2      0
 (changes of sign are not counted)
 
@@ -219,9 +219,8 @@ def mass_matrix(q, p=PARAMETERS):
         t6 = t2 * t5
         t7 = -t6
         t8 = t3 * t5
-        t9 = L * L
-        t10 = m_2 * t9
-        t11 = Theta_1 + t10
+        t9 = L * t5
+        t10 = Theta_1 + t9
         entries = (
             t4,
             0.0,
@@ -233,7 +232,7 @@ def mass_matrix(q, p=PARAMETERS):
             0.0,
             t7,
             t8,
-            t11,
+            t10,
             0.0,
             0.0,
             0.0,
@@ -708,13 +707,13 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(Theta_1)
@@ -748,40 +747,38 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t54 = t6 * t4
         t55 = t5 * t3
         t56 = t54 - t55
-        t57 = L * L
-        t58 = m_2 * t57
-        t59 = Theta_1 + t58
+        t57 = m_2 * t19
+        t58 = Theta_1 + t57
+        t59 = Theta_2 * t58
         t60 = t3 * t59
-        t61 = Theta_2 * t60
-        t62 = t56 * t61
-        t63 = t53 - t62
-        t64 = t44 * t63
-        t65 = Theta_2 * t59
-        t66 = t65 / t25
-        t67 = t48 * t66
-        t68 = m_1 * t54
-        t69 = m_2 * t56
-        t70 = t68 + t69
-        t71 = t45 * t70
-        t72 = t8 * t71
-        t73 = t49 * t61
-        t74 = t72 + t73
-        t75 = t44 * t74
-        t76 = -t75
-        t77 = t55 * t66
-        t78 = t45 / t25
-        t79 = t20 * t78
-        t80 = m_1 + m_2
-        t81 = t4 * t80
-        t82 = t78 * t81
-        t83 = -t82
+        t61 = t56 * t60
+        t62 = t53 - t61
+        t63 = t44 * t62
+        t64 = t59 / t25
+        t65 = t48 * t64
+        t66 = m_1 * t54
+        t67 = m_2 * t56
+        t68 = t66 + t67
+        t69 = t45 * t68
+        t70 = t8 * t69
+        t71 = t49 * t60
+        t72 = t70 + t71
+        t73 = t44 * t72
+        t74 = -t73
+        t75 = t55 * t64
+        t76 = t45 / t25
+        t77 = t22 * t76
+        t78 = m_1 + m_2
+        t79 = t4 * t78
+        t80 = t79 * t76
+        t81 = -t80
         entries = (
-            t64,
-            t67,
-            t76,
+            t63,
+            t65,
+            t74,
+            t75,
             t77,
-            t79,
-            t83,
+            t81,
             0.0,
             0.0,
         )
@@ -802,31 +799,31 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t6 * t6
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(Theta_1)
@@ -847,58 +844,57 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t42 = t40 + t41
         t43 = t42 * 3.552713678800501e-15
         status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = L * L
-        t45 = Theta_2 * t44
-        t46 = t45 / t25
-        t47 = t6 * t4
-        t48 = m_1 * t47
-        t49 = t5 * t3
-        t50 = t47 - t49
-        t51 = m_2 * t50
-        t52 = t48 + t51
-        t53 = t47 * t52
-        t54 = t46 * t53
-        t55 = t5 * t4
-        t56 = m_1 * t55
-        t57 = t6 * t3
-        t58 = t55 + t57
-        t59 = m_2 * t58
-        t60 = t56 + t59
-        t61 = t47 * t60
-        t62 = t46 * t61
-        t63 = t3 * t47
-        t64 = m_2 * t44
-        t65 = Theta_1 + t64
-        t66 = L * Theta_2
-        t67 = t65 * t66
-        t68 = t67 / t25
-        t69 = t63 * t68
-        t70 = t55 * t52
-        t71 = t46 * t70
-        t72 = t55 * t60
-        t73 = t46 * t72
-        t74 = t3 * t55
-        t75 = t74 * t68
-        t76 = t66 / t25
-        t77 = t3 * t52
-        t78 = t76 * t77
-        t79 = t3 * t60
-        t80 = t76 * t79
-        t81 = Theta_2 * t65
-        t82 = t81 / t25
-        t83 = t7 * t82
+        t44 = t4 * t6
+        t45 = m_1 * t44
+        t46 = t3 * t5
+        t47 = t44 - t46
+        t48 = m_2 * t47
+        t49 = t45 + t48
+        t50 = t44 * t49
+        t51 = Theta_2 * t19
+        t52 = t51 / t25
+        t53 = t50 * t52
+        t54 = t3 * t6
+        t55 = m_1 * t54
+        t56 = t4 * t5
+        t57 = t54 + t56
+        t58 = m_2 * t57
+        t59 = t55 + t58
+        t60 = t44 * t59
+        t61 = t52 * t60
+        t62 = t5 * t44
+        t63 = m_2 * t19
+        t64 = Theta_1 + t63
+        t65 = L * Theta_2
+        t66 = t64 * t65
+        t67 = t66 / t25
+        t68 = t62 * t67
+        t69 = t54 * t49
+        t70 = t52 * t69
+        t71 = t54 * t59
+        t72 = t71 * t52
+        t73 = t5 * t54
+        t74 = t73 * t67
+        t75 = t65 / t25
+        t76 = t5 * t49
+        t77 = t75 * t76
+        t78 = t5 * t59
+        t79 = t75 * t78
+        t80 = Theta_2 * t64
+        t81 = t80 / t25
+        t82 = t7 * t81
         entries = (
-            t54,
-            t62,
-            t69,
+            t53,
+            t61,
+            t68,
             0.0,
-            t71,
-            t73,
-            t75,
+            t70,
+            t72,
+            t74,
             0.0,
-            t78,
-            t80,
-            t83,
+            t77,
+            t79,
+            t82,
             0.0,
             0.0,
             0.0,
@@ -1068,15 +1064,14 @@ def orthogonal_complement(q, p=PARAMETERS):
             t17 = t16 + t9
             status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
-        t18 = 1.0 / t4
-        t19 = t3 * t18
-        t20 = t5 / t8
+        t18 = t3 / t4
+        t19 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t19,
+            t18,
             0.0,
-            t20,
+            t19,
             0.0,
             0.0,
             1.0,
@@ -1122,59 +1117,57 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t21 = t6 * t6
         t22 = t4 * t21
         t23 = t4 * t22
-        t24 = t4 * t4
-        t25 = m_1 * t24
-        t26 = m_2 + t25
-        t27 = L * t26
-        t28 = L * t27
-        t29 = Theta_1 * t7
-        t30 = t28 + t29
-        t31 = t23 * t30
-        t32 = t20 * t31
-        t33 = t5 * t6
+        t24 = Theta_1 * t7
+        t25 = t4 * t4
+        t26 = m_1 * t25
+        t27 = m_2 + t26
+        t28 = t18 * t27
+        t29 = t24 + t28
+        t30 = t23 * t29
+        t31 = t20 * t30
+        t32 = t5 * t6
+        t33 = t4 * t32
         t34 = t4 * t33
-        t35 = t4 * t34
-        t36 = t35 * t30
-        t37 = t20 * t36
-        t38 = L / t19
-        t39 = t6 * t4
-        t40 = t3 * t39
-        t41 = t40 * t30
-        t42 = t38 * t41
-        t43 = t5 * t5
+        t35 = t34 * t29
+        t36 = t20 * t35
+        t37 = L / t19
+        t38 = t6 * t4
+        t39 = t3 * t38
+        t40 = t39 * t29
+        t41 = t37 * t40
+        t42 = t5 * t5
+        t43 = t4 * t42
         t44 = t4 * t43
-        t45 = t4 * t44
-        t46 = t45 * t30
-        t47 = t20 * t46
-        t48 = t5 * t4
-        t49 = t3 * t48
-        t50 = t49 * t30
-        t51 = t38 * t50
-        t52 = m_2 * t18
-        t53 = Theta_1 + t52
-        t54 = t24 + (-2.0)
-        t55 = t53 * t54
-        t56 = m_1 + m_2
-        t57 = t56 * t18
-        t58 = t7 * t57
-        t59 = t55 + t58
+        t45 = t44 * t29
+        t46 = t20 * t45
+        t47 = t5 * t4
+        t48 = t3 * t47
+        t49 = t48 * t29
+        t50 = t37 * t49
+        t51 = m_2 * t18
+        t52 = Theta_1 + t51
+        t53 = t25 + (-2.0)
+        t54 = t52 * t53
+        t55 = m_1 + m_2
+        t56 = t55 * t18
+        t57 = t7 * t56
+        t58 = t54 + t57
+        t59 = t4 * t58
         t60 = t4 * t59
-        t61 = t4 * t60
-        t62 = t53 + t61
-        t63 = 1.0 / t19
-        t64 = t62 * t63
+        t61 = t52 + t60
+        t62 = t61 / t19
         entries = (
-            t32,
-            t37,
-            t42,
+            t31,
+            t36,
+            t41,
             0.0,
-            t37,
-            t47,
-            t51,
+            t36,
+            t46,
+            t50,
             0.0,
-            t42,
-            t51,
-            t64,
+            t41,
+            t50,
+            t62,
             0.0,
             0.0,
             0.0,
@@ -1226,283 +1219,273 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t21 = t14 * t20
         t22 = t18 / t21
         t23 = t6 * t4
-        t24 = x_dot * t6
-        t25 = y_dot * t5
-        t26 = t24 + t25
-        t27 = t4 * t26
-        t28 = L * t27
-        t29 = theta_dot * t3
+        t24 = m_2 * t18
+        t25 = Theta_1 + t24
+        t26 = t4 * t4
+        t27 = 2.0 - t26
+        t28 = x_dot * t6
+        t29 = y_dot * t5
         t30 = t28 + t29
-        t31 = L * t3
-        t32 = t31 * t31
-        t33 = t4 * t4
-        t34 = t33 + (-2.0)
-        t35 = t14 + t34
-        t36 = t32 + t35
-        t37 = t6 * t36
-        t38 = m_2 * t37
-        t39 = t5 * t4
-        t40 = t3 * t39
-        t41 = m_1 + m_2
-        t42 = t41 * t18
-        t43 = t40 * t42
-        t44 = t38 - t43
-        t45 = t4 * t44
-        t46 = m_2 * t18
-        t47 = Theta_1 + t46
-        t48 = t41 + t47
-        t49 = t5 * t3
-        t50 = t3 * t49
+        t31 = t4 * t30
+        t32 = L * t31
+        t33 = theta_dot * t3
+        t34 = t32 + t33
+        t35 = t4 * t34
+        t36 = t27 * t35
+        t37 = t5 * t36
+        t38 = phi_dot * t6
+        t39 = t14 * t38
+        t40 = t37 + t39
+        t41 = t3 * t40
+        t42 = t25 * t41
+        t43 = L * t3
+        t44 = t43 * t43
+        t45 = t26 + (-2.0)
+        t46 = t14 + t45
+        t47 = t44 + t46
+        t48 = t6 * t47
+        t49 = m_2 * t48
+        t50 = t5 * t4
         t51 = t3 * t50
-        t52 = t48 * t51
-        t53 = t45 - t52
-        t54 = t4 * t53
-        t55 = t7 + t15
-        t56 = 1.0 - t55
-        t57 = t6 * t56
-        t58 = m_2 * t57
-        t59 = t54 + t58
-        t60 = t30 * t59
-        t61 = 2.0 * t41
-        t62 = t47 - t61
-        t63 = phi_dot * t6
-        t64 = t3 * t63
-        t65 = t14 * t64
-        t66 = t62 * t65
-        t67 = t60 + t66
-        t68 = L * t67
-        t69 = L * t68
-        t70 = 2.0 - t33
-        t71 = t4 * t30
-        t72 = t70 * t71
-        t73 = t5 * t72
-        t74 = t14 * t63
-        t75 = t73 + t74
-        t76 = t3 * t75
-        t77 = t47 * t76
-        t78 = t69 + t77
-        t79 = t4 * t78
-        t80 = t30 * t49
-        t81 = t47 * t80
-        t82 = t79 - t81
-        t83 = t4 * t82
-        t84 = t47 * t65
-        t85 = t83 - t84
-        t86 = t23 * t85
-        t87 = t22 * t86
-        t88 = (-1.0) + t18
-        t89 = t41 * t88
-        t90 = t89 - t47
-        t91 = t3 * t90
-        t92 = t6 * t91
-        t93 = m_2 * t39
-        t94 = t92 + t93
-        t95 = t4 * t94
-        t96 = (-2.0) + t32
-        t97 = t5 * t96
-        t98 = m_2 * t97
-        t99 = t95 + t98
-        t100 = t4 * t99
-        t101 = t6 * t3
-        t102 = t101 * t48
-        t103 = t100 + t102
-        t104 = t4 * t103
-        t105 = t7 * t14
-        t106 = 1.0 - t105
-        t107 = t5 * t106
-        t108 = m_2 * t107
-        t109 = t104 + t108
-        t110 = t30 * t109
-        t111 = phi_dot * t5
-        t112 = t3 * t111
-        t113 = t14 * t112
-        t114 = t62 * t113
-        t115 = t110 + t114
-        t116 = L * t115
-        t117 = L * t116
-        t118 = t3 * t23
-        t119 = t30 * t118
-        t120 = t34 * t119
-        t121 = t47 * t120
-        t122 = t117 + t121
+        t52 = m_1 + m_2
+        t53 = t52 * t18
+        t54 = t51 * t53
+        t55 = t49 - t54
+        t56 = t4 * t55
+        t57 = t52 + t25
+        t58 = t5 * t3
+        t59 = t3 * t58
+        t60 = t3 * t59
+        t61 = t57 * t60
+        t62 = t56 - t61
+        t63 = t4 * t62
+        t64 = t7 + t15
+        t65 = 1.0 - t64
+        t66 = t6 * t65
+        t67 = m_2 * t66
+        t68 = t63 + t67
+        t69 = t34 * t68
+        t70 = 2.0 * t52
+        t71 = t25 - t70
+        t72 = t3 * t38
+        t73 = t14 * t72
+        t74 = t71 * t73
+        t75 = t69 + t74
+        t76 = t18 * t75
+        t77 = t42 + t76
+        t78 = t4 * t77
+        t79 = t34 * t58
+        t80 = t25 * t79
+        t81 = t78 - t80
+        t82 = t4 * t81
+        t83 = t25 * t73
+        t84 = t82 - t83
+        t85 = t23 * t84
+        t86 = t22 * t85
+        t87 = t6 * t3
+        t88 = t34 * t87
+        t89 = t25 * t88
+        t90 = t3 * t23
+        t91 = t34 * t90
+        t92 = t45 * t91
+        t93 = t25 * t92
+        t94 = (-1.0) + t18
+        t95 = t52 * t94
+        t96 = t95 - t25
+        t97 = t3 * t96
+        t98 = t6 * t97
+        t99 = m_2 * t50
+        t100 = t98 + t99
+        t101 = t4 * t100
+        t102 = (-2.0) + t44
+        t103 = t5 * t102
+        t104 = m_2 * t103
+        t105 = t101 + t104
+        t106 = t4 * t105
+        t107 = t87 * t57
+        t108 = t106 + t107
+        t109 = t4 * t108
+        t110 = t7 * t14
+        t111 = 1.0 - t110
+        t112 = t5 * t111
+        t113 = m_2 * t112
+        t114 = t109 + t113
+        t115 = t34 * t114
+        t116 = phi_dot * t5
+        t117 = t3 * t116
+        t118 = t14 * t117
+        t119 = t71 * t118
+        t120 = t115 + t119
+        t121 = t18 * t120
+        t122 = t93 + t121
         t123 = t4 * t122
-        t124 = t30 * t101
-        t125 = t47 * t124
-        t126 = t123 + t125
-        t127 = t4 * t126
-        t128 = t3 * t112
-        t129 = t3 * t128
-        t130 = t14 * t129
-        t131 = t47 * t130
-        t132 = t127 - t131
-        t133 = t23 * t132
-        t134 = t22 * t133
-        t135 = L * t18
-        t136 = t135 / t21
-        t137 = 2.0 * t47
-        t138 = t137 - t41
-        t139 = phi_dot * t3
-        t140 = t14 * t139
-        t141 = t138 * t140
-        t142 = t3 * t141
-        t143 = phi_dot * t4
-        t144 = t4 * t143
-        t145 = t14 * t144
-        t146 = t42 * t145
-        t147 = t142 + t146
-        t148 = t4 * t23
-        t149 = t147 * t148
-        t150 = t136 * t149
-        t151 = 1.0 - t18
-        t152 = t41 * t151
-        t153 = t47 + t152
-        t154 = t3 * t153
-        t155 = t5 * t154
-        t156 = m_2 * t23
-        t157 = t155 + t156
-        t158 = t4 * t157
-        t159 = t6 * t96
-        t160 = m_2 * t159
-        t161 = t158 + t160
-        t162 = t4 * t161
-        t163 = t49 * t48
-        t164 = t162 - t163
-        t165 = t4 * t164
-        t166 = t6 * t106
-        t167 = m_2 * t166
-        t168 = t165 + t167
-        t169 = t30 * t168
-        t170 = t66 + t169
-        t171 = L * t170
-        t172 = L * t171
-        t173 = t30 * t40
-        t174 = t70 * t173
-        t175 = t47 * t174
-        t176 = t172 + t175
-        t177 = t4 * t176
-        t178 = t177 - t81
-        t179 = t4 * t178
-        t180 = t3 * t64
-        t181 = t3 * t180
-        t182 = t14 * t181
-        t183 = t47 * t182
-        t184 = t179 - t183
-        t185 = t39 * t184
-        t186 = t22 * t185
-        t187 = t39 * t132
-        t188 = t22 * t187
-        t189 = t4 * t39
-        t190 = t147 * t189
-        t191 = t136 * t190
-        t192 = 2.0 - t32
-        t193 = t192 - t33
-        t194 = t41 * t193
-        t195 = t47 * t70
-        t196 = t194 + t195
-        t197 = t5 * t196
-        t198 = m_2 * t118
-        t199 = t197 + t198
-        t200 = t4 * t199
-        t201 = t101 * t96
-        t202 = m_2 * t201
-        t203 = t200 + t202
-        t204 = t4 * t203
-        t205 = t5 * t48
-        t206 = t204 - t205
-        t207 = t4 * t206
-        t208 = t101 * t106
-        t209 = m_2 * t208
-        t210 = t207 + t209
-        t211 = t30 * t210
-        t212 = t14 * t180
-        t213 = t62 * t212
-        t214 = t211 + t213
-        t215 = L * t214
-        t216 = L * t215
-        t217 = t4 * t33
-        t218 = t4 * t217
-        t219 = 3.0 * t7
-        t220 = t218 + t219
-        t221 = t30 * t220
-        t222 = t5 * t221
-        t223 = t4 * t63
-        t224 = t14 * t223
-        t225 = t222 - t224
-        t226 = t4 * t225
-        t227 = 2.0 * t74
-        t228 = t226 + t227
-        t229 = t47 * t228
-        t230 = t216 + t229
-        t231 = t4 * t230
-        t232 = t5 * t30
-        t233 = t47 * t232
-        t234 = t231 - t233
-        t235 = t4 * t234
-        t236 = t47 * t74
-        t237 = t235 - t236
-        t238 = L / t21
-        t239 = t237 * t238
-        t240 = t47 * t34
-        t241 = t33 + t96
-        t242 = t41 * t241
-        t243 = t240 + t242
-        t244 = t6 * t243
-        t245 = m_2 * t40
-        t246 = t244 + t245
-        t247 = t4 * t246
-        t248 = t49 * t96
-        t249 = m_2 * t248
-        t250 = t247 + t249
+        t124 = t89 + t123
+        t125 = t4 * t124
+        t126 = t3 * t117
+        t127 = t3 * t126
+        t128 = t14 * t127
+        t129 = t25 * t128
+        t130 = t125 - t129
+        t131 = t23 * t130
+        t132 = t22 * t131
+        t133 = L * t18
+        t134 = t133 / t21
+        t135 = t4 * t23
+        t136 = t26 * t53
+        t137 = 2.0 * t25
+        t138 = t137 - t52
+        t139 = t3 * t138
+        t140 = t3 * t139
+        t141 = t136 + t140
+        t142 = phi_dot * t14
+        t143 = t141 * t142
+        t144 = t135 * t143
+        t145 = t134 * t144
+        t146 = t34 * t51
+        t147 = t27 * t146
+        t148 = t25 * t147
+        t149 = 1.0 - t18
+        t150 = t52 * t149
+        t151 = t25 + t150
+        t152 = t3 * t151
+        t153 = t5 * t152
+        t154 = m_2 * t23
+        t155 = t153 + t154
+        t156 = t4 * t155
+        t157 = t6 * t102
+        t158 = m_2 * t157
+        t159 = t156 + t158
+        t160 = t4 * t159
+        t161 = t58 * t57
+        t162 = t160 - t161
+        t163 = t4 * t162
+        t164 = t6 * t111
+        t165 = m_2 * t164
+        t166 = t163 + t165
+        t167 = t34 * t166
+        t168 = t74 + t167
+        t169 = t18 * t168
+        t170 = t148 + t169
+        t171 = t4 * t170
+        t172 = t171 - t80
+        t173 = t4 * t172
+        t174 = t3 * t72
+        t175 = t3 * t174
+        t176 = t14 * t175
+        t177 = t25 * t176
+        t178 = t173 - t177
+        t179 = t50 * t178
+        t180 = t22 * t179
+        t181 = t50 * t130
+        t182 = t22 * t181
+        t183 = t4 * t50
+        t184 = t183 * t143
+        t185 = t134 * t184
+        t186 = L / t21
+        t187 = t4 * t26
+        t188 = t4 * t187
+        t189 = 3.0 * t7
+        t190 = t188 + t189
+        t191 = t34 * t190
+        t192 = t5 * t191
+        t193 = t4 * t38
+        t194 = t14 * t193
+        t195 = t192 - t194
+        t196 = t4 * t195
+        t197 = 2.0 * t39
+        t198 = t196 + t197
+        t199 = t25 * t198
+        t200 = 2.0 - t44
+        t201 = t200 - t26
+        t202 = t52 * t201
+        t203 = t25 * t27
+        t204 = t202 + t203
+        t205 = t5 * t204
+        t206 = m_2 * t90
+        t207 = t205 + t206
+        t208 = t4 * t207
+        t209 = t87 * t102
+        t210 = m_2 * t209
+        t211 = t208 + t210
+        t212 = t4 * t211
+        t213 = t5 * t57
+        t214 = t212 - t213
+        t215 = t4 * t214
+        t216 = t87 * t111
+        t217 = m_2 * t216
+        t218 = t215 + t217
+        t219 = t34 * t218
+        t220 = t14 * t174
+        t221 = t71 * t220
+        t222 = t219 + t221
+        t223 = t18 * t222
+        t224 = t199 + t223
+        t225 = t4 * t224
+        t226 = t5 * t34
+        t227 = t25 * t226
+        t228 = t225 - t227
+        t229 = t4 * t228
+        t230 = t25 * t39
+        t231 = t229 - t230
+        t232 = t186 * t231
+        t233 = t6 * t34
+        t234 = t25 * t233
+        t235 = t14 * t116
+        t236 = 2.0 * t235
+        t237 = t6 * t191
+        t238 = t4 * t116
+        t239 = t14 * t238
+        t240 = t237 + t239
+        t241 = t4 * t240
+        t242 = t236 - t241
+        t243 = t25 * t242
+        t244 = t25 * t45
+        t245 = t26 + t102
+        t246 = t52 * t245
+        t247 = t244 + t246
+        t248 = t6 * t247
+        t249 = m_2 * t51
+        t250 = t248 + t249
         t251 = t4 * t250
-        t252 = t6 * t48
-        t253 = t251 + t252
-        t254 = t4 * t253
-        t255 = t49 * t106
-        t256 = m_2 * t255
-        t257 = t254 + t256
-        t258 = t30 * t257
-        t259 = t14 * t128
-        t260 = t62 * t259
+        t252 = t58 * t102
+        t253 = m_2 * t252
+        t254 = t251 + t253
+        t255 = t4 * t254
+        t256 = t6 * t57
+        t257 = t255 + t256
+        t258 = t4 * t257
+        t259 = t58 * t111
+        t260 = m_2 * t259
         t261 = t258 + t260
-        t262 = L * t261
-        t263 = L * t262
-        t264 = t14 * t111
-        t265 = 2.0 * t264
-        t266 = t6 * t221
-        t267 = t4 * t111
-        t268 = t14 * t267
-        t269 = t266 + t268
+        t262 = t34 * t261
+        t263 = t14 * t126
+        t264 = t71 * t263
+        t265 = t262 + t264
+        t266 = t18 * t265
+        t267 = t243 + t266
+        t268 = t4 * t267
+        t269 = t234 + t268
         t270 = t4 * t269
-        t271 = t265 - t270
-        t272 = t47 * t271
-        t273 = t263 + t272
-        t274 = t4 * t273
-        t275 = t6 * t30
-        t276 = t47 * t275
-        t277 = t274 + t276
-        t278 = t4 * t277
-        t279 = t47 * t264
-        t280 = t278 - t279
-        t281 = t238 * t280
-        t282 = t33 * t42
-        t283 = t3 * t138
-        t284 = t3 * t283
-        t285 = t282 + t284
-        t286 = t140 * t285
-        t287 = t4 * t286
-        t288 = t22 * t287
+        t271 = t25 * t235
+        t272 = t270 - t271
+        t273 = t186 * t272
+        t274 = phi_dot * t3
+        t275 = t14 * t274
+        t276 = t275 * t141
+        t277 = t4 * t276
+        t278 = t22 * t277
         entries = (
-            t87,
-            t134,
-            t150,
+            t86,
+            t132,
+            t145,
             0.0,
-            t186,
-            t188,
-            t191,
+            t180,
+            t182,
+            t185,
             0.0,
-            t239,
-            t281,
-            t288,
+            t232,
+            t273,
+            t278,
             0.0,
             0.0,
             0.0,
@@ -1588,10 +1571,9 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t23 = t3 * t3
         t24 = Theta_1 * t23
         t25 = t22 + t24
-        t26 = 1.0 / t9
-        t27 = t25 * t26
+        t26 = t25 / t9
         entries = (
-            t27,
+            t26,
             0.0,
             0.0,
             Theta_2,
@@ -1637,52 +1619,47 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 2)
-        t18 = t5 * t4
-        t19 = t3 * t18
-        t20 = m_1 + m_2
-        t21 = L * L
-        t22 = m_2 * t21
-        t23 = Theta_1 + t22
-        t24 = t20 + t23
-        t25 = t19 * t24
-        t26 = t3 * t25
-        t27 = t20 * t21
-        t28 = t4 * t18
-        t29 = t4 * t28
-        t30 = t27 * t29
-        t31 = t26 + t30
-        t32 = L * t31
-        t33 = L * t32
-        t34 = t4 * t4
-        t35 = t34 + (-2.0)
-        t36 = t18 * t35
-        t37 = t23 * t36
-        t38 = t33 + t37
-        t39 = theta_dot * t38
-        t40 = phi_dot * t6
-        t41 = t3 * t40
-        t42 = (-1.0) + t21
-        t43 = t41 * t42
-        t44 = t23 * t43
-        t45 = t39 + t44
-        t46 = t4 * t45
-        t47 = theta_dot * t5
-        t48 = t23 * t47
-        t49 = t46 + t48
-        t50 = t4 * t49
-        t51 = t23 * t41
-        t52 = t50 + t51
-        t53 = t6 * t21
-        t54 = t6 * t53
-        t55 = t6 * t54
-        t56 = t4 * t55
-        t57 = t4 * t56
-        t58 = t4 * t57
-        t59 = t14 * t58
-        t60 = 1.0 / t59
-        t61 = t52 * t60
+        t18 = L * L
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = phi_dot * t6
+        t22 = t3 * t21
+        t23 = t20 * t22
+        t24 = theta_dot * t5
+        t25 = t20 * t24
+        t26 = (-1.0) + t18
+        t27 = t22 * t26
+        t28 = t20 * t27
+        t29 = t5 * t4
+        t30 = t4 * t4
+        t31 = t30 + (-2.0)
+        t32 = t29 * t31
+        t33 = t20 * t32
+        t34 = m_1 + m_2
+        t35 = t34 * t18
+        t36 = t30 * t35
+        t37 = t34 + t20
+        t38 = t7 * t37
+        t39 = t36 + t38
+        t40 = t29 * t39
+        t41 = t18 * t40
+        t42 = t33 + t41
+        t43 = theta_dot * t42
+        t44 = t28 + t43
+        t45 = t4 * t44
+        t46 = t25 + t45
+        t47 = t4 * t46
+        t48 = t23 + t47
+        t49 = t6 * t18
+        t50 = t6 * t49
+        t51 = t6 * t50
+        t52 = t4 * t51
+        t53 = t4 * t52
+        t54 = t4 * t53
+        t55 = t14 * t54
+        t56 = t48 / t55
         entries = (
-            t61,
+            t56,
             0.0,
             0.0,
             0.0,
@@ -1808,13 +1785,12 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t29 = t5 * t4
         t30 = t25 * t29
         t31 = t18 * t30
-        t32 = 1.0 / t14
-        t33 = t3 * t25
-        t34 = t32 * t33
+        t32 = t3 * t25
+        t33 = t32 / t14
         entries = (
             t28,
             t31,
-            t34,
+            t33,
             phi_dot,
         )
         return _result("admissible_velocity", status, batch, (4,), entries)
@@ -1929,23 +1905,22 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t86 = t27 * t85
         t87 = t82 - t86
         t88 = t58 * t87
-        t89 = 1.0 / t56
-        t90 = t14 * t61
-        t91 = t3 * t90
-        t92 = phi_dot * t27
-        t93 = L * t92
-        t94 = t91 + t93
-        t95 = t4 * t94
-        t96 = L * t95
-        t97 = theta_ddot * t3
-        t98 = t3 * t97
-        t99 = t14 * t98
-        t100 = t96 + t99
-        t101 = t89 * t100
+        t89 = t14 * t61
+        t90 = t3 * t89
+        t91 = phi_dot * t27
+        t92 = L * t91
+        t93 = t90 + t92
+        t94 = t4 * t93
+        t95 = L * t94
+        t96 = theta_ddot * t3
+        t97 = t3 * t96
+        t98 = t14 * t97
+        t99 = t95 + t98
+        t100 = t99 / t56
         entries = (
             t59,
             t88,
-            t101,
+            t100,
             phi_ddot,
         )
         return _result("admissible_acceleration", status, batch, (4,), entries)
@@ -2008,24 +1983,21 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         t14 = t12 * t13
         t15 = t11 - t14
         t16 = t4 * t15
-        t17 = 1.0 / L
-        t18 = L * L
-        t19 = m_2 * t18
-        t20 = Theta_1 + t19
-        t21 = theta_ddot * t20
-        t22 = y_ddot * t6
-        t23 = x_ddot * t5
-        t24 = t22 - t23
-        t25 = m_2 * t24
-        t26 = L * t25
-        t27 = t21 + t26
-        t28 = t17 * t27
-        t29 = t3 * t28
-        t30 = t16 + t29
-        t31 = phi_ddot * Theta_2
+        t17 = L * t12
+        t18 = Theta_1 + t17
+        t19 = theta_ddot * t18
+        t20 = y_ddot * t6
+        t21 = x_ddot * t5
+        t22 = t20 - t21
+        t23 = t12 * t22
+        t24 = t19 + t23
+        t25 = t24 / L
+        t26 = t3 * t25
+        t27 = t16 + t26
+        t28 = phi_ddot * Theta_2
         entries = (
-            t30,
-            t31,
+            t27,
+            t28,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -2119,19 +2091,17 @@ def actuator_mass_matrix(q, p=PARAMETERS):
             status = _first(status, _failed_ & ~np.asarray(100000.0 >= t18), 4)
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 3)
-        t19 = t3 * t3
-        t20 = m_1 * t19
-        t21 = m_2 + t20
-        t22 = L * t21
-        t23 = L * t22
-        t24 = t2 * t2
-        t25 = Theta_1 * t24
-        t26 = t23 + t25
-        t27 = L * L
-        t28 = 1.0 / t27
-        t29 = t26 * t28
+        t19 = t2 * t2
+        t20 = Theta_1 * t19
+        t21 = L * L
+        t22 = t3 * t3
+        t23 = m_1 * t22
+        t24 = m_2 + t23
+        t25 = t21 * t24
+        t26 = t20 + t25
+        t27 = t26 / t21
         entries = (
-            t29,
+            t27,
             0.0,
             0.0,
             Theta_2,
@@ -2180,37 +2150,36 @@ def actuator_bias(q, qd, p=PARAMETERS):
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 3)
-        t19 = L * L
-        t20 = 1.0 / t19
-        t21 = phi_dot * t4
-        t22 = t3 * t21
-        t23 = m_2 * t19
-        t24 = Theta_1 + t23
-        t25 = theta_dot * t3
-        t26 = t24 * t25
-        t27 = m_1 + m_2
-        t28 = L * t3
-        t29 = theta_dot * t28
-        t30 = t6 * t4
-        t31 = t5 * t3
-        t32 = t30 - t31
-        t33 = x_dot * t32
-        t34 = t5 * t4
-        t35 = t6 * t3
-        t36 = t34 + t35
-        t37 = y_dot * t36
-        t38 = t33 + t37
-        t39 = t29 + t38
-        t40 = t27 * t39
-        t41 = L * t40
-        t42 = t26 - t41
-        t43 = L * t42
-        t44 = t24 * t38
-        t45 = t43 + t44
-        t46 = t22 * t45
-        t47 = t20 * t46
+        t19 = phi_dot * t4
+        t20 = t3 * t19
+        t21 = L * L
+        t22 = m_2 * t21
+        t23 = Theta_1 + t22
+        t24 = theta_dot * t3
+        t25 = t23 * t24
+        t26 = m_1 + m_2
+        t27 = L * t3
+        t28 = theta_dot * t27
+        t29 = t6 * t4
+        t30 = t5 * t3
+        t31 = t29 - t30
+        t32 = x_dot * t31
+        t33 = t5 * t4
+        t34 = t6 * t3
+        t35 = t33 + t34
+        t36 = y_dot * t35
+        t37 = t32 + t36
+        t38 = t28 + t37
+        t39 = t26 * t38
+        t40 = L * t39
+        t41 = t25 - t40
+        t42 = L * t41
+        t43 = t23 * t37
+        t44 = t42 + t43
+        t45 = t20 * t44
+        t46 = t45 / t21
         entries = (
-            t47,
+            t46,
             0.0,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
@@ -2238,31 +2207,31 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t6 * t6
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(Theta_1)
@@ -2283,111 +2252,110 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t42 = t40 + t41
         t43 = t42 * 3.552713678800501e-15
         status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = L * t3
-        t46 = K_f * t45
-        t47 = t3 * t46
-        t48 = L * m_2
-        t49 = theta_dot * t48
-        t50 = theta_dot * t6
-        t51 = t49 * t50
-        t52 = t6 * t4
-        t53 = t5 * t3
-        t54 = t52 - t53
-        t55 = K_f * t54
-        t56 = t51 + t55
-        t57 = t12 * t56
-        t58 = theta_dot * t5
-        t59 = t49 * t58
-        t60 = t5 * t4
-        t61 = t6 * t3
-        t62 = t60 + t61
-        t63 = K_f * t62
-        t64 = t59 + t63
-        t65 = t9 * t64
-        t66 = t57 + t65
-        t67 = t47 + t66
-        t68 = Theta_2 * t67
-        t69 = t12 * t68
-        t70 = t44 * t69
-        t71 = L * L
-        t72 = m_2 * t71
-        t73 = Theta_1 + t72
-        t74 = t3 * t73
-        t75 = Theta_2 * t74
-        t76 = phi_dot * t3
-        t77 = L * t76
-        t78 = theta_dot * t77
-        t79 = theta_dot + phi_dot
-        t80 = t79 * t54
-        t81 = x_dot * t80
-        t82 = t79 * t62
-        t83 = y_dot * t82
-        t84 = t81 + t83
-        t85 = t78 + t84
-        t86 = t6 * t85
-        t87 = y_dot * t58
-        t88 = x_dot * t50
-        t89 = t87 + t88
-        t90 = t89 * t54
-        t91 = t86 - t90
-        t92 = t75 * t91
-        t93 = t8 * t89
-        t94 = L * Theta_2
-        t95 = m_1 * t60
-        t96 = m_2 * t62
-        t97 = t95 + t96
-        t98 = t94 * t97
-        t99 = t93 * t98
-        t100 = t92 + t99
-        t101 = t44 * t100
-        t102 = t70 - t101
-        t103 = t9 * t68
-        t104 = t44 * t103
-        t105 = t5 * t85
-        t106 = t89 * t62
-        t107 = t105 - t106
-        t108 = t75 * t107
-        t109 = m_1 * t52
-        t110 = m_2 * t54
-        t111 = t109 + t110
-        t112 = t94 * t111
-        t113 = t93 * t112
-        t114 = t108 - t113
-        t115 = t44 * t114
-        t116 = t104 - t115
-        t117 = t3 * t68
-        t118 = t44 * t117
-        t119 = t90 - t86
-        t120 = t112 * t119
-        t121 = t98 * t107
-        t122 = t120 - t121
-        t123 = t44 * t122
-        t124 = t118 - t123
-        t125 = m_1 + m_2
-        t126 = T * t12
-        t127 = t125 * t126
-        t128 = t5 * t48
-        t129 = T * t3
-        t130 = t128 * t129
-        t131 = t127 - t130
-        t132 = t12 * t131
-        t133 = T * t9
-        t134 = t125 * t133
-        t135 = t6 * t48
-        t136 = t135 * t129
-        t137 = t134 + t136
-        t138 = t9 * t137
-        t139 = t132 + t138
-        t140 = t73 * t129
-        t141 = t3 * t140
-        t142 = t139 + t141
-        t143 = t44 * t142
+        t44 = L * t5
+        t45 = K_f * t44
+        t46 = t5 * t45
+        t47 = L * m_2
+        t48 = theta_dot * t47
+        t49 = theta_dot * t4
+        t50 = t48 * t49
+        t51 = t4 * t6
+        t52 = t3 * t5
+        t53 = t51 - t52
+        t54 = K_f * t53
+        t55 = t50 + t54
+        t56 = t12 * t55
+        t57 = theta_dot * t3
+        t58 = t48 * t57
+        t59 = t3 * t6
+        t60 = t4 * t5
+        t61 = t59 + t60
+        t62 = K_f * t61
+        t63 = t58 + t62
+        t64 = t9 * t63
+        t65 = t56 + t64
+        t66 = t46 + t65
+        t67 = Theta_2 * t66
+        t68 = t12 * t67
+        t69 = 1.0 / t25
+        t70 = t68 * t69
+        t71 = y_dot * t57
+        t72 = x_dot * t49
+        t73 = t71 + t72
+        t74 = t8 * t73
+        t75 = L * Theta_2
+        t76 = m_1 * t59
+        t77 = m_2 * t61
+        t78 = t76 + t77
+        t79 = t75 * t78
+        t80 = t74 * t79
+        t81 = phi_dot * t5
+        t82 = L * t81
+        t83 = theta_dot * t82
+        t84 = theta_dot + phi_dot
+        t85 = t84 * t53
+        t86 = x_dot * t85
+        t87 = t84 * t61
+        t88 = y_dot * t87
+        t89 = t86 + t88
+        t90 = t83 + t89
+        t91 = t4 * t90
+        t92 = t73 * t53
+        t93 = t91 - t92
+        t94 = L * t47
+        t95 = Theta_1 + t94
+        t96 = t5 * t95
+        t97 = Theta_2 * t96
+        t98 = t93 * t97
+        t99 = t80 + t98
+        t100 = t69 * t99
+        t101 = t70 - t100
+        t102 = t9 * t67
+        t103 = t102 * t69
+        t104 = t3 * t90
+        t105 = t73 * t61
+        t106 = t104 - t105
+        t107 = t106 * t97
+        t108 = m_1 * t51
+        t109 = m_2 * t53
+        t110 = t108 + t109
+        t111 = t75 * t110
+        t112 = t74 * t111
+        t113 = t107 - t112
+        t114 = t69 * t113
+        t115 = t103 - t114
+        t116 = t5 * t67
+        t117 = t116 * t69
+        t118 = t92 - t91
+        t119 = t111 * t118
+        t120 = t79 * t106
+        t121 = t119 - t120
+        t122 = t121 * t69
+        t123 = t117 - t122
+        t124 = m_1 + m_2
+        t125 = T * t12
+        t126 = t124 * t125
+        t127 = t3 * t47
+        t128 = T * t5
+        t129 = t127 * t128
+        t130 = t126 - t129
+        t131 = t12 * t130
+        t132 = T * t9
+        t133 = t124 * t132
+        t134 = t4 * t47
+        t135 = t134 * t128
+        t136 = t133 + t135
+        t137 = t9 * t136
+        t138 = t131 + t137
+        t139 = t128 * t95
+        t140 = t5 * t139
+        t141 = t138 + t140
+        t142 = t69 * t141
         entries = (
-            t102,
-            t116,
-            t124,
-            t143,
+            t101,
+            t115,
+            t123,
+            t142,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2432,13 +2400,13 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(Theta_1)
@@ -2478,90 +2446,89 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t60 = K_f * t59
         t61 = t56 + t60
         t62 = m_1 + m_2
-        t63 = L * L
-        t64 = m_2 * t63
-        t65 = Theta_1 + t64
-        t66 = t3 * t65
-        t67 = Theta_2 * t66
-        t68 = phi_dot * t3
-        t69 = L * t68
-        t70 = theta_dot * t69
-        t71 = theta_dot + phi_dot
-        t72 = t71 * t59
-        t73 = x_dot * t72
-        t74 = t71 * t49
-        t75 = y_dot * t74
-        t76 = t73 + t75
-        t77 = t70 + t76
-        t78 = t6 * t77
-        t79 = theta_dot * t5
-        t80 = y_dot * t79
-        t81 = x_dot * t55
-        t82 = t80 + t81
-        t83 = t82 * t59
-        t84 = t78 - t83
-        t85 = t67 * t84
-        t86 = t8 * t82
-        t87 = t86 * t52
-        t88 = t85 + t87
-        t89 = t44 * t88
-        t90 = t62 * t89
-        t91 = t5 * t53
-        t92 = m_1 * t57
-        t93 = m_2 * t59
-        t94 = t92 + t93
-        t95 = t45 * t94
-        t96 = t83 - t78
-        t97 = t95 * t96
-        t98 = t5 * t77
-        t99 = t82 * t49
-        t100 = t98 - t99
-        t101 = t52 * t100
-        t102 = t97 - t101
-        t103 = t44 * t102
-        t104 = t91 * t103
-        t105 = t90 - t104
-        t106 = t61 + t105
-        t107 = t52 * t106
-        t108 = t54 * t79
-        t109 = K_f * t49
-        t110 = t108 + t109
-        t111 = t67 * t100
-        t112 = t86 * t95
-        t113 = t111 - t112
-        t114 = t44 * t113
-        t115 = t62 * t114
-        t116 = t6 * t53
-        t117 = t116 * t103
-        t118 = t115 + t117
-        t119 = t110 + t118
-        t120 = t95 * t119
-        t121 = t107 - t120
-        t122 = t8 * t121
-        t123 = t67 * t106
-        t124 = L * t3
-        t125 = K_f * t124
-        t126 = t65 * t103
-        t127 = t53 * t82
-        t128 = t126 - t127
-        t129 = t125 + t128
-        t130 = t95 * t129
-        t131 = t123 - t130
-        t132 = t59 * t131
-        t133 = t122 - t132
-        t134 = t67 * t119
-        t135 = t52 * t129
-        t136 = t134 - t135
-        t137 = t49 * t136
-        t138 = t133 - t137
-        t139 = t44 * t138
-        t140 = t6 * t131
-        t141 = t5 * t136
-        t142 = t140 + t141
-        t143 = t44 * t142
+        t63 = theta_dot * t5
+        t64 = y_dot * t63
+        t65 = x_dot * t55
+        t66 = t64 + t65
+        t67 = t8 * t66
+        t68 = t67 * t52
+        t69 = phi_dot * t3
+        t70 = L * t69
+        t71 = theta_dot * t70
+        t72 = theta_dot + phi_dot
+        t73 = t72 * t59
+        t74 = x_dot * t73
+        t75 = t72 * t49
+        t76 = y_dot * t75
+        t77 = t74 + t76
+        t78 = t71 + t77
+        t79 = t6 * t78
+        t80 = t66 * t59
+        t81 = t79 - t80
+        t82 = L * t53
+        t83 = Theta_1 + t82
+        t84 = t3 * t83
+        t85 = Theta_2 * t84
+        t86 = t81 * t85
+        t87 = t68 + t86
+        t88 = t44 * t87
+        t89 = t62 * t88
+        t90 = t5 * t53
+        t91 = m_1 * t57
+        t92 = m_2 * t59
+        t93 = t91 + t92
+        t94 = t45 * t93
+        t95 = t80 - t79
+        t96 = t94 * t95
+        t97 = t5 * t78
+        t98 = t66 * t49
+        t99 = t97 - t98
+        t100 = t52 * t99
+        t101 = t96 - t100
+        t102 = t101 * t44
+        t103 = t90 * t102
+        t104 = t89 - t103
+        t105 = t61 + t104
+        t106 = t52 * t105
+        t107 = t54 * t63
+        t108 = K_f * t49
+        t109 = t107 + t108
+        t110 = t99 * t85
+        t111 = t67 * t94
+        t112 = t110 - t111
+        t113 = t44 * t112
+        t114 = t62 * t113
+        t115 = t6 * t53
+        t116 = t115 * t102
+        t117 = t114 + t116
+        t118 = t109 + t117
+        t119 = t94 * t118
+        t120 = t106 - t119
+        t121 = t8 * t120
+        t122 = t85 * t105
+        t123 = L * t3
+        t124 = K_f * t123
+        t125 = t83 * t102
+        t126 = t53 * t66
+        t127 = t125 - t126
+        t128 = t124 + t127
+        t129 = t94 * t128
+        t130 = t122 - t129
+        t131 = t59 * t130
+        t132 = t121 - t131
+        t133 = t85 * t118
+        t134 = t52 * t128
+        t135 = t133 - t134
+        t136 = t49 * t135
+        t137 = t132 - t136
+        t138 = t44 * t137
+        t139 = t6 * t130
+        t140 = t5 * t135
+        t141 = t139 + t140
+        t142 = t44 * t141
         entries = (
-            t139,
-            t143,
+            t138,
+            t142,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2587,31 +2554,30 @@ def energy(q, qd, p=PARAMETERS):
         t1 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(theta)
-        t4 = L * L
-        t5 = m_2 * t4
-        t6 = Theta_1 + t5
-        t7 = theta_dot * t6
-        t8 = 0.5 * t7
-        t9 = L * m_2
-        t10 = y_dot * t3
-        t11 = x_dot * t2
-        t12 = t10 - t11
-        t13 = t9 * t12
-        t14 = t8 + t13
-        t15 = theta_dot * t14
-        t16 = m_1 + m_2
-        t17 = x_dot * x_dot
-        t18 = y_dot * y_dot
-        t19 = t17 + t18
-        t20 = t16 * t19
-        t21 = 0.5 * t20
-        t22 = phi_dot * phi_dot
-        t23 = Theta_2 * t22
-        t24 = 0.5 * t23
-        t25 = t21 + t24
-        t26 = t15 + t25
+        t4 = m_1 + m_2
+        t5 = x_dot * x_dot
+        t6 = y_dot * y_dot
+        t7 = t5 + t6
+        t8 = t4 * t7
+        t9 = 0.5 * t8
+        t10 = phi_dot * phi_dot
+        t11 = Theta_2 * t10
+        t12 = 0.5 * t11
+        t13 = t9 + t12
+        t14 = L * m_2
+        t15 = y_dot * t3
+        t16 = x_dot * t2
+        t17 = t15 - t16
+        t18 = t14 * t17
+        t19 = L * t14
+        t20 = Theta_1 + t19
+        t21 = theta_dot * t20
+        t22 = 0.5 * t21
+        t23 = t18 + t22
+        t24 = theta_dot * t23
+        t25 = t13 + t24
         entries = (
-            t26,
+            t25,
             0.0,
         )
         return _result("energy", status, batch, (2,), entries)

@@ -13,7 +13,7 @@ Inputs u:
   u[1] T [N*m] steering torque
 
 Operations                          + -      *      /   sqrt sincos  other
-mass_matrix                           3      5      0      0      1      0
+mass_matrix                           3      4      0      0      1      0
 coriolis_matrix                       0      4      0      0      1      0
 coriolis_force                        0      6      0      0      1      0
 potential_force                       0      0      0      0      0      0
@@ -23,32 +23,32 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     17      1      0      2      0
 nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     49      3      0      2      0
-weighted_nullspace_projector         15     55      4      0      2      0
+weighted_pseudoinverse               17     47      3      0      2      0
+weighted_nullspace_projector         15     54      4      0      2      0
 control_matrix                        1      1      0      0      2      0
 projected_control_matrix              3     14      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
-orthogonal_complement                 1      6      2      0      2      0
-projected_mass_matrix                12     49      5      0      2      0
-projected_coriolis_matrix            81    224      5      0      2      0
+orthogonal_complement                 1      5      2      0      2      0
+projected_mass_matrix                12     48      5      0      2      0
+projected_coriolis_matrix            80    216      5      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
-minimal_mass_matrix                   6     12      2      0      2      0
-minimal_coriolis_matrix              17     51      2      0      2      0
+minimal_mass_matrix                   6     11      2      0      2      0
+minimal_coriolis_matrix              17     46      2      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      6      1      0      2      0
-admissible_velocity                   5     21      2      0      2      0
-admissible_acceleration              17     76      2      0      2      0
+admissible_velocity                   5     20      2      0      2      0
+admissible_acceleration              17     75      2      0      2      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                     10     18      1      0      2      0
+inverse_dynamics                     10     15      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
 actuator_mass_matrix                  4      7      1      0      1      0
-actuator_bias                        12     30      2      0      2      0
-forward_dynamics                     41     96      1      0      2      0
-multipliers                          44     95      1      0      2      0
-energy                                8     17      0      0      1      0
+actuator_bias                        12     29      2      0      2      0
+forward_dynamics                     41     95      1      0      2      0
+multipliers                          44     94      1      0      2      0
+energy                                8     16      0      0      1      0
 singularity                          12     26      5      1      2      0
 (changes of sign are not counted)
 
@@ -219,10 +219,9 @@ def mass_matrix(q, p=PARAMETERS):
         t6 = t2 * t5
         t7 = -t6
         t8 = t3 * t5
-        t9 = L * L
-        t10 = m_2 * t9
-        t11 = Theta_1 + t10
-        t12 = Theta_2 + t11
+        t9 = L * t5
+        t10 = Theta_1 + t9
+        t11 = Theta_2 + t10
         entries = (
             t4,
             0.0,
@@ -234,7 +233,7 @@ def mass_matrix(q, p=PARAMETERS):
             0.0,
             t7,
             t8,
-            t12,
+            t11,
             Theta_2,
             0.0,
             0.0,
@@ -709,13 +708,13 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(m_1)
@@ -749,43 +748,41 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t54 = t6 * t4
         t55 = t5 * t3
         t56 = t54 - t55
-        t57 = L * L
-        t58 = m_2 * t57
-        t59 = Theta_1 + t58
+        t57 = m_2 * t19
+        t58 = Theta_1 + t57
+        t59 = Theta_2 * t58
         t60 = t3 * t59
-        t61 = Theta_2 * t60
-        t62 = t56 * t61
-        t63 = t53 - t62
-        t64 = t44 * t63
-        t65 = Theta_2 * t59
-        t66 = t65 / t25
-        t67 = t48 * t66
-        t68 = m_1 * t54
-        t69 = m_2 * t56
-        t70 = t68 + t69
-        t71 = t45 * t70
-        t72 = t8 * t71
-        t73 = t49 * t61
-        t74 = t72 + t73
-        t75 = t44 * t74
-        t76 = -t75
-        t77 = t55 * t66
-        t78 = t45 / t25
-        t79 = t20 * t78
-        t80 = m_1 + m_2
-        t81 = t4 * t80
-        t82 = t78 * t81
-        t83 = -t82
-        t84 = -t79
+        t61 = t56 * t60
+        t62 = t53 - t61
+        t63 = t44 * t62
+        t64 = t59 / t25
+        t65 = t48 * t64
+        t66 = m_1 * t54
+        t67 = m_2 * t56
+        t68 = t66 + t67
+        t69 = t45 * t68
+        t70 = t8 * t69
+        t71 = t49 * t60
+        t72 = t70 + t71
+        t73 = t44 * t72
+        t74 = -t73
+        t75 = t55 * t64
+        t76 = t45 / t25
+        t77 = t22 * t76
+        t78 = m_1 + m_2
+        t79 = t4 * t78
+        t80 = t79 * t76
+        t81 = -t80
+        t82 = -t77
         entries = (
-            t64,
-            t67,
-            t76,
+            t63,
+            t65,
+            t74,
+            t75,
             t77,
-            t79,
-            t83,
-            t84,
+            t81,
             t82,
+            t80,
         )
         return _result("weighted_pseudoinverse", status, batch, (4, 2), entries)
 
@@ -822,13 +819,13 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(m_1)
@@ -849,67 +846,66 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t42 = t32 + t41
         t43 = t42 * 3.552713678800501e-15
         status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = L * L
-        t45 = Theta_2 * t44
-        t46 = t45 / t25
-        t47 = t6 * t4
-        t48 = m_1 * t47
-        t49 = t5 * t3
-        t50 = t47 - t49
-        t51 = m_2 * t50
-        t52 = t48 + t51
-        t53 = t47 * t52
-        t54 = t46 * t53
-        t55 = t5 * t4
-        t56 = m_1 * t55
-        t57 = t6 * t3
-        t58 = t55 + t57
-        t59 = m_2 * t58
-        t60 = t56 + t59
-        t61 = t47 * t60
-        t62 = t46 * t61
-        t63 = t3 * t47
-        t64 = m_2 * t44
-        t65 = Theta_1 + t64
-        t66 = L * Theta_2
-        t67 = t65 * t66
-        t68 = t67 / t25
-        t69 = t63 * t68
-        t70 = t55 * t52
-        t71 = t46 * t70
-        t72 = t55 * t60
-        t73 = t46 * t72
-        t74 = t3 * t55
-        t75 = t74 * t68
-        t76 = t66 / t25
-        t77 = t3 * t52
-        t78 = t76 * t77
-        t79 = t3 * t60
-        t80 = t76 * t79
-        t81 = Theta_2 * t65
-        t82 = t81 / t25
-        t83 = t7 * t82
-        t84 = -t78
-        t85 = -t80
-        t86 = m_1 + m_2
-        t87 = t86 * t18
-        t88 = t46 * t87
+        t44 = Theta_2 * t19
+        t45 = t44 / t25
+        t46 = t6 * t4
+        t47 = m_1 * t46
+        t48 = t5 * t3
+        t49 = t46 - t48
+        t50 = m_2 * t49
+        t51 = t47 + t50
+        t52 = t46 * t51
+        t53 = t45 * t52
+        t54 = t5 * t4
+        t55 = m_1 * t54
+        t56 = t6 * t3
+        t57 = t54 + t56
+        t58 = m_2 * t57
+        t59 = t55 + t58
+        t60 = t46 * t59
+        t61 = t45 * t60
+        t62 = t3 * t46
+        t63 = m_2 * t19
+        t64 = Theta_1 + t63
+        t65 = L * Theta_2
+        t66 = t64 * t65
+        t67 = t66 / t25
+        t68 = t62 * t67
+        t69 = t54 * t51
+        t70 = t45 * t69
+        t71 = t54 * t59
+        t72 = t45 * t71
+        t73 = t3 * t54
+        t74 = t73 * t67
+        t75 = t65 / t25
+        t76 = t3 * t51
+        t77 = t75 * t76
+        t78 = t3 * t59
+        t79 = t75 * t78
+        t80 = Theta_2 * t64
+        t81 = t80 / t25
+        t82 = t7 * t81
+        t83 = -t77
+        t84 = -t79
+        t85 = m_1 + m_2
+        t86 = t85 * t20
+        t87 = t86 * t45
         entries = (
-            t54,
-            t62,
-            t69,
+            t53,
+            t61,
+            t68,
             0.0,
-            t71,
-            t73,
-            t75,
+            t70,
+            t72,
+            t74,
             0.0,
-            t78,
-            t80,
+            t77,
+            t79,
+            t82,
+            0.0,
             t83,
-            0.0,
             t84,
-            t85,
-            t88,
+            t87,
             1.0,
         )
         return _result("weighted_nullspace_projector", status, batch, (4, 4), entries)
@@ -1075,15 +1071,14 @@ def orthogonal_complement(q, p=PARAMETERS):
             t17 = t16 + t9
             status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
-        t18 = 1.0 / t4
-        t19 = t3 * t18
-        t20 = t5 / t8
+        t18 = t3 / t4
+        t19 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t19,
+            t18,
             0.0,
-            t20,
+            t19,
             0.0,
             0.0,
             1.0,
@@ -1174,10 +1169,9 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t66 = t4 * t65
         t67 = t4 * t66
         t68 = t26 + t67
-        t69 = 1.0 / t19
-        t70 = t68 * t69
-        t71 = Theta_2 / t14
-        t72 = t7 * t71
+        t69 = t68 / t19
+        t70 = Theta_2 / t14
+        t71 = t7 * t70
         entries = (
             t34,
             t43,
@@ -1189,11 +1183,11 @@ def projected_mass_matrix(q, p=PARAMETERS):
             t61,
             t48,
             t60,
-            t70,
-            t72,
+            t69,
+            t71,
             t51,
             t61,
-            t72,
+            t71,
             Theta_2,
         )
         return _result("projected_mass_matrix", status, batch, (4, 4), entries)
@@ -1242,315 +1236,306 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t21 = t14 * t20
         t22 = t18 / t21
         t23 = t6 * t4
-        t24 = x_dot * t6
-        t25 = y_dot * t5
-        t26 = t24 + t25
-        t27 = t4 * t26
-        t28 = L * t27
-        t29 = theta_dot * t3
-        t30 = t28 + t29
-        t31 = L * t3
-        t32 = t31 * t31
-        t33 = t4 * t4
-        t34 = t33 + (-2.0)
-        t35 = t14 + t34
-        t36 = t32 + t35
-        t37 = t6 * t36
-        t38 = m_2 * t37
-        t39 = t5 * t4
-        t40 = t3 * t39
-        t41 = m_1 + m_2
-        t42 = t41 * t18
-        t43 = t40 * t42
-        t44 = t38 - t43
-        t45 = t4 * t44
-        t46 = m_2 * t18
-        t47 = Theta_1 + t46
-        t48 = Theta_2 + t47
-        t49 = t41 + t48
-        t50 = t5 * t3
-        t51 = t3 * t50
+        t24 = m_2 * t18
+        t25 = Theta_1 + t24
+        t26 = Theta_2 + t25
+        t27 = t4 * t4
+        t28 = 2.0 - t27
+        t29 = x_dot * t6
+        t30 = y_dot * t5
+        t31 = t29 + t30
+        t32 = t4 * t31
+        t33 = L * t32
+        t34 = theta_dot * t3
+        t35 = t33 + t34
+        t36 = t4 * t35
+        t37 = t28 * t36
+        t38 = t5 * t37
+        t39 = phi_dot * t6
+        t40 = t14 * t39
+        t41 = t38 + t40
+        t42 = t3 * t41
+        t43 = t26 * t42
+        t44 = L * t3
+        t45 = t44 * t44
+        t46 = t27 + (-2.0)
+        t47 = t14 + t46
+        t48 = t45 + t47
+        t49 = t6 * t48
+        t50 = m_2 * t49
+        t51 = t5 * t4
         t52 = t3 * t51
-        t53 = t49 * t52
-        t54 = t45 - t53
-        t55 = t4 * t54
-        t56 = t7 + t15
-        t57 = 1.0 - t56
-        t58 = t6 * t57
-        t59 = m_2 * t58
-        t60 = t55 + t59
-        t61 = t30 * t60
-        t62 = 2.0 * t41
-        t63 = t48 - t62
-        t64 = phi_dot * t6
-        t65 = t3 * t64
-        t66 = t14 * t65
-        t67 = t63 * t66
-        t68 = t61 + t67
-        t69 = L * t68
-        t70 = L * t69
-        t71 = 2.0 - t33
-        t72 = t4 * t30
-        t73 = t71 * t72
-        t74 = t5 * t73
-        t75 = t14 * t64
-        t76 = t74 + t75
-        t77 = t3 * t76
-        t78 = t48 * t77
-        t79 = t70 + t78
-        t80 = t4 * t79
-        t81 = t30 * t50
-        t82 = t48 * t81
-        t83 = t80 - t82
-        t84 = t4 * t83
-        t85 = t48 * t66
-        t86 = t84 - t85
-        t87 = t23 * t86
-        t88 = t22 * t87
-        t89 = (-1.0) + t18
-        t90 = t41 * t89
-        t91 = t90 - t48
-        t92 = t3 * t91
-        t93 = t6 * t92
-        t94 = m_2 * t39
-        t95 = t93 + t94
-        t96 = t4 * t95
-        t97 = (-2.0) + t32
-        t98 = t5 * t97
-        t99 = m_2 * t98
-        t100 = t96 + t99
-        t101 = t4 * t100
-        t102 = t6 * t3
-        t103 = t102 * t49
-        t104 = t101 + t103
-        t105 = t4 * t104
-        t106 = t7 * t14
-        t107 = 1.0 - t106
-        t108 = t5 * t107
-        t109 = m_2 * t108
-        t110 = t105 + t109
-        t111 = t30 * t110
-        t112 = phi_dot * t5
-        t113 = t3 * t112
-        t114 = t14 * t113
-        t115 = t63 * t114
-        t116 = t111 + t115
-        t117 = L * t116
-        t118 = L * t117
-        t119 = t3 * t23
-        t120 = t30 * t119
-        t121 = t34 * t120
-        t122 = t48 * t121
-        t123 = t118 + t122
+        t53 = m_1 + m_2
+        t54 = t53 * t18
+        t55 = t52 * t54
+        t56 = t50 - t55
+        t57 = t4 * t56
+        t58 = t53 + t26
+        t59 = t5 * t3
+        t60 = t3 * t59
+        t61 = t3 * t60
+        t62 = t58 * t61
+        t63 = t57 - t62
+        t64 = t4 * t63
+        t65 = t7 + t15
+        t66 = 1.0 - t65
+        t67 = t6 * t66
+        t68 = m_2 * t67
+        t69 = t64 + t68
+        t70 = t35 * t69
+        t71 = 2.0 * t53
+        t72 = t26 - t71
+        t73 = t3 * t39
+        t74 = t14 * t73
+        t75 = t72 * t74
+        t76 = t70 + t75
+        t77 = t18 * t76
+        t78 = t43 + t77
+        t79 = t4 * t78
+        t80 = t35 * t59
+        t81 = t26 * t80
+        t82 = t79 - t81
+        t83 = t4 * t82
+        t84 = t26 * t74
+        t85 = t83 - t84
+        t86 = t23 * t85
+        t87 = t22 * t86
+        t88 = t6 * t3
+        t89 = t35 * t88
+        t90 = t26 * t89
+        t91 = t3 * t23
+        t92 = t35 * t91
+        t93 = t46 * t92
+        t94 = t26 * t93
+        t95 = (-1.0) + t18
+        t96 = t53 * t95
+        t97 = t96 - t26
+        t98 = t3 * t97
+        t99 = t6 * t98
+        t100 = m_2 * t51
+        t101 = t99 + t100
+        t102 = t4 * t101
+        t103 = (-2.0) + t45
+        t104 = t5 * t103
+        t105 = m_2 * t104
+        t106 = t102 + t105
+        t107 = t4 * t106
+        t108 = t88 * t58
+        t109 = t107 + t108
+        t110 = t4 * t109
+        t111 = t7 * t14
+        t112 = 1.0 - t111
+        t113 = t5 * t112
+        t114 = m_2 * t113
+        t115 = t110 + t114
+        t116 = t35 * t115
+        t117 = phi_dot * t5
+        t118 = t3 * t117
+        t119 = t14 * t118
+        t120 = t72 * t119
+        t121 = t116 + t120
+        t122 = t18 * t121
+        t123 = t94 + t122
         t124 = t4 * t123
-        t125 = t30 * t102
-        t126 = t48 * t125
-        t127 = t124 + t126
-        t128 = t4 * t127
-        t129 = t3 * t113
-        t130 = t3 * t129
-        t131 = t14 * t130
-        t132 = t48 * t131
-        t133 = t128 - t132
-        t134 = t23 * t133
-        t135 = t22 * t134
-        t136 = L * t18
-        t137 = t136 / t21
-        t138 = 2.0 * t48
-        t139 = t138 - t41
-        t140 = phi_dot * t3
-        t141 = t14 * t140
-        t142 = t139 * t141
-        t143 = t3 * t142
-        t144 = phi_dot * t4
-        t145 = t4 * t144
-        t146 = t14 * t145
-        t147 = t42 * t146
-        t148 = t143 + t147
-        t149 = t4 * t23
-        t150 = t148 * t149
-        t151 = t137 * t150
-        t152 = 1.0 - t18
-        t153 = t41 * t152
-        t154 = t48 + t153
-        t155 = t3 * t154
-        t156 = t5 * t155
-        t157 = m_2 * t23
-        t158 = t156 + t157
-        t159 = t4 * t158
-        t160 = t6 * t97
-        t161 = m_2 * t160
-        t162 = t159 + t161
-        t163 = t4 * t162
-        t164 = t50 * t49
-        t165 = t163 - t164
-        t166 = t4 * t165
-        t167 = t6 * t107
-        t168 = m_2 * t167
-        t169 = t166 + t168
-        t170 = t30 * t169
-        t171 = t67 + t170
-        t172 = L * t171
-        t173 = L * t172
-        t174 = t30 * t40
-        t175 = t71 * t174
-        t176 = t48 * t175
-        t177 = t173 + t176
-        t178 = t4 * t177
-        t179 = t178 - t82
-        t180 = t4 * t179
-        t181 = t3 * t65
-        t182 = t3 * t181
-        t183 = t14 * t182
-        t184 = t48 * t183
-        t185 = t180 - t184
-        t186 = t39 * t185
-        t187 = t22 * t186
-        t188 = t39 * t133
-        t189 = t22 * t188
-        t190 = t4 * t39
-        t191 = t148 * t190
-        t192 = t137 * t191
-        t193 = 2.0 - t32
-        t194 = t193 - t33
-        t195 = t41 * t194
-        t196 = t48 * t71
-        t197 = t195 + t196
-        t198 = t5 * t197
-        t199 = m_2 * t119
-        t200 = t198 + t199
-        t201 = t4 * t200
-        t202 = t102 * t97
-        t203 = m_2 * t202
-        t204 = t201 + t203
-        t205 = t4 * t204
-        t206 = t5 * t49
-        t207 = t205 - t206
-        t208 = t4 * t207
-        t209 = t102 * t107
-        t210 = m_2 * t209
-        t211 = t208 + t210
-        t212 = t30 * t211
-        t213 = t14 * t181
-        t214 = t63 * t213
-        t215 = t212 + t214
-        t216 = L * t215
-        t217 = L * t216
-        t218 = t4 * t33
-        t219 = t4 * t218
-        t220 = 3.0 * t7
-        t221 = t219 + t220
-        t222 = t30 * t221
-        t223 = t5 * t222
-        t224 = t4 * t64
-        t225 = t14 * t224
-        t226 = t223 - t225
-        t227 = t4 * t226
-        t228 = 2.0 * t75
-        t229 = t227 + t228
-        t230 = t48 * t229
-        t231 = t217 + t230
-        t232 = t4 * t231
-        t233 = t5 * t30
-        t234 = t48 * t233
-        t235 = t232 - t234
-        t236 = t4 * t235
-        t237 = t48 * t75
-        t238 = t236 - t237
-        t239 = L / t21
-        t240 = t238 * t239
-        t241 = t48 * t34
-        t242 = t33 + t97
-        t243 = t41 * t242
-        t244 = t241 + t243
-        t245 = t6 * t244
-        t246 = m_2 * t40
-        t247 = t245 + t246
-        t248 = t4 * t247
-        t249 = t50 * t97
-        t250 = m_2 * t249
-        t251 = t248 + t250
+        t125 = t90 + t124
+        t126 = t4 * t125
+        t127 = t3 * t118
+        t128 = t3 * t127
+        t129 = t14 * t128
+        t130 = t26 * t129
+        t131 = t126 - t130
+        t132 = t23 * t131
+        t133 = t22 * t132
+        t134 = L * t18
+        t135 = t134 / t21
+        t136 = t4 * t23
+        t137 = t27 * t54
+        t138 = 2.0 * t26
+        t139 = t138 - t53
+        t140 = t3 * t139
+        t141 = t3 * t140
+        t142 = t137 + t141
+        t143 = phi_dot * t14
+        t144 = t142 * t143
+        t145 = t136 * t144
+        t146 = t135 * t145
+        t147 = t35 * t52
+        t148 = t28 * t147
+        t149 = t26 * t148
+        t150 = 1.0 - t18
+        t151 = t53 * t150
+        t152 = t26 + t151
+        t153 = t3 * t152
+        t154 = t5 * t153
+        t155 = m_2 * t23
+        t156 = t154 + t155
+        t157 = t4 * t156
+        t158 = t6 * t103
+        t159 = m_2 * t158
+        t160 = t157 + t159
+        t161 = t4 * t160
+        t162 = t59 * t58
+        t163 = t161 - t162
+        t164 = t4 * t163
+        t165 = t6 * t112
+        t166 = m_2 * t165
+        t167 = t164 + t166
+        t168 = t35 * t167
+        t169 = t75 + t168
+        t170 = t18 * t169
+        t171 = t149 + t170
+        t172 = t4 * t171
+        t173 = t172 - t81
+        t174 = t4 * t173
+        t175 = t3 * t73
+        t176 = t3 * t175
+        t177 = t14 * t176
+        t178 = t26 * t177
+        t179 = t174 - t178
+        t180 = t51 * t179
+        t181 = t22 * t180
+        t182 = t51 * t131
+        t183 = t22 * t182
+        t184 = t4 * t51
+        t185 = t184 * t144
+        t186 = t135 * t185
+        t187 = L / t21
+        t188 = t4 * t27
+        t189 = t4 * t188
+        t190 = 3.0 * t7
+        t191 = t189 + t190
+        t192 = t35 * t191
+        t193 = t5 * t192
+        t194 = t4 * t39
+        t195 = t14 * t194
+        t196 = t193 - t195
+        t197 = t4 * t196
+        t198 = 2.0 * t40
+        t199 = t197 + t198
+        t200 = t26 * t199
+        t201 = 2.0 - t45
+        t202 = t201 - t27
+        t203 = t53 * t202
+        t204 = t26 * t28
+        t205 = t203 + t204
+        t206 = t5 * t205
+        t207 = m_2 * t91
+        t208 = t206 + t207
+        t209 = t4 * t208
+        t210 = t88 * t103
+        t211 = m_2 * t210
+        t212 = t209 + t211
+        t213 = t4 * t212
+        t214 = t5 * t58
+        t215 = t213 - t214
+        t216 = t4 * t215
+        t217 = t88 * t112
+        t218 = m_2 * t217
+        t219 = t216 + t218
+        t220 = t35 * t219
+        t221 = t14 * t175
+        t222 = t72 * t221
+        t223 = t220 + t222
+        t224 = t18 * t223
+        t225 = t200 + t224
+        t226 = t4 * t225
+        t227 = t5 * t35
+        t228 = t26 * t227
+        t229 = t226 - t228
+        t230 = t4 * t229
+        t231 = t26 * t40
+        t232 = t230 - t231
+        t233 = t187 * t232
+        t234 = t6 * t35
+        t235 = t26 * t234
+        t236 = t14 * t117
+        t237 = 2.0 * t236
+        t238 = t6 * t192
+        t239 = t4 * t117
+        t240 = t14 * t239
+        t241 = t238 + t240
+        t242 = t4 * t241
+        t243 = t237 - t242
+        t244 = t26 * t243
+        t245 = t26 * t46
+        t246 = t27 + t103
+        t247 = t53 * t246
+        t248 = t245 + t247
+        t249 = t6 * t248
+        t250 = m_2 * t52
+        t251 = t249 + t250
         t252 = t4 * t251
-        t253 = t6 * t49
-        t254 = t252 + t253
-        t255 = t4 * t254
-        t256 = t50 * t107
-        t257 = m_2 * t256
-        t258 = t255 + t257
-        t259 = t30 * t258
-        t260 = t14 * t129
-        t261 = t63 * t260
+        t253 = t59 * t103
+        t254 = m_2 * t253
+        t255 = t252 + t254
+        t256 = t4 * t255
+        t257 = t6 * t58
+        t258 = t256 + t257
+        t259 = t4 * t258
+        t260 = t59 * t112
+        t261 = m_2 * t260
         t262 = t259 + t261
-        t263 = L * t262
-        t264 = L * t263
-        t265 = t14 * t112
-        t266 = 2.0 * t265
-        t267 = t6 * t222
-        t268 = t4 * t112
-        t269 = t14 * t268
-        t270 = t267 + t269
+        t263 = t35 * t262
+        t264 = t14 * t127
+        t265 = t72 * t264
+        t266 = t263 + t265
+        t267 = t18 * t266
+        t268 = t244 + t267
+        t269 = t4 * t268
+        t270 = t235 + t269
         t271 = t4 * t270
-        t272 = t266 - t271
-        t273 = t48 * t272
-        t274 = t264 + t273
-        t275 = t4 * t274
-        t276 = t6 * t30
-        t277 = t48 * t276
-        t278 = t275 + t277
-        t279 = t4 * t278
-        t280 = t48 * t265
-        t281 = t279 - t280
-        t282 = t239 * t281
-        t283 = t33 * t42
-        t284 = t3 * t139
-        t285 = t3 * t284
-        t286 = t283 + t285
-        t287 = t141 * t286
-        t288 = t4 * t287
-        t289 = t22 * t288
-        t290 = t4 * t194
-        t291 = t4 * t290
-        t292 = (-1.0) + t291
-        t293 = t30 * t292
-        t294 = t5 * t293
-        t295 = t18 * t225
-        t296 = t294 + t295
-        t297 = t4 * t296
-        t298 = t297 - t213
-        t299 = L * Theta_2
-        t300 = t299 / t20
-        t301 = t298 * t300
-        t302 = t4 * t242
-        t303 = t4 * t302
-        t304 = 1.0 + t303
-        t305 = t30 * t304
-        t306 = t6 * t305
-        t307 = t18 * t269
-        t308 = t306 + t307
-        t309 = t4 * t308
-        t310 = t309 - t260
-        t311 = t300 * t310
-        t312 = t3 * t144
-        t313 = Theta_2 * t18
-        t314 = t313 / t19
-        t315 = t312 * t314
-        t316 = 2.0 * t315
+        t272 = t26 * t236
+        t273 = t271 - t272
+        t274 = t187 * t273
+        t275 = phi_dot * t3
+        t276 = t14 * t275
+        t277 = t276 * t142
+        t278 = t4 * t277
+        t279 = t22 * t278
+        t280 = t4 * t202
+        t281 = t4 * t280
+        t282 = (-1.0) + t281
+        t283 = t35 * t282
+        t284 = t5 * t283
+        t285 = t18 * t195
+        t286 = t284 + t285
+        t287 = t4 * t286
+        t288 = t287 - t221
+        t289 = L * Theta_2
+        t290 = t289 / t20
+        t291 = t288 * t290
+        t292 = t4 * t246
+        t293 = t4 * t292
+        t294 = 1.0 + t293
+        t295 = t35 * t294
+        t296 = t6 * t295
+        t297 = t18 * t240
+        t298 = t296 + t297
+        t299 = t4 * t298
+        t300 = t299 - t264
+        t301 = t290 * t300
+        t302 = phi_dot * t4
+        t303 = t3 * t302
+        t304 = Theta_2 * t18
+        t305 = t304 / t19
+        t306 = t303 * t305
+        t307 = 2.0 * t306
         entries = (
-            t88,
-            t135,
-            t151,
+            t87,
+            t133,
+            t146,
             0.0,
-            t187,
-            t189,
-            t192,
+            t181,
+            t183,
+            t186,
             0.0,
-            t240,
-            t282,
-            t289,
+            t233,
+            t274,
+            t279,
             0.0,
+            t291,
             t301,
-            t311,
-            t316,
+            t307,
             0.0,
         )
         return _result("projected_coriolis_matrix", status, batch, (4, 4), entries)
@@ -1634,14 +1619,13 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t25 = t4 * t24
         t26 = t4 * t25
         t27 = t21 + t26
-        t28 = 1.0 / t9
-        t29 = t27 * t28
-        t30 = t3 / t8
-        t31 = Theta_2 * t30
+        t28 = t27 / t9
+        t29 = t3 / t8
+        t30 = Theta_2 * t29
         entries = (
-            t29,
-            t31,
-            t31,
+            t28,
+            t30,
+            t30,
             Theta_2,
         )
         return _result("minimal_mass_matrix", status, batch, (2, 2), entries)
@@ -1686,69 +1670,64 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 2)
-        t18 = t5 * t4
-        t19 = t3 * t18
-        t20 = m_1 + m_2
-        t21 = L * L
-        t22 = m_2 * t21
-        t23 = Theta_1 + t22
-        t24 = Theta_2 + t23
-        t25 = t20 + t24
-        t26 = t19 * t25
-        t27 = t3 * t26
-        t28 = t20 * t21
-        t29 = t4 * t18
-        t30 = t4 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = L * t32
-        t34 = L * t33
-        t35 = t4 * t4
-        t36 = t35 + (-2.0)
-        t37 = t18 * t36
-        t38 = t24 * t37
-        t39 = t34 + t38
-        t40 = theta_dot * t39
-        t41 = phi_dot * t6
-        t42 = t3 * t41
-        t43 = (-1.0) + t21
-        t44 = t42 * t43
-        t45 = t24 * t44
-        t46 = t40 + t45
-        t47 = t4 * t46
-        t48 = theta_dot * t5
-        t49 = t24 * t48
-        t50 = t47 + t49
-        t51 = t4 * t50
-        t52 = t24 * t42
-        t53 = t51 + t52
-        t54 = t6 * t21
-        t55 = t6 * t54
-        t56 = t6 * t55
-        t57 = t4 * t56
-        t58 = t4 * t57
+        t18 = L * L
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = Theta_2 + t20
+        t22 = phi_dot * t6
+        t23 = t3 * t22
+        t24 = t21 * t23
+        t25 = theta_dot * t5
+        t26 = t21 * t25
+        t27 = (-1.0) + t18
+        t28 = t23 * t27
+        t29 = t21 * t28
+        t30 = t5 * t4
+        t31 = t4 * t4
+        t32 = t31 + (-2.0)
+        t33 = t30 * t32
+        t34 = t21 * t33
+        t35 = m_1 + m_2
+        t36 = t35 * t18
+        t37 = t31 * t36
+        t38 = t35 + t21
+        t39 = t7 * t38
+        t40 = t37 + t39
+        t41 = t30 * t40
+        t42 = t18 * t41
+        t43 = t34 + t42
+        t44 = theta_dot * t43
+        t45 = t29 + t44
+        t46 = t4 * t45
+        t47 = t26 + t46
+        t48 = t4 * t47
+        t49 = t24 + t48
+        t50 = t6 * t18
+        t51 = t6 * t50
+        t52 = t6 * t51
+        t53 = t4 * t52
+        t54 = t4 * t53
+        t55 = t4 * t54
+        t56 = t14 * t55
+        t57 = t49 / t56
+        t58 = t6 * t12
         t59 = t4 * t58
         t60 = t14 * t59
-        t61 = 1.0 / t60
-        t62 = t53 * t61
-        t63 = t19 * t43
-        t64 = theta_dot * t63
-        t65 = t41 * t43
-        t66 = t64 + t65
+        t61 = Theta_2 / t60
+        t62 = t3 * t25
+        t63 = t4 * t25
+        t64 = t3 * t63
+        t65 = t22 + t64
+        t66 = t27 * t65
         t67 = t4 * t66
-        t68 = t3 * t48
-        t69 = t67 + t68
-        t70 = t4 * t69
-        t71 = t41 + t70
-        t72 = t6 * t12
-        t73 = t4 * t72
-        t74 = t14 * t73
-        t75 = Theta_2 / t74
-        t76 = t71 * t75
+        t68 = t62 + t67
+        t69 = t4 * t68
+        t70 = t22 + t69
+        t71 = t61 * t70
         entries = (
-            t62,
+            t57,
             0.0,
-            t76,
+            t71,
             0.0,
         )
         return _result("minimal_coriolis_matrix", status, batch, (2, 2), entries)
@@ -1872,13 +1851,12 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t29 = t5 * t4
         t30 = t25 * t29
         t31 = t18 * t30
-        t32 = 1.0 / t14
-        t33 = t3 * t25
-        t34 = t32 * t33
+        t32 = t3 * t25
+        t33 = t32 / t14
         entries = (
             t28,
             t31,
-            t34,
+            t33,
             phi_dot,
         )
         return _result("admissible_velocity", status, batch, (4,), entries)
@@ -1993,23 +1971,22 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t86 = t27 * t85
         t87 = t82 - t86
         t88 = t58 * t87
-        t89 = 1.0 / t56
-        t90 = t14 * t61
-        t91 = t3 * t90
-        t92 = phi_dot * t27
-        t93 = L * t92
-        t94 = t91 + t93
-        t95 = t4 * t94
-        t96 = L * t95
-        t97 = theta_ddot * t3
-        t98 = t3 * t97
-        t99 = t14 * t98
-        t100 = t96 + t99
-        t101 = t89 * t100
+        t89 = t14 * t61
+        t90 = t3 * t89
+        t91 = phi_dot * t27
+        t92 = L * t91
+        t93 = t90 + t92
+        t94 = t4 * t93
+        t95 = L * t94
+        t96 = theta_ddot * t3
+        t97 = t3 * t96
+        t98 = t14 * t97
+        t99 = t95 + t98
+        t100 = t99 / t56
         entries = (
             t59,
             t88,
-            t101,
+            t100,
             phi_ddot,
         )
         return _result("admissible_acceleration", status, batch, (4,), entries)
@@ -2072,28 +2049,25 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         t14 = t12 * t13
         t15 = t11 - t14
         t16 = t4 * t15
-        t17 = 1.0 / L
-        t18 = y_ddot * t6
-        t19 = x_ddot * t5
-        t20 = t18 - t19
-        t21 = m_2 * t20
-        t22 = L * t21
-        t23 = L * L
-        t24 = m_2 * t23
-        t25 = Theta_1 + t24
-        t26 = Theta_2 + t25
-        t27 = theta_ddot * t26
-        t28 = phi_ddot * Theta_2
-        t29 = t27 + t28
-        t30 = t22 + t29
-        t31 = t17 * t30
-        t32 = t3 * t31
-        t33 = t16 + t32
-        t34 = theta_ddot + phi_ddot
-        t35 = Theta_2 * t34
+        t17 = y_ddot * t6
+        t18 = x_ddot * t5
+        t19 = t17 - t18
+        t20 = t12 * t19
+        t21 = phi_ddot * Theta_2
+        t22 = L * t12
+        t23 = Theta_1 + t22
+        t24 = Theta_2 + t23
+        t25 = theta_ddot * t24
+        t26 = t21 + t25
+        t27 = t20 + t26
+        t28 = t27 / L
+        t29 = t3 * t28
+        t30 = t16 + t29
+        t31 = theta_ddot + phi_ddot
+        t32 = Theta_2 * t31
         entries = (
-            t33,
-            t35,
+            t30,
+            t32,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -2250,42 +2224,41 @@ def actuator_bias(q, qd, p=PARAMETERS):
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 3)
-        t19 = L * L
-        t20 = 1.0 / t19
-        t21 = phi_dot * t4
-        t22 = t3 * t21
-        t23 = m_2 * t19
-        t24 = Theta_1 + t23
-        t25 = Theta_2 + t24
-        t26 = theta_dot * t3
-        t27 = t25 * t26
-        t28 = m_1 + m_2
-        t29 = L * t3
-        t30 = theta_dot * t29
-        t31 = t6 * t4
-        t32 = t5 * t3
-        t33 = t31 - t32
-        t34 = x_dot * t33
-        t35 = t5 * t4
-        t36 = t6 * t3
-        t37 = t35 + t36
-        t38 = y_dot * t37
-        t39 = t34 + t38
-        t40 = t30 + t39
-        t41 = t28 * t40
-        t42 = L * t41
-        t43 = t27 - t42
-        t44 = L * t43
-        t45 = t25 * t39
-        t46 = t44 + t45
-        t47 = t22 * t46
-        t48 = t20 * t47
-        t49 = t21 / L
-        t50 = t49 * t40
-        t51 = Theta_2 * t50
+        t19 = phi_dot * t4
+        t20 = t3 * t19
+        t21 = L * L
+        t22 = m_2 * t21
+        t23 = Theta_1 + t22
+        t24 = Theta_2 + t23
+        t25 = theta_dot * t3
+        t26 = t24 * t25
+        t27 = m_1 + m_2
+        t28 = L * t3
+        t29 = theta_dot * t28
+        t30 = t6 * t4
+        t31 = t5 * t3
+        t32 = t30 - t31
+        t33 = x_dot * t32
+        t34 = t5 * t4
+        t35 = t6 * t3
+        t36 = t34 + t35
+        t37 = y_dot * t36
+        t38 = t33 + t37
+        t39 = t29 + t38
+        t40 = t27 * t39
+        t41 = L * t40
+        t42 = t26 - t41
+        t43 = L * t42
+        t44 = t24 * t38
+        t45 = t43 + t44
+        t46 = t20 * t45
+        t47 = t46 / t21
+        t48 = t19 / L
+        t49 = t48 * t39
+        t50 = Theta_2 * t49
         entries = (
-            t48,
-            t51,
+            t47,
+            t50,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
 
@@ -2330,13 +2303,13 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(m_1)
@@ -2373,28 +2346,28 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t57 = t53 + t56
         t58 = t51 * t57
         t59 = t50 * t58
-        t60 = L * L
-        t61 = m_2 * t60
-        t62 = Theta_1 + t61
-        t63 = t3 * t62
-        t64 = Theta_2 * t63
-        t65 = phi_dot * t3
-        t66 = L * t65
-        t67 = theta_dot * t66
-        t68 = theta_dot + phi_dot
-        t69 = t6 * t4
-        t70 = t5 * t3
-        t71 = t69 - t70
-        t72 = t68 * t71
-        t73 = x_dot * t72
-        t74 = t68 * t55
-        t75 = y_dot * t74
-        t76 = t73 + t75
-        t77 = t67 + t76
-        t78 = t6 * t77
-        t79 = t49 * t71
-        t80 = t78 - t79
-        t81 = t64 * t80
+        t60 = phi_dot * t3
+        t61 = L * t60
+        t62 = theta_dot * t61
+        t63 = theta_dot + phi_dot
+        t64 = t6 * t4
+        t65 = t5 * t3
+        t66 = t64 - t65
+        t67 = t63 * t66
+        t68 = x_dot * t67
+        t69 = t63 * t55
+        t70 = y_dot * t69
+        t71 = t68 + t70
+        t72 = t62 + t71
+        t73 = t6 * t72
+        t74 = t49 * t66
+        t75 = t73 - t74
+        t76 = L * m_2
+        t77 = L * t76
+        t78 = Theta_1 + t77
+        t79 = t3 * t78
+        t80 = Theta_2 * t79
+        t81 = t75 * t80
         t82 = t59 + t81
         t83 = t44 * t82
         t84 = T * t3
@@ -2402,76 +2375,75 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t86 = L * t3
         t87 = K_f * t86
         t88 = t3 * t87
-        t89 = L * m_2
-        t90 = theta_dot * t89
-        t91 = t90 * t47
-        t92 = K_f * t71
-        t93 = t91 + t92
-        t94 = t12 * t93
-        t95 = t90 * t45
-        t96 = K_f * t55
-        t97 = t95 + t96
-        t98 = t9 * t97
-        t99 = t94 + t98
-        t100 = t88 + t99
-        t101 = Theta_2 * t100
-        t102 = t85 - t101
-        t103 = t12 * t102
-        t104 = t44 * t103
-        t105 = t83 + t104
-        t106 = -t105
-        t107 = t5 * t77
-        t108 = t49 * t55
-        t109 = t107 - t108
-        t110 = t64 * t109
-        t111 = m_1 * t69
-        t112 = m_2 * t71
-        t113 = t111 + t112
-        t114 = t51 * t113
-        t115 = t50 * t114
-        t116 = t110 - t115
-        t117 = t44 * t116
-        t118 = t9 * t102
-        t119 = t44 * t118
-        t120 = t117 + t119
-        t121 = -t120
-        t122 = t79 - t78
-        t123 = t114 * t122
-        t124 = t58 * t109
-        t125 = t123 - t124
-        t126 = t44 * t125
-        t127 = t3 * t102
-        t128 = t44 * t127
-        t129 = t126 + t128
-        t130 = -t129
-        t131 = m_1 + m_2
-        t132 = T * t12
-        t133 = t131 * t132
-        t134 = t5 * t89
-        t135 = t134 * t84
-        t136 = t133 - t135
-        t137 = t12 * t136
-        t138 = T * t9
-        t139 = t131 * t138
-        t140 = t6 * t89
-        t141 = t140 * t84
-        t142 = t139 + t141
-        t143 = t9 * t142
-        t144 = t137 + t143
-        t145 = Theta_2 + t62
-        t146 = t145 * t84
-        t147 = t146 - t101
-        t148 = t3 * t147
-        t149 = t144 + t148
-        t150 = t44 * t149
-        t151 = t124 - t123
-        t152 = t44 * t151
-        t153 = t150 - t152
+        t89 = theta_dot * t76
+        t90 = t89 * t47
+        t91 = K_f * t66
+        t92 = t90 + t91
+        t93 = t12 * t92
+        t94 = t89 * t45
+        t95 = K_f * t55
+        t96 = t94 + t95
+        t97 = t9 * t96
+        t98 = t93 + t97
+        t99 = t88 + t98
+        t100 = Theta_2 * t99
+        t101 = t85 - t100
+        t102 = t12 * t101
+        t103 = t102 * t44
+        t104 = t83 + t103
+        t105 = -t104
+        t106 = t5 * t72
+        t107 = t49 * t55
+        t108 = t106 - t107
+        t109 = t108 * t80
+        t110 = m_1 * t64
+        t111 = m_2 * t66
+        t112 = t110 + t111
+        t113 = t51 * t112
+        t114 = t50 * t113
+        t115 = t109 - t114
+        t116 = t44 * t115
+        t117 = t9 * t101
+        t118 = t117 * t44
+        t119 = t116 + t118
+        t120 = -t119
+        t121 = t74 - t73
+        t122 = t113 * t121
+        t123 = t58 * t108
+        t124 = t122 - t123
+        t125 = t124 * t44
+        t126 = t3 * t101
+        t127 = t126 * t44
+        t128 = t125 + t127
+        t129 = -t128
+        t130 = m_1 + m_2
+        t131 = T * t12
+        t132 = t130 * t131
+        t133 = t5 * t76
+        t134 = t133 * t84
+        t135 = t132 - t134
+        t136 = t12 * t135
+        t137 = T * t9
+        t138 = t130 * t137
+        t139 = t6 * t76
+        t140 = t139 * t84
+        t141 = t138 + t140
+        t142 = t9 * t141
+        t143 = t136 + t142
+        t144 = Theta_2 + t78
+        t145 = t84 * t144
+        t146 = t145 - t100
+        t147 = t3 * t146
+        t148 = t143 + t147
+        t149 = t44 * t148
+        t150 = t123 - t122
+        t151 = t150 * t44
+        t152 = t149 - t151
         entries = (
-            t106,
-            t121,
-            t130,
-            t153,
+            t105,
+            t120,
+            t129,
+            t152,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2517,13 +2489,13 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(m_1)
@@ -2569,93 +2541,92 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t66 = t64 + t65
         t67 = t8 * t66
         t68 = t67 * t52
-        t69 = L * L
-        t70 = m_2 * t69
-        t71 = Theta_1 + t70
-        t72 = t3 * t71
-        t73 = Theta_2 * t72
-        t74 = phi_dot * t3
-        t75 = L * t74
-        t76 = theta_dot * t75
-        t77 = theta_dot + phi_dot
-        t78 = t77 * t59
-        t79 = x_dot * t78
-        t80 = t77 * t49
-        t81 = y_dot * t80
-        t82 = t79 + t81
-        t83 = t76 + t82
-        t84 = t6 * t83
-        t85 = t66 * t59
-        t86 = t84 - t85
-        t87 = t73 * t86
-        t88 = t68 + t87
-        t89 = t44 * t88
-        t90 = t62 * t89
-        t91 = t5 * t53
-        t92 = m_1 * t57
-        t93 = m_2 * t59
-        t94 = t92 + t93
-        t95 = t45 * t94
-        t96 = t85 - t84
-        t97 = t95 * t96
-        t98 = t5 * t83
-        t99 = t66 * t49
-        t100 = t98 - t99
-        t101 = t52 * t100
-        t102 = t97 - t101
-        t103 = t44 * t102
-        t104 = t91 * t103
-        t105 = t90 - t104
-        t106 = t61 + t105
-        t107 = t52 * t106
-        t108 = t54 * t63
-        t109 = K_f * t49
-        t110 = t108 + t109
-        t111 = t73 * t100
-        t112 = t67 * t95
-        t113 = t111 - t112
-        t114 = t44 * t113
-        t115 = t62 * t114
-        t116 = t6 * t53
-        t117 = t116 * t103
-        t118 = t115 + t117
-        t119 = t110 + t118
-        t120 = t95 * t119
-        t121 = t107 - t120
-        t122 = t8 * t121
-        t123 = T * t95
-        t124 = L * t3
-        t125 = K_f * t124
-        t126 = Theta_2 + t71
-        t127 = t126 * t103
-        t128 = t53 * t66
-        t129 = t127 - t128
-        t130 = t101 - t97
-        t131 = t44 * t130
-        t132 = Theta_2 * t131
-        t133 = t129 + t132
-        t134 = t125 + t133
-        t135 = t95 * t134
-        t136 = t123 - t135
-        t137 = t73 * t106
-        t138 = t136 + t137
-        t139 = t59 * t138
-        t140 = t122 - t139
-        t141 = T * t52
-        t142 = t52 * t134
-        t143 = t141 - t142
-        t144 = t73 * t119
-        t145 = t143 + t144
-        t146 = t49 * t145
-        t147 = t140 - t146
-        t148 = t44 * t147
-        t149 = t6 * t138
-        t150 = t5 * t145
-        t151 = t149 + t150
-        t152 = t44 * t151
+        t69 = phi_dot * t3
+        t70 = L * t69
+        t71 = theta_dot * t70
+        t72 = theta_dot + phi_dot
+        t73 = t72 * t59
+        t74 = x_dot * t73
+        t75 = t72 * t49
+        t76 = y_dot * t75
+        t77 = t74 + t76
+        t78 = t71 + t77
+        t79 = t6 * t78
+        t80 = t66 * t59
+        t81 = t79 - t80
+        t82 = L * t53
+        t83 = Theta_1 + t82
+        t84 = t3 * t83
+        t85 = Theta_2 * t84
+        t86 = t81 * t85
+        t87 = t68 + t86
+        t88 = t44 * t87
+        t89 = t62 * t88
+        t90 = t5 * t53
+        t91 = m_1 * t57
+        t92 = m_2 * t59
+        t93 = t91 + t92
+        t94 = t45 * t93
+        t95 = t80 - t79
+        t96 = t94 * t95
+        t97 = t5 * t78
+        t98 = t66 * t49
+        t99 = t97 - t98
+        t100 = t52 * t99
+        t101 = t96 - t100
+        t102 = t101 * t44
+        t103 = t90 * t102
+        t104 = t89 - t103
+        t105 = t61 + t104
+        t106 = t52 * t105
+        t107 = t54 * t63
+        t108 = K_f * t49
+        t109 = t107 + t108
+        t110 = t99 * t85
+        t111 = t67 * t94
+        t112 = t110 - t111
+        t113 = t44 * t112
+        t114 = t62 * t113
+        t115 = t6 * t53
+        t116 = t115 * t102
+        t117 = t114 + t116
+        t118 = t109 + t117
+        t119 = t94 * t118
+        t120 = t106 - t119
+        t121 = t8 * t120
+        t122 = T * t94
+        t123 = L * t3
+        t124 = K_f * t123
+        t125 = Theta_2 + t83
+        t126 = t125 * t102
+        t127 = t53 * t66
+        t128 = t126 - t127
+        t129 = t100 - t96
+        t130 = t129 * t44
+        t131 = Theta_2 * t130
+        t132 = t128 + t131
+        t133 = t124 + t132
+        t134 = t94 * t133
+        t135 = t122 - t134
+        t136 = t85 * t105
+        t137 = t135 + t136
+        t138 = t59 * t137
+        t139 = t121 - t138
+        t140 = T * t52
+        t141 = t52 * t133
+        t142 = t140 - t141
+        t143 = t85 * t118
+        t144 = t142 + t143
+        t145 = t49 * t144
+        t146 = t139 - t145
+        t147 = t44 * t146
+        t148 = t6 * t137
+        t149 = t5 * t144
+        t150 = t148 + t149
+        t151 = t44 * t150
         entries = (
-            t148,
-            t152,
+            t147,
+            t151,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2681,33 +2652,32 @@ def energy(q, qd, p=PARAMETERS):
         t1 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(theta)
-        t4 = m_1 + m_2
-        t5 = x_dot * x_dot
-        t6 = y_dot * y_dot
-        t7 = t5 + t6
-        t8 = t4 * t7
-        t9 = 0.5 * t8
-        t10 = L * m_2
-        t11 = theta_dot * t10
-        t12 = y_dot * t3
-        t13 = x_dot * t2
-        t14 = t12 - t13
-        t15 = t11 * t14
-        t16 = t9 + t15
-        t17 = L * L
-        t18 = m_2 * t17
-        t19 = Theta_1 + t18
-        t20 = theta_dot * theta_dot
-        t21 = t19 * t20
-        t22 = 0.5 * t21
-        t23 = t16 + t22
-        t24 = theta_dot + phi_dot
-        t25 = t24 * t24
-        t26 = Theta_2 * t25
-        t27 = 0.5 * t26
-        t28 = t23 + t27
+        t4 = theta_dot + phi_dot
+        t5 = t4 * t4
+        t6 = Theta_2 * t5
+        t7 = 0.5 * t6
+        t8 = m_1 + m_2
+        t9 = x_dot * x_dot
+        t10 = y_dot * y_dot
+        t11 = t9 + t10
+        t12 = t8 * t11
+        t13 = 0.5 * t12
+        t14 = L * m_2
+        t15 = theta_dot * t14
+        t16 = y_dot * t3
+        t17 = x_dot * t2
+        t18 = t16 - t17
+        t19 = t15 * t18
+        t20 = t13 + t19
+        t21 = theta_dot * theta_dot
+        t22 = L * t14
+        t23 = Theta_1 + t22
+        t24 = t21 * t23
+        t25 = 0.5 * t24
+        t26 = t20 + t25
+        t27 = t7 + t26
         entries = (
-            t28,
+            t27,
             0.0,
         )
         return _result("energy", status, batch, (2,), entries)

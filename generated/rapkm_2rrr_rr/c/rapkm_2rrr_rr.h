@@ -34,25 +34,25 @@
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            118    174      1      0      6      0
  * projected_control_pseudoinverse      58    128      1      0      6      0
- * orthogonal_complement                38     84      1      0      6      0
+ * orthogonal_complement                39     95      3      0      6      0
  * projected_mass_matrix               269    396      4      4      6      0
  * projected_coriolis_matrix           722   1014     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  77    139      1      0      6      0
- * minimal_coriolis_matrix             337    541     15      4      6      0
+ * minimal_mass_matrix                  76    139      1      0      6      0
+ * minimal_coriolis_matrix             404    610      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix               27     56      1      0      6      0
  * admissible_velocity                  96    139      4      4      6      0
  * admissible_acceleration             191    273      8      4      6      0
- * projected_configuration             228    244     16      8     12      0
+ * projected_configuration             266    286     17      8     18      0
  * inverse_dynamics                     51     85      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    230    361     20      7      6      0
- * multipliers                         215    328     24      7      6      0
+ * forward_dynamics                    230    358     20      7      6      0
+ * multipliers                         215    323     24      7      6      0
  * energy                               18     39      0      0      3      0
- * singularity                          64    104     17      4      6      0
+ * singularity                          60     99     17      4      6      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

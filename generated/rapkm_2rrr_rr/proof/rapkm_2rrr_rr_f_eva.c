@@ -558,7 +558,7 @@ void eva_projected_control_pseudoinverse(void) {
 
 void eva_orthogonal_complement(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t37. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t235, t250. */
 void eva_orthogonal_complement(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -730,7 +730,7 @@ void eva_projected_applied_force(void) {
 
 void eva_minimal_mass_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t52. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t38. */
 void eva_minimal_mass_matrix(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -762,7 +762,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t208, t261, t50, t88, t141, t210. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t210, t178. */
 void eva_minimal_coriolis_matrix(void) {
     float q[6];
     float qd[6];
@@ -870,7 +870,7 @@ void eva_minimal_applied_force(void) {
 
 void eva_minimal_control_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t37. */
 void eva_minimal_control_matrix(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -987,7 +987,7 @@ void eva_admissible_acceleration(void) {
 
 void eva_projected_configuration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t177, t79, t126, t179, t305, t341, t390, t308, t449, t345, t396, t451. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t79, t126, t175, t214, t366, t402, t451, t369, t406, t457, t547, t590. */
 void eva_projected_configuration(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -1019,7 +1019,7 @@ void eva_projected_configuration(void) {
 
 void eva_inverse_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t35, t32. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t24, t67. */
 void eva_inverse_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1110,7 +1110,7 @@ void eva_inverse_dynamics_residual(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t203, t241, t250, t254, t259, t303, t308, t364, t370, t264, t440, t437, t500, t506. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t49, t93, t151, t202, t242, t251, t260, t255, t304, t309, t365, t371, t265, t441, t438, t501, t507. */
 void eva_forward_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1153,7 +1153,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t203, t241, t250, t254, t259, t293, t290, t411, t417, t264, t470, t467, t530, t574. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t49, t93, t151, t202, t242, t251, t260, t255, t293, t290, t410, t416, t265, t469, t466, t528, t571. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];

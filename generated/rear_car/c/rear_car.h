@@ -14,7 +14,7 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           2      5      0      0      1      0
+ * mass_matrix                           2      4      0      0      1      0
  * coriolis_matrix                       0      4      0      0      1      0
  * coriolis_force                        0      6      0      0      1      0
  * potential_force                       0      0      0      0      0      0
@@ -24,32 +24,32 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     49      3      0      2      0
- * weighted_nullspace_projector         14     53      4      0      2      0
+ * weighted_pseudoinverse               17     47      3      0      2      0
+ * weighted_nullspace_projector         14     52      4      0      2      0
  * control_matrix                        0      0      0      0      1      0
  * projected_control_matrix              3     11      3      0      2      0
  * projected_control_pseudoinverse       1      3      1      0      2      0
- * orthogonal_complement                 1      6      2      0      2      0
- * projected_mass_matrix                10     45      3      0      2      0
- * projected_coriolis_matrix            74    205      3      0      2      0
+ * orthogonal_complement                 1      5      2      0      2      0
+ * projected_mass_matrix                10     43      3      0      2      0
+ * projected_coriolis_matrix            73    195      3      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                   3     12      1      0      2      0
- * minimal_coriolis_matrix              13     41      1      0      2      0
+ * minimal_mass_matrix                   3     11      1      0      2      0
+ * minimal_coriolis_matrix              13     36      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      5      1      0      2      0
- * admissible_velocity                   5     21      2      0      2      0
- * admissible_acceleration              17     76      2      0      2      0
+ * admissible_velocity                   5     20      2      0      2      0
+ * admissible_acceleration              17     75      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                      7     17      1      0      2      0
+ * inverse_dynamics                      7     15      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                         5     16      1      0      2      0
- * forward_dynamics                     35     91      1      0      2      0
- * multipliers                          38     89      1      0      2      0
- * energy                                7     16      0      0      1      0
+ * forward_dynamics                     35     90      1      0      2      0
+ * multipliers                          38     88      1      0      2      0
+ * energy                                7     15      0      0      1      0
  * singularity                           9     20      4      1      2      0
  * (changes of sign are not counted)
  *

@@ -13,7 +13,7 @@ Inputs u:
   u[1] T [N*m] steering torque
 
 Operations                          + -      *      /   sqrt sincos  other
-mass_matrix                           2      5      0      0      1      0
+mass_matrix                           2      4      0      0      1      0
 coriolis_matrix                       0      4      0      0      1      0
 coriolis_force                        0      6      0      0      1      0
 potential_force                       0      0      0      0      0      0
@@ -23,32 +23,32 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     17      1      0      2      0
 nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     49      3      0      2      0
-weighted_nullspace_projector         14     53      4      0      2      0
+weighted_pseudoinverse               17     47      3      0      2      0
+weighted_nullspace_projector         14     52      4      0      2      0
 control_matrix                        0      0      0      0      1      0
 projected_control_matrix              3     11      3      0      2      0
 projected_control_pseudoinverse       1      3      1      0      2      0
-orthogonal_complement                 1      6      2      0      2      0
-projected_mass_matrix                10     45      3      0      2      0
-projected_coriolis_matrix            74    205      3      0      2      0
+orthogonal_complement                 1      5      2      0      2      0
+projected_mass_matrix                10     43      3      0      2      0
+projected_coriolis_matrix            73    195      3      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
-minimal_mass_matrix                   3     12      1      0      2      0
-minimal_coriolis_matrix              13     41      1      0      2      0
+minimal_mass_matrix                   3     11      1      0      2      0
+minimal_coriolis_matrix              13     36      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      5      1      0      2      0
-admissible_velocity                   5     21      2      0      2      0
-admissible_acceleration              17     76      2      0      2      0
+admissible_velocity                   5     20      2      0      2      0
+admissible_acceleration              17     75      2      0      2      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                      7     17      1      0      2      0
+inverse_dynamics                      7     15      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     1      2      0      0      1      0
 actuator_mass_matrix                  4      7      1      0      1      0
 actuator_bias                         5     16      1      0      2      0
-forward_dynamics                     35     91      1      0      2      0
-multipliers                          38     89      1      0      2      0
-energy                                7     16      0      0      1      0
+forward_dynamics                     35     90      1      0      2      0
+multipliers                          38     88      1      0      2      0
+energy                                7     15      0      0      1      0
 singularity                           9     20      4      1      2      0
 (changes of sign are not counted)
 
@@ -219,9 +219,8 @@ def mass_matrix(q, p=PARAMETERS):
         t6 = t2 * t5
         t7 = -t6
         t8 = t3 * t5
-        t9 = L * L
-        t10 = m_2 * t9
-        t11 = Theta_1 + t10
+        t9 = L * t5
+        t10 = Theta_1 + t9
         entries = (
             t4,
             0.0,
@@ -233,7 +232,7 @@ def mass_matrix(q, p=PARAMETERS):
             0.0,
             t7,
             t8,
-            t11,
+            t10,
             0.0,
             0.0,
             0.0,
@@ -708,13 +707,13 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(Theta_1)
@@ -748,40 +747,38 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t54 = t6 * t4
         t55 = t5 * t3
         t56 = t54 - t55
-        t57 = L * L
-        t58 = m_2 * t57
-        t59 = Theta_1 + t58
+        t57 = m_2 * t19
+        t58 = Theta_1 + t57
+        t59 = Theta_2 * t58
         t60 = t3 * t59
-        t61 = Theta_2 * t60
-        t62 = t56 * t61
-        t63 = t53 - t62
-        t64 = t44 * t63
-        t65 = Theta_2 * t59
-        t66 = t65 / t25
-        t67 = t48 * t66
-        t68 = m_1 * t54
-        t69 = m_2 * t56
-        t70 = t68 + t69
-        t71 = t45 * t70
-        t72 = t8 * t71
-        t73 = t49 * t61
-        t74 = t72 + t73
-        t75 = t44 * t74
-        t76 = -t75
-        t77 = t55 * t66
-        t78 = t45 / t25
-        t79 = t20 * t78
-        t80 = m_1 + m_2
-        t81 = t4 * t80
-        t82 = t78 * t81
-        t83 = -t82
+        t61 = t56 * t60
+        t62 = t53 - t61
+        t63 = t44 * t62
+        t64 = t59 / t25
+        t65 = t48 * t64
+        t66 = m_1 * t54
+        t67 = m_2 * t56
+        t68 = t66 + t67
+        t69 = t45 * t68
+        t70 = t8 * t69
+        t71 = t49 * t60
+        t72 = t70 + t71
+        t73 = t44 * t72
+        t74 = -t73
+        t75 = t55 * t64
+        t76 = t45 / t25
+        t77 = t22 * t76
+        t78 = m_1 + m_2
+        t79 = t4 * t78
+        t80 = t79 * t76
+        t81 = -t80
         entries = (
-            t64,
-            t67,
-            t76,
+            t63,
+            t65,
+            t74,
+            t75,
             t77,
-            t79,
-            t83,
+            t81,
             0.0,
             0.0,
         )
@@ -820,13 +817,13 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(Theta_1)
@@ -847,58 +844,57 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t42 = t40 + t41
         t43 = t42 * 3.552713678800501e-15
         status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = L * L
-        t45 = Theta_2 * t44
-        t46 = t45 / t25
-        t47 = t6 * t4
-        t48 = m_1 * t47
-        t49 = t5 * t3
-        t50 = t47 - t49
-        t51 = m_2 * t50
-        t52 = t48 + t51
-        t53 = t47 * t52
-        t54 = t46 * t53
-        t55 = t5 * t4
-        t56 = m_1 * t55
-        t57 = t6 * t3
-        t58 = t55 + t57
-        t59 = m_2 * t58
-        t60 = t56 + t59
-        t61 = t47 * t60
-        t62 = t46 * t61
-        t63 = t3 * t47
-        t64 = m_2 * t44
-        t65 = Theta_1 + t64
-        t66 = L * Theta_2
-        t67 = t65 * t66
-        t68 = t67 / t25
-        t69 = t63 * t68
-        t70 = t55 * t52
-        t71 = t46 * t70
-        t72 = t55 * t60
-        t73 = t46 * t72
-        t74 = t3 * t55
-        t75 = t74 * t68
-        t76 = t66 / t25
-        t77 = t3 * t52
-        t78 = t76 * t77
-        t79 = t3 * t60
-        t80 = t76 * t79
-        t81 = Theta_2 * t65
-        t82 = t81 / t25
-        t83 = t7 * t82
+        t44 = Theta_2 * t19
+        t45 = t44 / t25
+        t46 = t6 * t4
+        t47 = m_1 * t46
+        t48 = t5 * t3
+        t49 = t46 - t48
+        t50 = m_2 * t49
+        t51 = t47 + t50
+        t52 = t46 * t51
+        t53 = t45 * t52
+        t54 = t5 * t4
+        t55 = m_1 * t54
+        t56 = t6 * t3
+        t57 = t54 + t56
+        t58 = m_2 * t57
+        t59 = t55 + t58
+        t60 = t46 * t59
+        t61 = t45 * t60
+        t62 = t3 * t46
+        t63 = m_2 * t19
+        t64 = Theta_1 + t63
+        t65 = L * Theta_2
+        t66 = t64 * t65
+        t67 = t66 / t25
+        t68 = t62 * t67
+        t69 = t54 * t51
+        t70 = t45 * t69
+        t71 = t54 * t59
+        t72 = t45 * t71
+        t73 = t3 * t54
+        t74 = t73 * t67
+        t75 = t65 / t25
+        t76 = t3 * t51
+        t77 = t75 * t76
+        t78 = t3 * t59
+        t79 = t75 * t78
+        t80 = Theta_2 * t64
+        t81 = t80 / t25
+        t82 = t7 * t81
         entries = (
-            t54,
-            t62,
-            t69,
+            t53,
+            t61,
+            t68,
             0.0,
-            t71,
-            t73,
-            t75,
+            t70,
+            t72,
+            t74,
             0.0,
-            t78,
-            t80,
-            t83,
+            t77,
+            t79,
+            t82,
             0.0,
             0.0,
             0.0,
@@ -1055,15 +1051,14 @@ def orthogonal_complement(q, p=PARAMETERS):
             t17 = t16 + t9
             status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
             status = _first(status, _failed_, 2)
-        t18 = 1.0 / t4
-        t19 = t3 * t18
-        t20 = t5 / t8
+        t18 = t3 / t4
+        t19 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t19,
+            t18,
             0.0,
-            t20,
+            t19,
             0.0,
             0.0,
             1.0,
@@ -1109,59 +1104,57 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t21 = t6 * t6
         t22 = t4 * t21
         t23 = t4 * t22
-        t24 = t4 * t4
-        t25 = m_1 * t24
-        t26 = m_2 + t25
-        t27 = L * t26
-        t28 = L * t27
-        t29 = Theta_1 * t7
-        t30 = t28 + t29
-        t31 = t23 * t30
-        t32 = t20 * t31
-        t33 = t5 * t6
+        t24 = Theta_1 * t7
+        t25 = t4 * t4
+        t26 = m_1 * t25
+        t27 = m_2 + t26
+        t28 = t18 * t27
+        t29 = t24 + t28
+        t30 = t23 * t29
+        t31 = t20 * t30
+        t32 = t5 * t6
+        t33 = t4 * t32
         t34 = t4 * t33
-        t35 = t4 * t34
-        t36 = t35 * t30
-        t37 = t20 * t36
-        t38 = L / t19
-        t39 = t6 * t4
-        t40 = t3 * t39
-        t41 = t40 * t30
-        t42 = t38 * t41
-        t43 = t5 * t5
+        t35 = t34 * t29
+        t36 = t20 * t35
+        t37 = L / t19
+        t38 = t6 * t4
+        t39 = t3 * t38
+        t40 = t39 * t29
+        t41 = t37 * t40
+        t42 = t5 * t5
+        t43 = t4 * t42
         t44 = t4 * t43
-        t45 = t4 * t44
-        t46 = t45 * t30
-        t47 = t20 * t46
-        t48 = t5 * t4
-        t49 = t3 * t48
-        t50 = t49 * t30
-        t51 = t38 * t50
-        t52 = m_2 * t18
-        t53 = Theta_1 + t52
-        t54 = t24 + (-2.0)
-        t55 = t53 * t54
-        t56 = m_1 + m_2
-        t57 = t56 * t18
-        t58 = t7 * t57
-        t59 = t55 + t58
+        t45 = t44 * t29
+        t46 = t20 * t45
+        t47 = t5 * t4
+        t48 = t3 * t47
+        t49 = t48 * t29
+        t50 = t37 * t49
+        t51 = m_2 * t18
+        t52 = Theta_1 + t51
+        t53 = t25 + (-2.0)
+        t54 = t52 * t53
+        t55 = m_1 + m_2
+        t56 = t55 * t18
+        t57 = t7 * t56
+        t58 = t54 + t57
+        t59 = t4 * t58
         t60 = t4 * t59
-        t61 = t4 * t60
-        t62 = t53 + t61
-        t63 = 1.0 / t19
-        t64 = t62 * t63
+        t61 = t52 + t60
+        t62 = t61 / t19
         entries = (
-            t32,
-            t37,
-            t42,
+            t31,
+            t36,
+            t41,
             0.0,
-            t37,
-            t47,
-            t51,
+            t36,
+            t46,
+            t50,
             0.0,
-            t42,
-            t51,
-            t64,
+            t41,
+            t50,
+            t62,
             0.0,
             0.0,
             0.0,
@@ -1213,283 +1206,272 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t21 = t14 * t20
         t22 = t18 / t21
         t23 = t6 * t4
-        t24 = x_dot * t6
-        t25 = y_dot * t5
-        t26 = t24 + t25
-        t27 = t4 * t26
-        t28 = L * t27
-        t29 = theta_dot * t3
+        t24 = m_2 * t18
+        t25 = Theta_1 + t24
+        t26 = t4 * t4
+        t27 = 2.0 - t26
+        t28 = x_dot * t6
+        t29 = y_dot * t5
         t30 = t28 + t29
-        t31 = L * t7
+        t31 = t4 * t30
         t32 = L * t31
-        t33 = t4 * t4
-        t34 = t33 + (-2.0)
-        t35 = t14 + t34
-        t36 = t32 + t35
-        t37 = t6 * t36
-        t38 = m_2 * t37
-        t39 = t5 * t4
-        t40 = t3 * t39
-        t41 = m_1 + m_2
-        t42 = t41 * t18
-        t43 = t40 * t42
-        t44 = t38 - t43
-        t45 = t4 * t44
-        t46 = m_2 * t18
-        t47 = Theta_1 + t46
-        t48 = t41 + t47
-        t49 = t5 * t3
-        t50 = t3 * t49
-        t51 = t3 * t50
-        t52 = t48 * t51
-        t53 = t45 - t52
-        t54 = t4 * t53
-        t55 = t7 + t15
-        t56 = 1.0 - t55
+        t33 = theta_dot * t3
+        t34 = t32 + t33
+        t35 = t4 * t34
+        t36 = t27 * t35
+        t37 = t5 * t36
+        t38 = phi_dot * t6
+        t39 = t14 * t38
+        t40 = t37 + t39
+        t41 = t3 * t40
+        t42 = t25 * t41
+        t43 = m_1 + m_2
+        t44 = 2.0 * t43
+        t45 = t25 - t44
+        t46 = t3 * t38
+        t47 = t14 * t46
+        t48 = t45 * t47
+        t49 = t7 + t15
+        t50 = 1.0 - t49
+        t51 = t6 * t50
+        t52 = m_2 * t51
+        t53 = t26 + (-2.0)
+        t54 = t14 + t53
+        t55 = t7 * t18
+        t56 = t54 + t55
         t57 = t6 * t56
         t58 = m_2 * t57
-        t59 = t54 + t58
-        t60 = t30 * t59
-        t61 = 2.0 * t41
-        t62 = t47 - t61
-        t63 = phi_dot * t6
-        t64 = t3 * t63
-        t65 = t14 * t64
-        t66 = t62 * t65
-        t67 = t60 + t66
-        t68 = L * t67
-        t69 = L * t68
-        t70 = 2.0 - t33
-        t71 = t4 * t30
-        t72 = t70 * t71
-        t73 = t5 * t72
-        t74 = t14 * t63
-        t75 = t73 + t74
-        t76 = t3 * t75
-        t77 = t47 * t76
-        t78 = t69 + t77
-        t79 = t4 * t78
-        t80 = t30 * t49
-        t81 = t47 * t80
-        t82 = t79 - t81
-        t83 = t4 * t82
-        t84 = t47 * t65
-        t85 = t83 - t84
-        t86 = t23 * t85
-        t87 = t22 * t86
-        t88 = (-1.0) + t18
-        t89 = t41 * t88
-        t90 = t89 - t47
-        t91 = t3 * t90
-        t92 = t6 * t91
-        t93 = m_2 * t39
-        t94 = t92 + t93
-        t95 = t4 * t94
-        t96 = (-2.0) + t32
-        t97 = t5 * t96
-        t98 = m_2 * t97
-        t99 = t95 + t98
-        t100 = t4 * t99
-        t101 = t6 * t3
-        t102 = t101 * t48
-        t103 = t100 + t102
-        t104 = t4 * t103
-        t105 = t7 * t14
-        t106 = 1.0 - t105
-        t107 = t5 * t106
-        t108 = m_2 * t107
-        t109 = t104 + t108
-        t110 = t30 * t109
-        t111 = phi_dot * t5
-        t112 = t3 * t111
-        t113 = t14 * t112
-        t114 = t62 * t113
-        t115 = t110 + t114
-        t116 = L * t115
-        t117 = L * t116
-        t118 = t3 * t23
-        t119 = t30 * t118
-        t120 = t34 * t119
-        t121 = t47 * t120
-        t122 = t117 + t121
-        t123 = t4 * t122
-        t124 = t30 * t101
-        t125 = t47 * t124
-        t126 = t123 + t125
-        t127 = t4 * t126
-        t128 = t3 * t112
-        t129 = t3 * t128
-        t130 = t14 * t129
-        t131 = t47 * t130
-        t132 = t127 - t131
-        t133 = t23 * t132
-        t134 = t22 * t133
-        t135 = L * t18
-        t136 = t135 / t21
-        t137 = t4 * t23
-        t138 = 2.0 * t47
-        t139 = t138 - t41
-        t140 = phi_dot * t3
-        t141 = t14 * t140
-        t142 = t139 * t141
-        t143 = t3 * t142
-        t144 = phi_dot * t4
-        t145 = t4 * t144
-        t146 = t14 * t145
-        t147 = t42 * t146
-        t148 = t143 + t147
-        t149 = t137 * t148
-        t150 = t136 * t149
-        t151 = 1.0 - t18
-        t152 = t41 * t151
-        t153 = t47 + t152
-        t154 = t3 * t153
-        t155 = t5 * t154
-        t156 = m_2 * t23
-        t157 = t155 + t156
-        t158 = t4 * t157
-        t159 = t6 * t96
-        t160 = m_2 * t159
-        t161 = t158 + t160
-        t162 = t4 * t161
-        t163 = t49 * t48
-        t164 = t162 - t163
-        t165 = t4 * t164
-        t166 = t6 * t106
-        t167 = m_2 * t166
-        t168 = t165 + t167
-        t169 = t30 * t168
-        t170 = t66 + t169
-        t171 = L * t170
-        t172 = L * t171
-        t173 = t30 * t40
-        t174 = t70 * t173
-        t175 = t47 * t174
-        t176 = t172 + t175
-        t177 = t4 * t176
-        t178 = t177 - t81
-        t179 = t4 * t178
-        t180 = t3 * t64
-        t181 = t3 * t180
-        t182 = t14 * t181
-        t183 = t47 * t182
-        t184 = t179 - t183
-        t185 = t39 * t184
-        t186 = t22 * t185
-        t187 = t39 * t132
-        t188 = t22 * t187
-        t189 = t4 * t39
-        t190 = t189 * t148
-        t191 = t136 * t190
-        t192 = 2.0 - t32
-        t193 = t192 - t33
-        t194 = t41 * t193
-        t195 = t47 * t70
-        t196 = t194 + t195
-        t197 = t5 * t196
-        t198 = m_2 * t118
-        t199 = t197 + t198
-        t200 = t4 * t199
-        t201 = t101 * t96
+        t59 = t5 * t4
+        t60 = t3 * t59
+        t61 = t43 * t18
+        t62 = t60 * t61
+        t63 = t58 - t62
+        t64 = t4 * t63
+        t65 = t43 + t25
+        t66 = t5 * t3
+        t67 = t3 * t66
+        t68 = t3 * t67
+        t69 = t65 * t68
+        t70 = t64 - t69
+        t71 = t4 * t70
+        t72 = t52 + t71
+        t73 = t34 * t72
+        t74 = t48 + t73
+        t75 = t18 * t74
+        t76 = t42 + t75
+        t77 = t4 * t76
+        t78 = t34 * t66
+        t79 = t25 * t78
+        t80 = t77 - t79
+        t81 = t4 * t80
+        t82 = t25 * t47
+        t83 = t81 - t82
+        t84 = t23 * t83
+        t85 = t22 * t84
+        t86 = t6 * t3
+        t87 = t34 * t86
+        t88 = t25 * t87
+        t89 = t3 * t23
+        t90 = t34 * t89
+        t91 = t53 * t90
+        t92 = t25 * t91
+        t93 = phi_dot * t5
+        t94 = t3 * t93
+        t95 = t14 * t94
+        t96 = t45 * t95
+        t97 = t7 * t14
+        t98 = 1.0 - t97
+        t99 = t5 * t98
+        t100 = m_2 * t99
+        t101 = t86 * t65
+        t102 = (-1.0) + t18
+        t103 = t43 * t102
+        t104 = t103 - t25
+        t105 = t3 * t104
+        t106 = t6 * t105
+        t107 = m_2 * t59
+        t108 = t106 + t107
+        t109 = t4 * t108
+        t110 = (-2.0) + t55
+        t111 = t5 * t110
+        t112 = m_2 * t111
+        t113 = t109 + t112
+        t114 = t4 * t113
+        t115 = t101 + t114
+        t116 = t4 * t115
+        t117 = t100 + t116
+        t118 = t34 * t117
+        t119 = t96 + t118
+        t120 = t18 * t119
+        t121 = t92 + t120
+        t122 = t4 * t121
+        t123 = t88 + t122
+        t124 = t4 * t123
+        t125 = t3 * t94
+        t126 = t3 * t125
+        t127 = t14 * t126
+        t128 = t25 * t127
+        t129 = t124 - t128
+        t130 = t23 * t129
+        t131 = t22 * t130
+        t132 = L * t18
+        t133 = t132 / t21
+        t134 = t4 * t23
+        t135 = t26 * t61
+        t136 = 2.0 * t25
+        t137 = t136 - t43
+        t138 = t3 * t137
+        t139 = t3 * t138
+        t140 = t135 + t139
+        t141 = phi_dot * t14
+        t142 = t140 * t141
+        t143 = t134 * t142
+        t144 = t133 * t143
+        t145 = t34 * t60
+        t146 = t27 * t145
+        t147 = t25 * t146
+        t148 = t6 * t98
+        t149 = m_2 * t148
+        t150 = 1.0 - t18
+        t151 = t43 * t150
+        t152 = t25 + t151
+        t153 = t3 * t152
+        t154 = t5 * t153
+        t155 = m_2 * t23
+        t156 = t154 + t155
+        t157 = t4 * t156
+        t158 = t6 * t110
+        t159 = m_2 * t158
+        t160 = t157 + t159
+        t161 = t4 * t160
+        t162 = t66 * t65
+        t163 = t161 - t162
+        t164 = t4 * t163
+        t165 = t149 + t164
+        t166 = t34 * t165
+        t167 = t48 + t166
+        t168 = t18 * t167
+        t169 = t147 + t168
+        t170 = t4 * t169
+        t171 = t170 - t79
+        t172 = t4 * t171
+        t173 = t3 * t46
+        t174 = t3 * t173
+        t175 = t14 * t174
+        t176 = t25 * t175
+        t177 = t172 - t176
+        t178 = t59 * t177
+        t179 = t22 * t178
+        t180 = t59 * t129
+        t181 = t22 * t180
+        t182 = t4 * t59
+        t183 = t182 * t142
+        t184 = t133 * t183
+        t185 = L / t21
+        t186 = t4 * t26
+        t187 = t4 * t186
+        t188 = 3.0 * t7
+        t189 = t187 + t188
+        t190 = t34 * t189
+        t191 = t5 * t190
+        t192 = t4 * t38
+        t193 = t14 * t192
+        t194 = t191 - t193
+        t195 = t4 * t194
+        t196 = 2.0 * t39
+        t197 = t195 + t196
+        t198 = t25 * t197
+        t199 = t14 * t173
+        t200 = t45 * t199
+        t201 = t86 * t98
         t202 = m_2 * t201
-        t203 = t200 + t202
-        t204 = t4 * t203
-        t205 = t5 * t48
-        t206 = t204 - t205
-        t207 = t4 * t206
-        t208 = t101 * t106
-        t209 = m_2 * t208
-        t210 = t207 + t209
-        t211 = t30 * t210
-        t212 = t14 * t180
-        t213 = t62 * t212
+        t203 = m_2 * t89
+        t204 = t25 * t27
+        t205 = 2.0 - t55
+        t206 = t205 - t26
+        t207 = t43 * t206
+        t208 = t204 + t207
+        t209 = t5 * t208
+        t210 = t203 + t209
+        t211 = t4 * t210
+        t212 = t86 * t110
+        t213 = m_2 * t212
         t214 = t211 + t213
-        t215 = L * t214
-        t216 = L * t215
-        t217 = t4 * t33
+        t215 = t4 * t214
+        t216 = t5 * t65
+        t217 = t215 - t216
         t218 = t4 * t217
-        t219 = 3.0 * t7
-        t220 = t218 + t219
-        t221 = t30 * t220
-        t222 = t5 * t221
-        t223 = t4 * t63
-        t224 = t14 * t223
-        t225 = t222 - t224
-        t226 = t4 * t225
-        t227 = 2.0 * t74
-        t228 = t226 + t227
-        t229 = t47 * t228
-        t230 = t216 + t229
-        t231 = t4 * t230
-        t232 = t5 * t30
-        t233 = t47 * t232
-        t234 = t231 - t233
-        t235 = t4 * t234
-        t236 = t47 * t74
-        t237 = t235 - t236
-        t238 = L / t21
-        t239 = t237 * t238
-        t240 = t47 * t34
-        t241 = t33 + t96
-        t242 = t41 * t241
-        t243 = t240 + t242
-        t244 = t6 * t243
-        t245 = m_2 * t40
-        t246 = t244 + t245
-        t247 = t4 * t246
-        t248 = t49 * t96
-        t249 = m_2 * t248
-        t250 = t247 + t249
-        t251 = t4 * t250
-        t252 = t6 * t48
-        t253 = t251 + t252
-        t254 = t4 * t253
-        t255 = t49 * t106
-        t256 = m_2 * t255
-        t257 = t254 + t256
-        t258 = t30 * t257
-        t259 = t14 * t128
-        t260 = t62 * t259
-        t261 = t258 + t260
-        t262 = L * t261
-        t263 = L * t262
-        t264 = t14 * t111
-        t265 = 2.0 * t264
-        t266 = t6 * t221
-        t267 = t4 * t111
-        t268 = t14 * t267
-        t269 = t266 + t268
-        t270 = t4 * t269
-        t271 = t265 - t270
-        t272 = t47 * t271
-        t273 = t263 + t272
-        t274 = t4 * t273
-        t275 = t6 * t30
-        t276 = t47 * t275
-        t277 = t274 + t276
-        t278 = t4 * t277
-        t279 = t47 * t264
-        t280 = t278 - t279
-        t281 = t238 * t280
-        t282 = t33 * t42
-        t283 = t3 * t139
-        t284 = t3 * t283
-        t285 = t282 + t284
-        t286 = t141 * t285
-        t287 = t4 * t286
-        t288 = t22 * t287
+        t219 = t202 + t218
+        t220 = t34 * t219
+        t221 = t200 + t220
+        t222 = t18 * t221
+        t223 = t198 + t222
+        t224 = t4 * t223
+        t225 = t5 * t34
+        t226 = t25 * t225
+        t227 = t224 - t226
+        t228 = t4 * t227
+        t229 = t25 * t39
+        t230 = t228 - t229
+        t231 = t185 * t230
+        t232 = t6 * t34
+        t233 = t25 * t232
+        t234 = t14 * t93
+        t235 = 2.0 * t234
+        t236 = t6 * t190
+        t237 = t4 * t93
+        t238 = t14 * t237
+        t239 = t236 + t238
+        t240 = t4 * t239
+        t241 = t235 - t240
+        t242 = t25 * t241
+        t243 = t14 * t125
+        t244 = t45 * t243
+        t245 = t66 * t98
+        t246 = m_2 * t245
+        t247 = t6 * t65
+        t248 = m_2 * t60
+        t249 = t25 * t53
+        t250 = t26 + t110
+        t251 = t43 * t250
+        t252 = t249 + t251
+        t253 = t6 * t252
+        t254 = t248 + t253
+        t255 = t4 * t254
+        t256 = t66 * t110
+        t257 = m_2 * t256
+        t258 = t255 + t257
+        t259 = t4 * t258
+        t260 = t247 + t259
+        t261 = t4 * t260
+        t262 = t246 + t261
+        t263 = t34 * t262
+        t264 = t244 + t263
+        t265 = t18 * t264
+        t266 = t242 + t265
+        t267 = t4 * t266
+        t268 = t233 + t267
+        t269 = t4 * t268
+        t270 = t25 * t234
+        t271 = t269 - t270
+        t272 = t185 * t271
+        t273 = phi_dot * t3
+        t274 = t14 * t273
+        t275 = t274 * t140
+        t276 = t4 * t275
+        t277 = t22 * t276
         entries = (
-            t87,
-            t134,
-            t150,
+            t85,
+            t131,
+            t144,
             0.0,
-            t186,
-            t188,
-            t191,
+            t179,
+            t181,
+            t184,
             0.0,
-            t239,
-            t281,
-            t288,
+            t231,
+            t272,
+            t277,
             0.0,
             0.0,
             0.0,
@@ -1575,10 +1557,9 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t23 = t3 * t3
         t24 = Theta_1 * t23
         t25 = t22 + t24
-        t26 = 1.0 / t9
-        t27 = t25 * t26
+        t26 = t25 / t9
         entries = (
-            t27,
+            t26,
             0.0,
             0.0,
             Theta_2,
@@ -1624,52 +1605,47 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 2)
-        t18 = t5 * t4
-        t19 = t3 * t18
-        t20 = m_1 + m_2
-        t21 = L * L
-        t22 = m_2 * t21
-        t23 = Theta_1 + t22
-        t24 = t20 + t23
-        t25 = t19 * t24
-        t26 = t3 * t25
-        t27 = t20 * t21
-        t28 = t4 * t18
-        t29 = t4 * t28
-        t30 = t27 * t29
-        t31 = t26 + t30
-        t32 = L * t31
-        t33 = L * t32
-        t34 = t4 * t4
-        t35 = t34 + (-2.0)
-        t36 = t18 * t35
-        t37 = t23 * t36
-        t38 = t33 + t37
-        t39 = theta_dot * t38
-        t40 = phi_dot * t6
-        t41 = t3 * t40
-        t42 = (-1.0) + t21
-        t43 = t41 * t42
-        t44 = t23 * t43
-        t45 = t39 + t44
-        t46 = t4 * t45
-        t47 = theta_dot * t5
-        t48 = t23 * t47
-        t49 = t46 + t48
-        t50 = t4 * t49
-        t51 = t23 * t41
-        t52 = t50 + t51
-        t53 = t6 * t21
-        t54 = t6 * t53
-        t55 = t6 * t54
-        t56 = t4 * t55
-        t57 = t4 * t56
-        t58 = t4 * t57
-        t59 = t14 * t58
-        t60 = 1.0 / t59
-        t61 = t52 * t60
+        t18 = L * L
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = phi_dot * t6
+        t22 = t3 * t21
+        t23 = t20 * t22
+        t24 = theta_dot * t5
+        t25 = t20 * t24
+        t26 = (-1.0) + t18
+        t27 = t22 * t26
+        t28 = t20 * t27
+        t29 = t5 * t4
+        t30 = t4 * t4
+        t31 = t30 + (-2.0)
+        t32 = t29 * t31
+        t33 = t20 * t32
+        t34 = m_1 + m_2
+        t35 = t34 * t18
+        t36 = t30 * t35
+        t37 = t34 + t20
+        t38 = t7 * t37
+        t39 = t36 + t38
+        t40 = t29 * t39
+        t41 = t18 * t40
+        t42 = t33 + t41
+        t43 = theta_dot * t42
+        t44 = t28 + t43
+        t45 = t4 * t44
+        t46 = t25 + t45
+        t47 = t4 * t46
+        t48 = t23 + t47
+        t49 = t6 * t18
+        t50 = t6 * t49
+        t51 = t6 * t50
+        t52 = t4 * t51
+        t53 = t4 * t52
+        t54 = t4 * t53
+        t55 = t14 * t54
+        t56 = t48 / t55
         entries = (
-            t61,
+            t56,
             0.0,
             0.0,
             0.0,
@@ -1794,13 +1770,12 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t29 = t5 * t4
         t30 = t25 * t29
         t31 = t18 * t30
-        t32 = 1.0 / t14
-        t33 = t3 * t25
-        t34 = t32 * t33
+        t32 = t3 * t25
+        t33 = t32 / t14
         entries = (
             t28,
             t31,
-            t34,
+            t33,
             phi_dot,
         )
         return _result("admissible_velocity", status, batch, (4,), entries)
@@ -1915,23 +1890,22 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t86 = t27 * t85
         t87 = t82 - t86
         t88 = t58 * t87
-        t89 = 1.0 / t56
-        t90 = t14 * t61
-        t91 = t3 * t90
-        t92 = phi_dot * t27
-        t93 = L * t92
-        t94 = t91 + t93
-        t95 = t4 * t94
-        t96 = L * t95
-        t97 = theta_ddot * t3
-        t98 = t3 * t97
-        t99 = t14 * t98
-        t100 = t96 + t99
-        t101 = t89 * t100
+        t89 = t14 * t61
+        t90 = t3 * t89
+        t91 = phi_dot * t27
+        t92 = L * t91
+        t93 = t90 + t92
+        t94 = t4 * t93
+        t95 = L * t94
+        t96 = theta_ddot * t3
+        t97 = t3 * t96
+        t98 = t14 * t97
+        t99 = t95 + t98
+        t100 = t99 / t56
         entries = (
             t59,
             t88,
-            t101,
+            t100,
             phi_ddot,
         )
         return _result("admissible_acceleration", status, batch, (4,), entries)
@@ -1986,44 +1960,41 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         t5, t6 = _sincos(phi)
         t7 = L * t6
         t8 = np.abs(t7)
-        t9 = np.abs(L)
-        t10 = t9 * 3.552713678800501e-15
-        _failed_ = ~np.asarray(t8 > t10)
+        t9 = L * 3.552713678800501e-15
+        _failed_ = ~np.asarray(t8 > t9)
         if np.any(_failed_ & (status == 0)):
-            t11 = t5 * t5
-            t12 = t7 * t7
-            t13 = t11 + t12
-            t14 = t9 * t9
-            t15 = 1.0 + t14
-            t16 = t15 * 1.262177448353619e-29
-            status = _first(status, _failed_ & ~np.asarray(t13 > t16), 2)
+            t10 = t5 * t5
+            t11 = t7 * t7
+            t12 = t10 + t11
+            t13 = L * L
+            t14 = 1.0 + t13
+            t15 = t14 * 1.262177448353619e-29
+            status = _first(status, _failed_ & ~np.asarray(t12 > t15), 2)
             status = _first(status, _failed_, 3)
-        t17 = m_1 + m_2
-        t18 = x_ddot * t4
-        t19 = y_ddot * t3
-        t20 = t18 + t19
-        t21 = t17 * t20
-        t22 = L * m_2
-        t23 = theta_dot * theta_dot
-        t24 = t22 * t23
-        t25 = t21 - t24
-        t26 = L * L
-        t27 = m_2 * t26
-        t28 = Theta_1 + t27
-        t29 = theta_ddot * t28
-        t30 = t4 * t22
-        t31 = y_ddot * t30
-        t32 = t3 * t22
-        t33 = x_ddot * t32
-        t34 = t31 - t33
-        t35 = t29 + t34
-        t36 = t35 / t7
-        t37 = t5 * t36
-        t38 = t25 + t37
-        t39 = phi_ddot * Theta_2
+        t16 = m_1 + m_2
+        t17 = x_ddot * t4
+        t18 = y_ddot * t3
+        t19 = t17 + t18
+        t20 = t16 * t19
+        t21 = L * m_2
+        t22 = theta_dot * theta_dot
+        t23 = t21 * t22
+        t24 = t20 - t23
+        t25 = y_ddot * t4
+        t26 = x_ddot * t3
+        t27 = t25 - t26
+        t28 = t21 * t27
+        t29 = L * t21
+        t30 = Theta_1 + t29
+        t31 = theta_ddot * t30
+        t32 = t28 + t31
+        t33 = t32 / t7
+        t34 = t5 * t33
+        t35 = t24 + t34
+        t36 = phi_ddot * Theta_2
         entries = (
-            t38,
-            t39,
+            t35,
+            t36,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -2201,31 +2172,31 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t6 * t6
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(Theta_1)
@@ -2246,107 +2217,106 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t42 = t40 + t41
         t43 = t42 * 3.552713678800501e-15
         status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = L * m_2
-        t46 = theta_dot * t45
-        t47 = theta_dot * t6
-        t48 = t46 * t47
-        t49 = K_r * t6
-        t50 = t48 + t49
-        t51 = t12 * t50
-        t52 = theta_dot * t5
-        t53 = t46 * t52
-        t54 = K_r * t5
-        t55 = t53 + t54
-        t56 = t9 * t55
-        t57 = t51 + t56
-        t58 = Theta_2 * t57
-        t59 = t12 * t58
-        t60 = t44 * t59
-        t61 = L * L
-        t62 = m_2 * t61
-        t63 = Theta_1 + t62
-        t64 = t3 * t63
-        t65 = Theta_2 * t64
-        t66 = phi_dot * t3
-        t67 = L * t66
-        t68 = theta_dot * t67
-        t69 = theta_dot + phi_dot
-        t70 = t6 * t4
-        t71 = t5 * t3
-        t72 = t70 - t71
-        t73 = t69 * t72
-        t74 = x_dot * t73
-        t75 = t5 * t4
-        t76 = t6 * t3
-        t77 = t75 + t76
-        t78 = t69 * t77
-        t79 = y_dot * t78
-        t80 = t74 + t79
-        t81 = t68 + t80
-        t82 = t6 * t81
-        t83 = y_dot * t52
-        t84 = x_dot * t47
-        t85 = t83 + t84
-        t86 = t85 * t72
-        t87 = t82 - t86
-        t88 = t65 * t87
-        t89 = t8 * t85
-        t90 = L * Theta_2
-        t91 = m_1 * t75
-        t92 = m_2 * t77
-        t93 = t91 + t92
-        t94 = t90 * t93
-        t95 = t89 * t94
-        t96 = t88 + t95
-        t97 = t44 * t96
-        t98 = t60 - t97
-        t99 = t9 * t58
-        t100 = t44 * t99
-        t101 = t5 * t81
-        t102 = t85 * t77
-        t103 = t101 - t102
-        t104 = t65 * t103
-        t105 = m_1 * t70
-        t106 = m_2 * t72
-        t107 = t105 + t106
-        t108 = t90 * t107
-        t109 = t89 * t108
-        t110 = t104 - t109
-        t111 = t44 * t110
-        t112 = t100 - t111
-        t113 = t3 * t58
-        t114 = t44 * t113
-        t115 = t86 - t82
-        t116 = t108 * t115
-        t117 = t94 * t103
-        t118 = t116 - t117
-        t119 = t44 * t118
-        t120 = t114 - t119
-        t121 = m_1 + m_2
-        t122 = T * t12
-        t123 = t121 * t122
-        t124 = t5 * t45
-        t125 = T * t3
-        t126 = t124 * t125
-        t127 = t123 - t126
-        t128 = t12 * t127
-        t129 = T * t9
-        t130 = t121 * t129
-        t131 = t6 * t45
-        t132 = t131 * t125
-        t133 = t130 + t132
-        t134 = t9 * t133
-        t135 = t128 + t134
-        t136 = t63 * t125
-        t137 = t3 * t136
-        t138 = t135 + t137
-        t139 = t44 * t138
+        t44 = L * m_2
+        t45 = theta_dot * t44
+        t46 = theta_dot * t4
+        t47 = t45 * t46
+        t48 = K_r * t4
+        t49 = t47 + t48
+        t50 = t12 * t49
+        t51 = theta_dot * t3
+        t52 = t45 * t51
+        t53 = K_r * t3
+        t54 = t52 + t53
+        t55 = t9 * t54
+        t56 = t50 + t55
+        t57 = Theta_2 * t56
+        t58 = t12 * t57
+        t59 = 1.0 / t25
+        t60 = t58 * t59
+        t61 = y_dot * t51
+        t62 = x_dot * t46
+        t63 = t61 + t62
+        t64 = t8 * t63
+        t65 = L * Theta_2
+        t66 = t3 * t6
+        t67 = m_1 * t66
+        t68 = t4 * t5
+        t69 = t66 + t68
+        t70 = m_2 * t69
+        t71 = t67 + t70
+        t72 = t65 * t71
+        t73 = t64 * t72
+        t74 = phi_dot * t5
+        t75 = L * t74
+        t76 = theta_dot * t75
+        t77 = theta_dot + phi_dot
+        t78 = t4 * t6
+        t79 = t3 * t5
+        t80 = t78 - t79
+        t81 = t77 * t80
+        t82 = x_dot * t81
+        t83 = t77 * t69
+        t84 = y_dot * t83
+        t85 = t82 + t84
+        t86 = t76 + t85
+        t87 = t4 * t86
+        t88 = t63 * t80
+        t89 = t87 - t88
+        t90 = L * t44
+        t91 = Theta_1 + t90
+        t92 = t5 * t91
+        t93 = Theta_2 * t92
+        t94 = t89 * t93
+        t95 = t73 + t94
+        t96 = t59 * t95
+        t97 = t60 - t96
+        t98 = t9 * t57
+        t99 = t98 * t59
+        t100 = t3 * t86
+        t101 = t63 * t69
+        t102 = t100 - t101
+        t103 = t102 * t93
+        t104 = m_1 * t78
+        t105 = m_2 * t80
+        t106 = t104 + t105
+        t107 = t65 * t106
+        t108 = t64 * t107
+        t109 = t103 - t108
+        t110 = t59 * t109
+        t111 = t99 - t110
+        t112 = t5 * t57
+        t113 = t112 * t59
+        t114 = t88 - t87
+        t115 = t107 * t114
+        t116 = t72 * t102
+        t117 = t115 - t116
+        t118 = t117 * t59
+        t119 = t113 - t118
+        t120 = m_1 + m_2
+        t121 = T * t12
+        t122 = t120 * t121
+        t123 = t3 * t44
+        t124 = T * t5
+        t125 = t123 * t124
+        t126 = t122 - t125
+        t127 = t12 * t126
+        t128 = T * t9
+        t129 = t120 * t128
+        t130 = t4 * t44
+        t131 = t130 * t124
+        t132 = t129 + t131
+        t133 = t9 * t132
+        t134 = t127 + t133
+        t135 = t124 * t91
+        t136 = t5 * t135
+        t137 = t134 + t136
+        t138 = t59 * t137
         entries = (
-            t98,
-            t112,
-            t120,
-            t139,
+            t97,
+            t111,
+            t119,
+            t138,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2391,13 +2361,13 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = Theta_1 * t7
-        t24 = t22 + t23
+        t18 = Theta_1 * t7
+        t19 = L * L
+        t20 = t4 * t4
+        t21 = m_1 * t20
+        t22 = m_2 + t21
+        t23 = t19 * t22
+        t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         t27 = np.abs(Theta_1)
@@ -2434,90 +2404,89 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t57 = K_r * t6
         t58 = t56 + t57
         t59 = m_1 + m_2
-        t60 = L * L
-        t61 = m_2 * t60
-        t62 = Theta_1 + t61
-        t63 = t3 * t62
-        t64 = Theta_2 * t63
-        t65 = phi_dot * t3
-        t66 = L * t65
-        t67 = theta_dot * t66
-        t68 = theta_dot + phi_dot
-        t69 = t6 * t4
-        t70 = t5 * t3
-        t71 = t69 - t70
-        t72 = t68 * t71
-        t73 = x_dot * t72
-        t74 = t68 * t49
-        t75 = y_dot * t74
-        t76 = t73 + t75
-        t77 = t67 + t76
-        t78 = t6 * t77
-        t79 = theta_dot * t5
-        t80 = y_dot * t79
-        t81 = x_dot * t55
-        t82 = t80 + t81
-        t83 = t82 * t71
-        t84 = t78 - t83
-        t85 = t64 * t84
-        t86 = t8 * t82
-        t87 = t86 * t52
-        t88 = t85 + t87
-        t89 = t44 * t88
-        t90 = t59 * t89
-        t91 = t5 * t53
-        t92 = m_1 * t69
-        t93 = m_2 * t71
-        t94 = t92 + t93
-        t95 = t45 * t94
-        t96 = t83 - t78
-        t97 = t95 * t96
-        t98 = t5 * t77
-        t99 = t82 * t49
-        t100 = t98 - t99
-        t101 = t52 * t100
-        t102 = t97 - t101
-        t103 = t44 * t102
-        t104 = t91 * t103
-        t105 = t90 - t104
-        t106 = t58 + t105
-        t107 = t52 * t106
-        t108 = t54 * t79
-        t109 = K_r * t5
-        t110 = t108 + t109
-        t111 = t64 * t100
-        t112 = t86 * t95
-        t113 = t111 - t112
-        t114 = t44 * t113
-        t115 = t59 * t114
-        t116 = t6 * t53
-        t117 = t116 * t103
-        t118 = t115 + t117
-        t119 = t110 + t118
-        t120 = t95 * t119
-        t121 = t107 - t120
-        t122 = t8 * t121
-        t123 = t64 * t106
-        t124 = t62 * t103
-        t125 = t53 * t82
-        t126 = t124 - t125
-        t127 = t95 * t126
-        t128 = t123 - t127
-        t129 = t71 * t128
-        t130 = t122 - t129
-        t131 = t64 * t119
-        t132 = t52 * t126
-        t133 = t131 - t132
-        t134 = t49 * t133
-        t135 = t130 - t134
-        t136 = t44 * t135
-        t137 = t6 * t128
-        t138 = t5 * t133
-        t139 = t137 + t138
-        t140 = t44 * t139
+        t60 = theta_dot * t5
+        t61 = y_dot * t60
+        t62 = x_dot * t55
+        t63 = t61 + t62
+        t64 = t8 * t63
+        t65 = t64 * t52
+        t66 = phi_dot * t3
+        t67 = L * t66
+        t68 = theta_dot * t67
+        t69 = theta_dot + phi_dot
+        t70 = t6 * t4
+        t71 = t5 * t3
+        t72 = t70 - t71
+        t73 = t69 * t72
+        t74 = x_dot * t73
+        t75 = t69 * t49
+        t76 = y_dot * t75
+        t77 = t74 + t76
+        t78 = t68 + t77
+        t79 = t6 * t78
+        t80 = t63 * t72
+        t81 = t79 - t80
+        t82 = L * t53
+        t83 = Theta_1 + t82
+        t84 = t3 * t83
+        t85 = Theta_2 * t84
+        t86 = t81 * t85
+        t87 = t65 + t86
+        t88 = t44 * t87
+        t89 = t59 * t88
+        t90 = t5 * t53
+        t91 = m_1 * t70
+        t92 = m_2 * t72
+        t93 = t91 + t92
+        t94 = t45 * t93
+        t95 = t80 - t79
+        t96 = t94 * t95
+        t97 = t5 * t78
+        t98 = t63 * t49
+        t99 = t97 - t98
+        t100 = t52 * t99
+        t101 = t96 - t100
+        t102 = t101 * t44
+        t103 = t90 * t102
+        t104 = t89 - t103
+        t105 = t58 + t104
+        t106 = t52 * t105
+        t107 = t54 * t60
+        t108 = K_r * t5
+        t109 = t107 + t108
+        t110 = t99 * t85
+        t111 = t64 * t94
+        t112 = t110 - t111
+        t113 = t44 * t112
+        t114 = t59 * t113
+        t115 = t6 * t53
+        t116 = t115 * t102
+        t117 = t114 + t116
+        t118 = t109 + t117
+        t119 = t94 * t118
+        t120 = t106 - t119
+        t121 = t8 * t120
+        t122 = t85 * t105
+        t123 = t83 * t102
+        t124 = t53 * t63
+        t125 = t123 - t124
+        t126 = t94 * t125
+        t127 = t122 - t126
+        t128 = t72 * t127
+        t129 = t121 - t128
+        t130 = t85 * t118
+        t131 = t52 * t125
+        t132 = t130 - t131
+        t133 = t49 * t132
+        t134 = t129 - t133
+        t135 = t44 * t134
+        t136 = t6 * t127
+        t137 = t5 * t132
+        t138 = t136 + t137
+        t139 = t44 * t138
         entries = (
-            t136,
-            t140,
+            t135,
+            t139,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2543,31 +2512,30 @@ def energy(q, qd, p=PARAMETERS):
         t1 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(theta)
-        t4 = L * L
-        t5 = m_2 * t4
-        t6 = Theta_1 + t5
-        t7 = theta_dot * t6
-        t8 = 0.5 * t7
-        t9 = L * m_2
-        t10 = y_dot * t3
-        t11 = x_dot * t2
-        t12 = t10 - t11
-        t13 = t9 * t12
-        t14 = t8 + t13
-        t15 = theta_dot * t14
-        t16 = m_1 + m_2
-        t17 = x_dot * x_dot
-        t18 = y_dot * y_dot
-        t19 = t17 + t18
-        t20 = t16 * t19
-        t21 = 0.5 * t20
-        t22 = phi_dot * phi_dot
-        t23 = Theta_2 * t22
-        t24 = 0.5 * t23
-        t25 = t21 + t24
-        t26 = t15 + t25
+        t4 = m_1 + m_2
+        t5 = x_dot * x_dot
+        t6 = y_dot * y_dot
+        t7 = t5 + t6
+        t8 = t4 * t7
+        t9 = 0.5 * t8
+        t10 = phi_dot * phi_dot
+        t11 = Theta_2 * t10
+        t12 = 0.5 * t11
+        t13 = t9 + t12
+        t14 = L * m_2
+        t15 = y_dot * t3
+        t16 = x_dot * t2
+        t17 = t15 - t16
+        t18 = t14 * t17
+        t19 = L * t14
+        t20 = Theta_1 + t19
+        t21 = theta_dot * t20
+        t22 = 0.5 * t21
+        t23 = t18 + t22
+        t24 = theta_dot * t23
+        t25 = t13 + t24
         entries = (
-            t26,
+            t25,
             0.0,
         )
         return _result("energy", status, batch, (2,), entries)

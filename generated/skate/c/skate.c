@@ -95,7 +95,7 @@ skate_status skate_mass_matrix(const double q[3], const skate_params *p, double 
     const double m_s = p->m_s;
     double rest = Theta_s - Theta_s;
     rest += m_s - m_s;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     G[0] = Theta_s;
@@ -168,7 +168,7 @@ skate_status skate_constraint_jacobian(const double q[3], const skate_params *p,
     const double t4 = -t3;
     double rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     B[0] = 0.0;
@@ -192,7 +192,7 @@ skate_status skate_constraint_jacobian_dot(const double q[3], const double qd[3]
     const double t5 = phi_dot * t2;
     double rest = t4 - t4;
     rest += t5 - t5;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     B_dot[0] = 0.0;
@@ -214,7 +214,7 @@ skate_status skate_constraint_pseudoinverse(const double q[3], const skate_param
     const double t4 = -t3;
     double rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     B_pinv[0] = 0.0;
@@ -239,7 +239,7 @@ skate_status skate_nullspace_projector(const double q[3], const skate_params *p,
     double rest = t4 - t4;
     rest += t5 - t5;
     rest += t6 - t6;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     N_B[0] = 1.0;
@@ -276,7 +276,7 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
     double rest = t7 - t7;
     rest += t11 - t11;
     rest += t6 - t6;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     N_B_dot[0] = 0.0;
@@ -314,7 +314,7 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
     const double t10 = -t3;
     double rest = t2 - t2;
     rest += t10 - t10;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     B_G_pinv[0] = 0.0;
@@ -349,7 +349,7 @@ skate_status skate_weighted_nullspace_projector(const double q[3], const skate_p
     double rest = t10 - t10;
     rest += t11 - t11;
     rest += t12 - t12;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     N_BG[0] = 1.0;
@@ -376,7 +376,7 @@ skate_status skate_control_matrix(const double q[3], const skate_params *p, doub
     skate_sincos(phi, &t2, &t3);
     double rest = t3 - t3;
     rest += t2 - t2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     M[0] = 1.0;
@@ -400,7 +400,7 @@ skate_status skate_projected_control_matrix(const double q[3], const skate_param
     skate_sincos(phi, &t2, &t3);
     double rest = t3 - t3;
     rest += t2 - t2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     M_tilde[0] = 1.0;
@@ -424,7 +424,7 @@ skate_status skate_projected_control_pseudoinverse(const double q[3], const skat
     skate_sincos(phi, &t2, &t3);
     double rest = t3 - t3;
     rest += t2 - t2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     M_tilde_pinv[0] = 1.0;
@@ -455,7 +455,7 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     }
     const double t5 = t2 / t3;
     double rest = t5 - t5;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     F_B[0] = 1.0;
@@ -488,7 +488,7 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
     rest += t5 - t5;
     rest += t7 - t7;
     rest += t9 - t9;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     G_tilde[0] = Theta_s;
@@ -528,7 +528,7 @@ skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[
     rest += t9 - t9;
     rest += t13 - t13;
     rest += t6 - t6;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     C_tilde[0] = 0.0;
@@ -583,7 +583,7 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
     const double Theta_s = p->Theta_s;
     double rest = Theta_s - Theta_s;
     rest += t5 - t5;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     G_bar[0] = Theta_s;
@@ -616,7 +616,7 @@ skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3]
     const double t7 = m_s / t6;
     const double t8 = t5 * t7;
     double rest = t8 - t8;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     C_bar[0] = 0.0;
@@ -662,7 +662,7 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     }
     const double t5 = 1.0 / t3;
     double rest = t5 - t5;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     M_bar[0] = 1.0;
@@ -693,7 +693,7 @@ skate_status skate_admissible_velocity(const double q[3], const double qd[3], co
     double rest = phi_dot - phi_dot;
     rest += t7 - t7;
     rest += t8 - t8;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     qd_admissible[0] = phi_dot;
@@ -737,7 +737,7 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     double rest = phi_ddot - phi_ddot;
     rest += t13 - t13;
     rest += t19 - t19;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     qdd_admissible[0] = phi_ddot;
@@ -754,7 +754,7 @@ skate_status skate_projected_configuration(const double q[3], const skate_params
     double rest = phi - phi;
     rest += x - x;
     rest += y - y;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     q_projected[0] = phi;
@@ -785,7 +785,7 @@ skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const
     const double t8 = m_s * t7;
     double rest = t4 - t4;
     rest += t8 - t8;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -822,7 +822,7 @@ skate_status skate_actuator_velocity(const double q[3], const double qd[3], cons
     const double phi_dot = qd[0];
     double rest = phi_dot - phi_dot;
     rest += t6 - t6;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     nu[0] = phi_dot;
@@ -836,7 +836,7 @@ skate_status skate_actuator_mass_matrix(const double q[3], const skate_params *p
     const double m_s = p->m_s;
     double rest = Theta_s - Theta_s;
     rest += m_s - m_s;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     G_nu[0] = Theta_s;
@@ -875,37 +875,36 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
-    const double t10 = 1.0 / Theta_s;
     const double T = u[0];
-    const double t11 = T * t10;
-    const double t12 = 1.0 / m_s;
+    const double t10 = T / Theta_s;
+    const double t11 = 1.0 / m_s;
     const double K = u[1];
-    const double t13 = K * t3;
+    const double t12 = K * t3;
     const double x_dot = qd[1];
-    const double t14 = x_dot * t3;
+    const double t13 = x_dot * t3;
     const double y_dot = qd[2];
-    const double t15 = y_dot * t2;
-    const double t16 = t14 + t15;
+    const double t14 = y_dot * t2;
+    const double t15 = t13 + t14;
     const double phi_dot = qd[0];
-    const double t17 = phi_dot * t16;
-    const double t18 = t2 * t17;
-    const double t19 = m_s * t18;
-    const double t20 = t13 - t19;
-    const double t21 = t12 * t20;
-    const double t22 = K * t2;
-    const double t23 = t3 * t17;
-    const double t24 = m_s * t23;
-    const double t25 = t22 + t24;
-    const double t26 = t12 * t25;
-    double rest = t11 - t11;
-    rest += t21 - t21;
-    rest += t26 - t26;
-    if (!(rest >= 0.0)) {
+    const double t16 = phi_dot * t15;
+    const double t17 = t2 * t16;
+    const double t18 = m_s * t17;
+    const double t19 = t12 - t18;
+    const double t20 = t11 * t19;
+    const double t21 = K * t2;
+    const double t22 = t3 * t16;
+    const double t23 = m_s * t22;
+    const double t24 = t21 + t23;
+    const double t25 = t11 * t24;
+    double rest = t10 - t10;
+    rest += t20 - t20;
+    rest += t25 - t25;
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
-    qdd[0] = t11;
-    qdd[1] = t21;
-    qdd[2] = t26;
+    qdd[0] = t10;
+    qdd[1] = t20;
+    qdd[2] = t25;
     return SKATE_OK;
 }
 
@@ -939,7 +938,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
     double rest = t14 - t14;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;
@@ -963,7 +962,7 @@ skate_status skate_energy(const double q[3], const double qd[3], const skate_par
     const double t8 = 0.5 * t7;
     const double t9 = t3 + t8;
     double rest = t9 - t9;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     T_U[0] = t9;

@@ -47,7 +47,7 @@
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  0      0      0      0      0      0
  * actuator_bias                         0      0      0      0      0      0
- * forward_dynamics                      3     15      2      0      1      0
+ * forward_dynamics                      3     14      2      0      1      0
  * multipliers                           1      7      0      0      1      0
  * energy                                2      7      0      0      0      0
  * singularity                           0      0      0      0      0      0

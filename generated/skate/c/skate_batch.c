@@ -177,8 +177,7 @@ size_t skate_forward_dynamics_batch(size_t count, size_t stride, const double *q
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    const double t10 = 1.0 / Theta_s;
-    const double t12 = 1.0 / m_s;
+    const double t11 = 1.0 / m_s;
     double copy[6][LANES]; /* the last states, the first of them repeated */
     double result[3][LANES];
     double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -212,28 +211,28 @@ size_t skate_forward_dynamics_batch(size_t count, size_t stride, const double *q
             double t2;
             double t3;
             skate_sincos(phi, &t2, &t3);
-            const double t11 = T * t10;
-            const double t13 = K * t3;
-            const double t14 = x_dot * t3;
-            const double t15 = y_dot * t2;
-            const double t16 = t14 + t15;
-            const double t17 = phi_dot * t16;
-            const double t18 = t2 * t17;
-            const double t19 = m_s * t18;
-            const double t20 = t13 - t19;
-            const double t21 = t12 * t20;
-            const double t22 = K * t2;
-            const double t23 = t3 * t17;
-            const double t24 = m_s * t23;
-            const double t25 = t22 + t24;
-            const double t26 = t12 * t25;
-            double rest = (t11 - t11) + (t21 - t21) + (t26 - t26);
+            const double t10 = T / Theta_s;
+            const double t12 = K * t3;
+            const double t13 = x_dot * t3;
+            const double t14 = y_dot * t2;
+            const double t15 = t13 + t14;
+            const double t16 = phi_dot * t15;
+            const double t17 = t2 * t16;
+            const double t18 = m_s * t17;
+            const double t19 = t12 - t18;
+            const double t20 = t11 * t19;
+            const double t21 = K * t2;
+            const double t22 = t3 * t16;
+            const double t23 = m_s * t22;
+            const double t24 = t21 + t23;
+            const double t25 = t11 * t24;
+            double rest = (t10 - t10) + (t20 - t20) + (t25 - t25);
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += t5 > t9 ? 0.0 : 1.0;
             flag[k] = rest;
-            result[0][k] = t11;
-            result[1][k] = t21;
-            result[2][k] = t26;
+            result[0][k] = t10;
+            result[1][k] = t20;
+            result[2][k] = t25;
         }
         memcpy(bits, flag, sizeof bits);
         int64_t flags = 0;

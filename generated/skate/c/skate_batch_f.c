@@ -169,8 +169,7 @@ size_t skate_forward_dynamics_batch_f(size_t count, size_t stride, const float *
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    const float t10 = 1.0f / Theta_s;
-    const float t12 = 1.0f / m_s;
+    const float t11 = 1.0f / m_s;
     float copy[6][LANES]; /* the last states, the first of them repeated */
     float result[3][LANES];
     float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -204,28 +203,28 @@ size_t skate_forward_dynamics_batch_f(size_t count, size_t stride, const float *
             float t2;
             float t3;
             skate_sincos_f(phi, &t2, &t3);
-            const float t11 = T * t10;
-            const float t13 = K * t3;
-            const float t14 = x_dot * t3;
-            const float t15 = y_dot * t2;
-            const float t16 = t14 + t15;
-            const float t17 = phi_dot * t16;
-            const float t18 = t2 * t17;
-            const float t19 = m_s * t18;
-            const float t20 = t13 - t19;
-            const float t21 = t12 * t20;
-            const float t22 = K * t2;
-            const float t23 = t3 * t17;
-            const float t24 = m_s * t23;
-            const float t25 = t22 + t24;
-            const float t26 = t12 * t25;
-            float rest = (t11 - t11) + (t21 - t21) + (t26 - t26);
+            const float t10 = T / Theta_s;
+            const float t12 = K * t3;
+            const float t13 = x_dot * t3;
+            const float t14 = y_dot * t2;
+            const float t15 = t13 + t14;
+            const float t16 = phi_dot * t15;
+            const float t17 = t2 * t16;
+            const float t18 = m_s * t17;
+            const float t19 = t12 - t18;
+            const float t20 = t11 * t19;
+            const float t21 = K * t2;
+            const float t22 = t3 * t16;
+            const float t23 = m_s * t22;
+            const float t24 = t21 + t23;
+            const float t25 = t11 * t24;
+            float rest = (t10 - t10) + (t20 - t20) + (t25 - t25);
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += t5 > t9 ? 0.0f : 1.0f;
             flag[k] = rest;
-            result[0][k] = t11;
-            result[1][k] = t21;
-            result[2][k] = t26;
+            result[0][k] = t10;
+            result[1][k] = t20;
+            result[2][k] = t25;
         }
         memcpy(bits, flag, sizeof bits);
         int32_t flags = 0;

@@ -83,14 +83,13 @@ skate_prepared_f skate_prepare_f(const skate_params_f *p) {
     const float v4 = fabsf(m_s);
     const float v5 = v3 * v4;
     const float v6 = v5 * 1.4305115e-06f;
-    const float v7 = 1.0f / Theta_s;
-    const float v8 = 1.0f / m_s;
+    const float v7 = 1.0f / m_s;
     skate_prepared_f prepared;
     prepared.value[0] = m_s;
-    prepared.value[1] = v2;
-    prepared.value[2] = v6;
-    prepared.value[3] = v7;
-    prepared.value[4] = v8;
+    prepared.value[1] = Theta_s;
+    prepared.value[2] = v2;
+    prepared.value[3] = v6;
+    prepared.value[4] = v7;
     return prepared;
 }
 
@@ -103,43 +102,43 @@ skate_status skate_forward_dynamics_prepared_f(const float q[3], const float qd[
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    const float t5 = p->value[1];
-    const float t9 = p->value[2];
+    const float t5 = p->value[2];
+    const float t9 = p->value[3];
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
     const float T = u[0];
-    const float t10 = p->value[3];
-    const float t11 = T * t10;
+    const float Theta_s = p->value[1];
+    const float t10 = T / Theta_s;
     const float K = u[1];
-    const float t13 = K * t3;
+    const float t12 = K * t3;
     const float x_dot = qd[1];
-    const float t14 = x_dot * t3;
+    const float t13 = x_dot * t3;
     const float y_dot = qd[2];
-    const float t15 = y_dot * t2;
-    const float t16 = t14 + t15;
+    const float t14 = y_dot * t2;
+    const float t15 = t13 + t14;
     const float phi_dot = qd[0];
-    const float t17 = phi_dot * t16;
-    const float t18 = t2 * t17;
+    const float t16 = phi_dot * t15;
+    const float t17 = t2 * t16;
     const float m_s = p->value[0];
-    const float t19 = m_s * t18;
-    const float t20 = t13 - t19;
-    const float t12 = p->value[4];
-    const float t21 = t12 * t20;
-    const float t22 = K * t2;
-    const float t23 = t3 * t17;
-    const float t24 = m_s * t23;
-    const float t25 = t22 + t24;
-    const float t26 = t12 * t25;
-    float rest = t11 - t11;
-    rest += t21 - t21;
-    rest += t26 - t26;
-    if (!(rest >= 0.0f)) {
+    const float t18 = m_s * t17;
+    const float t19 = t12 - t18;
+    const float t11 = p->value[4];
+    const float t20 = t11 * t19;
+    const float t21 = K * t2;
+    const float t22 = t3 * t16;
+    const float t23 = m_s * t22;
+    const float t24 = t21 + t23;
+    const float t25 = t11 * t24;
+    float rest = t10 - t10;
+    rest += t20 - t20;
+    rest += t25 - t25;
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
-    qdd[0] = t11;
-    qdd[1] = t21;
-    qdd[2] = t26;
+    qdd[0] = t10;
+    qdd[1] = t20;
+    qdd[2] = t25;
     return SKATE_OK;
 }
 
@@ -153,8 +152,8 @@ skate_status skate_multipliers_prepared_f(const float q[3], const float qd[3], c
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    const float t5 = p->value[1];
-    const float t9 = p->value[2];
+    const float t5 = p->value[2];
+    const float t9 = p->value[3];
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
@@ -168,7 +167,7 @@ skate_status skate_multipliers_prepared_f(const float q[3], const float qd[3], c
     const float t13 = phi_dot * m_s;
     const float t14 = t12 * t13;
     float rest = t14 - t14;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;

@@ -33,7 +33,7 @@ skate_status skate_inverse_dynamics_sc(const skate_trig *sc, const double q[3], 
     const double t8 = m_s * t7;
     double rest = t4 - t4;
     rest += t8 - t8;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -54,39 +54,38 @@ skate_status skate_forward_dynamics_sc(const skate_trig *sc, const double q[3], 
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
-    const double t10 = 1.0 / Theta_s;
     const double T = u[0];
-    const double t11 = T * t10;
-    const double t12 = 1.0 / m_s;
+    const double t10 = T / Theta_s;
+    const double t11 = 1.0 / m_s;
     const double K = u[1];
     const double cos_phi = sc->cos_phi;
-    const double t13 = K * cos_phi;
+    const double t12 = K * cos_phi;
     const double x_dot = qd[1];
-    const double t14 = x_dot * cos_phi;
+    const double t13 = x_dot * cos_phi;
     const double y_dot = qd[2];
     const double sin_phi = sc->sin_phi;
-    const double t15 = y_dot * sin_phi;
-    const double t16 = t14 + t15;
+    const double t14 = y_dot * sin_phi;
+    const double t15 = t13 + t14;
     const double phi_dot = qd[0];
-    const double t17 = phi_dot * t16;
-    const double t18 = sin_phi * t17;
-    const double t19 = m_s * t18;
-    const double t20 = t13 - t19;
-    const double t21 = t12 * t20;
-    const double t22 = K * sin_phi;
-    const double t23 = cos_phi * t17;
-    const double t24 = m_s * t23;
-    const double t25 = t22 + t24;
-    const double t26 = t12 * t25;
-    double rest = t11 - t11;
-    rest += t21 - t21;
-    rest += t26 - t26;
-    if (!(rest >= 0.0)) {
+    const double t16 = phi_dot * t15;
+    const double t17 = sin_phi * t16;
+    const double t18 = m_s * t17;
+    const double t19 = t12 - t18;
+    const double t20 = t11 * t19;
+    const double t21 = K * sin_phi;
+    const double t22 = cos_phi * t16;
+    const double t23 = m_s * t22;
+    const double t24 = t21 + t23;
+    const double t25 = t11 * t24;
+    double rest = t10 - t10;
+    rest += t20 - t20;
+    rest += t25 - t25;
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
-    qdd[0] = t11;
-    qdd[1] = t21;
-    qdd[2] = t26;
+    qdd[0] = t10;
+    qdd[1] = t20;
+    qdd[2] = t25;
     return SKATE_OK;
 }
 
@@ -115,7 +114,7 @@ skate_status skate_multipliers_sc(const skate_trig *sc, const double q[3], const
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
     double rest = t14 - t14;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;

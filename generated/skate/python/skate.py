@@ -45,7 +45,7 @@ inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     1      2      0      0      1      0
 actuator_mass_matrix                  0      0      0      0      0      0
 actuator_bias                         0      0      0      0      0      0
-forward_dynamics                      3     15      2      0      1      0
+forward_dynamics                      3     14      2      0      1      0
 multipliers                           1      7      0      0      1      0
 energy                                2      7      0      0      0      0
 singularity                           0      0      0      0      0      0
@@ -1006,27 +1006,26 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t8 = t6 * t7
         t9 = t8 * 2.6645352591003757e-15
         status = _first(status, ~np.asarray(t5 > t9), 5)
-        t10 = 1.0 / Theta_s
-        t11 = T * t10
-        t12 = 1.0 / m_s
-        t13 = K * t3
-        t14 = x_dot * t3
-        t15 = y_dot * t2
-        t16 = t14 + t15
-        t17 = phi_dot * t16
-        t18 = t2 * t17
-        t19 = m_s * t18
-        t20 = t13 - t19
-        t21 = t12 * t20
-        t22 = K * t2
-        t23 = t3 * t17
-        t24 = m_s * t23
-        t25 = t22 + t24
-        t26 = t12 * t25
+        t10 = T / Theta_s
+        t11 = 1.0 / m_s
+        t12 = K * t3
+        t13 = x_dot * t3
+        t14 = y_dot * t2
+        t15 = t13 + t14
+        t16 = phi_dot * t15
+        t17 = t2 * t16
+        t18 = m_s * t17
+        t19 = t12 - t18
+        t20 = t11 * t19
+        t21 = K * t2
+        t22 = t3 * t16
+        t23 = m_s * t22
+        t24 = t21 + t23
+        t25 = t11 * t24
         entries = (
-            t11,
-            t21,
-            t26,
+            t10,
+            t20,
+            t25,
         )
         return _result("forward_dynamics", status, batch, (3,), entries)
 

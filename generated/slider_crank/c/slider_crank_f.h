@@ -15,7 +15,7 @@
  * mass_matrix                           3     14      0      0      1      0
  * coriolis_matrix                       1      6      0      0      1      0
  * coriolis_force                        1      8      0      0      1      0
- * potential_force                       2     10      0      0      2      0
+ * potential_force                       2      9      0      0      2      0
  * applied_force                         0      1      0      0      0      0
  * constraint_residual                   4      4      0      0      2      0
  * constraint_jacobian                   0      4      0      0      2      0
@@ -23,8 +23,8 @@
  * constraint_pseudoinverse              9     27      1      0      2      0
  * nullspace_projector                   6     24      1      0      2      0
  * nullspace_projector_dot              27     71      1      0      2      0
- * weighted_pseudoinverse               30    103      4      0      2      0
- * weighted_nullspace_projector         23     88      1      0      2      0
+ * weighted_pseudoinverse               30     98      4      0      2      0
+ * weighted_nullspace_projector         23     86      1      0      2      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix              6     20      1      0      2      0
  * projected_control_pseudoinverse       4     11      2      0      2      0
@@ -33,22 +33,22 @@
  * projected_coriolis_matrix            64    152      1      0      2      0
  * projected_potential_force            14     45      1      0      2      0
  * projected_applied_force               8     27      1      0      2      0
- * minimal_mass_matrix                  11     37      1      0      2      0
+ * minimal_mass_matrix                  11     33      1      0      2      0
  * minimal_coriolis_matrix              24     68      3      0      2      0
- * minimal_potential_force               8     24      1      0      2      0
+ * minimal_potential_force               8     21      1      0      2      0
  * minimal_applied_force                 4     13      1      0      2      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                  16     43      3      0      2      0
  * admissible_acceleration              27     63      1      0      2      0
  * projected_configuration              47     79      3      0      7      0
- * inverse_dynamics                     16     49      1      0      2      0
+ * inverse_dynamics                     16     48      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                 11     37      1      0      2      0
- * actuator_bias                        26     91      1      0      2      0
- * forward_dynamics                     41    121      1      0      2      0
- * multipliers                          48    137      1      0      2      0
- * energy                               11     32      0      0      2      0
+ * actuator_mass_matrix                 11     33      1      0      2      0
+ * actuator_bias                        26     90      1      0      2      0
+ * forward_dynamics                     42    122      1      0      2      0
+ * multipliers                          48    135      1      0      2      0
+ * energy                               11     31      0      0      2      0
  * singularity                          10     23      6      2      2      0
  * (changes of sign are not counted)
  *

@@ -14,7 +14,7 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           2      5      0      0      1      0
+ * mass_matrix                           2      4      0      0      1      0
  * coriolis_matrix                       0      4      0      0      1      0
  * coriolis_force                        0      6      0      0      1      0
  * potential_force                       0      0      0      0      0      0
@@ -24,32 +24,32 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     49      3      0      2      0
- * weighted_nullspace_projector         14     53      4      0      2      0
+ * weighted_pseudoinverse               17     47      3      0      2      0
+ * weighted_nullspace_projector         14     52      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     14      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
- * orthogonal_complement                 1      6      2      0      2      0
- * projected_mass_matrix                10     45      3      0      2      0
- * projected_coriolis_matrix            74    205      3      0      2      0
+ * orthogonal_complement                 1      5      2      0      2      0
+ * projected_mass_matrix                10     43      3      0      2      0
+ * projected_coriolis_matrix            73    196      3      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                   3     12      1      0      2      0
- * minimal_coriolis_matrix              13     41      1      0      2      0
+ * minimal_mass_matrix                   3     11      1      0      2      0
+ * minimal_coriolis_matrix              13     36      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
- * admissible_velocity                   5     21      2      0      2      0
- * admissible_acceleration              17     76      2      0      2      0
+ * admissible_velocity                   5     20      2      0      2      0
+ * admissible_acceleration              17     75      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                      7     17      1      0      2      0
+ * inverse_dynamics                      7     14      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
- * actuator_mass_matrix                  2      8      1      0      1      0
- * actuator_bias                        11     28      1      0      2      0
- * forward_dynamics                     36     94      1      0      2      0
- * multipliers                          39     91      1      0      2      0
- * energy                                7     16      0      0      1      0
+ * actuator_mass_matrix                  2      6      1      0      1      0
+ * actuator_bias                        11     27      1      0      2      0
+ * forward_dynamics                     36     93      1      0      2      0
+ * multipliers                          39     90      1      0      2      0
+ * energy                                7     15      0      0      1      0
  * singularity                          12     26      5      1      2      0
  * (changes of sign are not counted)
  *
@@ -345,17 +345,16 @@ front_car_status front_car_mass_matrix_f(const float q[4], const front_car_param
     const float t6 = t2 * t5;
     const float t7 = -t6;
     const float t8 = t3 * t5;
-    const float t9 = L * L;
-    const float t10 = m_2 * t9;
+    const float t9 = L * t5;
     const float Theta_1 = p->Theta_1;
-    const float t11 = Theta_1 + t10;
+    const float t10 = Theta_1 + t9;
     const float Theta_2 = p->Theta_2;
     float rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
-    rest += t11 - t11;
+    rest += t10 - t10;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     G[0] = t4;
@@ -368,7 +367,7 @@ front_car_status front_car_mass_matrix_f(const float q[4], const front_car_param
     G[7] = 0.0f;
     G[8] = t7;
     G[9] = t8;
-    G[10] = t11;
+    G[10] = t10;
     G[11] = 0.0f;
     G[12] = 0.0f;
     G[13] = 0.0f;
@@ -397,7 +396,7 @@ front_car_status front_car_coriolis_matrix_f(const float q[4], const float qd[4]
     const float t9 = -t8;
     float rest = t7 - t7;
     rest += t9 - t9;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     C[0] = 0.0f;
@@ -441,7 +440,7 @@ front_car_status front_car_coriolis_force_f(const float q[4], const float qd[4],
     const float t11 = -t10;
     float rest = t8 - t8;
     rest += t11 - t11;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -507,7 +506,7 @@ front_car_status front_car_constraint_jacobian_f(const float q[4], const front_c
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     B[0] = t3;
@@ -561,7 +560,7 @@ front_car_status front_car_constraint_jacobian_dot_f(const float q[4], const flo
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -638,7 +637,7 @@ front_car_status front_car_constraint_pseudoinverse_f(const float q[4], const fr
     rest += t35 - t35;
     rest += t38 - t38;
     rest += t40 - t40;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -702,7 +701,7 @@ front_car_status front_car_nullspace_projector_f(const float q[4], const front_c
     rest += t24 - t24;
     rest += t26 - t26;
     rest += t27 - t27;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -833,7 +832,7 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     rest += t70 - t70;
     rest += t80 - t80;
     rest += t84 - t84;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -889,16 +888,16 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -935,79 +934,77 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t54 = t6 * t4;
     const float t55 = t5 * t3;
     const float t56 = t54 - t55;
-    const float t57 = L * L;
-    const float t58 = m_2 * t57;
-    const float t59 = Theta_1 + t58;
+    const float t57 = m_2 * t19;
+    const float t58 = Theta_1 + t57;
+    const float t59 = Theta_2 * t58;
     const float t60 = t3 * t59;
-    const float t61 = Theta_2 * t60;
-    const float t62 = t56 * t61;
-    const float t63 = t53 - t62;
-    const float t64 = t44 * t63;
-    const float t65 = Theta_2 * t59;
-    const float t66 = t65 / t25;
-    const float t67 = t48 * t66;
-    const float t68 = m_1 * t54;
-    const float t69 = m_2 * t56;
-    const float t70 = t68 + t69;
-    const float t71 = t45 * t70;
-    const float t72 = t8 * t71;
-    const float t73 = t49 * t61;
-    const float t74 = t72 + t73;
-    const float t75 = t44 * t74;
-    const float t76 = -t75;
-    const float t77 = t55 * t66;
-    const float t78 = t45 / t25;
-    const float t79 = t20 * t78;
-    const float t80 = m_1 + m_2;
-    const float t81 = t4 * t80;
-    const float t82 = t78 * t81;
-    const float t83 = -t82;
-    float rest = t64 - t64;
-    rest += t67 - t67;
-    rest += t76 - t76;
+    const float t61 = t56 * t60;
+    const float t62 = t53 - t61;
+    const float t63 = t44 * t62;
+    const float t64 = t59 / t25;
+    const float t65 = t48 * t64;
+    const float t66 = m_1 * t54;
+    const float t67 = m_2 * t56;
+    const float t68 = t66 + t67;
+    const float t69 = t45 * t68;
+    const float t70 = t8 * t69;
+    const float t71 = t49 * t60;
+    const float t72 = t70 + t71;
+    const float t73 = t44 * t72;
+    const float t74 = -t73;
+    const float t75 = t55 * t64;
+    const float t76 = t45 / t25;
+    const float t77 = t22 * t76;
+    const float t78 = m_1 + m_2;
+    const float t79 = t4 * t78;
+    const float t80 = t79 * t76;
+    const float t81 = -t80;
+    float rest = t63 - t63;
+    rest += t65 - t65;
+    rest += t74 - t74;
+    rest += t75 - t75;
     rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t83 - t83;
-    if (!(rest >= 0.0f)) {
+    rest += t81 - t81;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    B_G_pinv[0] = t64;
-    B_G_pinv[1] = t67;
-    B_G_pinv[2] = t76;
-    B_G_pinv[3] = t77;
-    B_G_pinv[4] = t79;
-    B_G_pinv[5] = t83;
+    B_G_pinv[0] = t63;
+    B_G_pinv[1] = t65;
+    B_G_pinv[2] = t74;
+    B_G_pinv[3] = t75;
+    B_G_pinv[4] = t77;
+    B_G_pinv[5] = t81;
     B_G_pinv[6] = 0.0f;
     B_G_pinv[7] = 0.0f;
     return FRONT_CAR_OK;
 }
 
 front_car_status front_car_weighted_nullspace_projector_f(const float q[4], const front_car_params_f *p, float N_BG[16]) {
-    const float phi = q[3];
-    const float t1 = fabsf(phi);
     const float theta = q[2];
-    const float t2 = fabsf(theta);
+    const float t1 = fabsf(theta);
+    const float phi = q[3];
+    const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float angle[4] = {phi, theta, theta, theta};
+    const float angle[4] = {theta, phi, phi, phi};
     float sine[4];
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
-    const float t3 = sine[0];
-    const float t7 = t3 * t3;
-    const float L = p->L;
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
     const float t5 = sine[1];
-    const float t9 = t5 * t8;
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t6 = cosine[1];
+    const float t8 = L * t6;
+    const float t3 = sine[0];
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
     const float t11 = t7 + t10;
-    const float t6 = cosine[1];
-    const float t12 = t6 * t8;
+    const float t4 = cosine[0];
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -1016,16 +1013,16 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t6 * t6;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -1049,69 +1046,68 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
     if (!(t26 > t43)) {
         return FRONT_CAR_MASS_RANK;
     }
-    const float t44 = L * L;
-    const float t45 = Theta_2 * t44;
-    const float t46 = t45 / t25;
-    const float t47 = t6 * t4;
-    const float t48 = m_1 * t47;
-    const float t49 = t5 * t3;
-    const float t50 = t47 - t49;
-    const float t51 = m_2 * t50;
-    const float t52 = t48 + t51;
-    const float t53 = t47 * t52;
-    const float t54 = t46 * t53;
-    const float t55 = t5 * t4;
-    const float t56 = m_1 * t55;
-    const float t57 = t6 * t3;
-    const float t58 = t55 + t57;
-    const float t59 = m_2 * t58;
-    const float t60 = t56 + t59;
-    const float t61 = t47 * t60;
-    const float t62 = t46 * t61;
-    const float t63 = t3 * t47;
-    const float t64 = m_2 * t44;
-    const float t65 = Theta_1 + t64;
-    const float t66 = L * Theta_2;
-    const float t67 = t65 * t66;
-    const float t68 = t67 / t25;
-    const float t69 = t63 * t68;
-    const float t70 = t55 * t52;
-    const float t71 = t46 * t70;
-    const float t72 = t55 * t60;
-    const float t73 = t46 * t72;
-    const float t74 = t3 * t55;
-    const float t75 = t74 * t68;
-    const float t76 = t66 / t25;
-    const float t77 = t3 * t52;
-    const float t78 = t76 * t77;
-    const float t79 = t3 * t60;
-    const float t80 = t76 * t79;
-    const float t81 = Theta_2 * t65;
-    const float t82 = t81 / t25;
-    const float t83 = t7 * t82;
-    float rest = t54 - t54;
-    rest += t62 - t62;
-    rest += t69 - t69;
-    rest += t71 - t71;
-    rest += t73 - t73;
-    rest += t75 - t75;
-    rest += t78 - t78;
-    rest += t80 - t80;
-    rest += t83 - t83;
-    if (!(rest >= 0.0f)) {
+    const float t44 = t4 * t6;
+    const float t45 = m_1 * t44;
+    const float t46 = t3 * t5;
+    const float t47 = t44 - t46;
+    const float t48 = m_2 * t47;
+    const float t49 = t45 + t48;
+    const float t50 = t44 * t49;
+    const float t51 = Theta_2 * t19;
+    const float t52 = t51 / t25;
+    const float t53 = t50 * t52;
+    const float t54 = t3 * t6;
+    const float t55 = m_1 * t54;
+    const float t56 = t4 * t5;
+    const float t57 = t54 + t56;
+    const float t58 = m_2 * t57;
+    const float t59 = t55 + t58;
+    const float t60 = t44 * t59;
+    const float t61 = t52 * t60;
+    const float t62 = t5 * t44;
+    const float t63 = m_2 * t19;
+    const float t64 = Theta_1 + t63;
+    const float t65 = L * Theta_2;
+    const float t66 = t64 * t65;
+    const float t67 = t66 / t25;
+    const float t68 = t62 * t67;
+    const float t69 = t54 * t49;
+    const float t70 = t52 * t69;
+    const float t71 = t54 * t59;
+    const float t72 = t71 * t52;
+    const float t73 = t5 * t54;
+    const float t74 = t73 * t67;
+    const float t75 = t65 / t25;
+    const float t76 = t5 * t49;
+    const float t77 = t75 * t76;
+    const float t78 = t5 * t59;
+    const float t79 = t75 * t78;
+    const float t80 = Theta_2 * t64;
+    const float t81 = t80 / t25;
+    const float t82 = t7 * t81;
+    float rest = t53 - t53;
+    rest += t61 - t61;
+    rest += t68 - t68;
+    rest += t70 - t70;
+    rest += t72 - t72;
+    rest += t74 - t74;
+    rest += t77 - t77;
+    rest += t79 - t79;
+    rest += t82 - t82;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    N_BG[0] = t54;
-    N_BG[1] = t62;
-    N_BG[2] = t69;
+    N_BG[0] = t53;
+    N_BG[1] = t61;
+    N_BG[2] = t68;
     N_BG[3] = 0.0f;
-    N_BG[4] = t71;
-    N_BG[5] = t73;
-    N_BG[6] = t75;
+    N_BG[4] = t70;
+    N_BG[5] = t72;
+    N_BG[6] = t74;
     N_BG[7] = 0.0f;
-    N_BG[8] = t78;
-    N_BG[9] = t80;
-    N_BG[10] = t83;
+    N_BG[8] = t77;
+    N_BG[9] = t79;
+    N_BG[10] = t82;
     N_BG[11] = 0.0f;
     N_BG[12] = 0.0f;
     N_BG[13] = 0.0f;
@@ -1144,7 +1140,7 @@ front_car_status front_car_control_matrix_f(const float q[4], const front_car_pa
     float rest = t5 - t5;
     rest += t4 - t4;
     rest += t8 - t8;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     M[0] = t5;
@@ -1204,7 +1200,7 @@ front_car_status front_car_projected_control_matrix_f(const float q[4], const fr
     float rest = t21 - t21;
     rest += t24 - t24;
     rest += t26 - t26;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_tilde[0] = t21;
@@ -1262,7 +1258,7 @@ front_car_status front_car_projected_control_pseudoinverse_f(const float q[4], c
     float rest = t19 - t19;
     rest += t20 - t20;
     rest += t21 - t21;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_tilde_pinv[0] = t19;
@@ -1313,19 +1309,18 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
         }
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = 1.0f / t4;
-    const float t19 = t3 * t18;
-    const float t20 = t5 / t8;
-    float rest = t19 - t19;
-    rest += t20 - t20;
-    if (!(rest >= 0.0f)) {
+    const float t18 = t3 / t4;
+    const float t19 = t5 / t8;
+    float rest = t18 - t18;
+    rest += t19 - t19;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0f;
     F_B[1] = 0.0f;
-    F_B[2] = t19;
+    F_B[2] = t18;
     F_B[3] = 0.0f;
-    F_B[4] = t20;
+    F_B[4] = t19;
     F_B[5] = 0.0f;
     F_B[6] = 0.0f;
     F_B[7] = 1.0f;
@@ -1372,72 +1367,70 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t21 = t6 * t6;
     const float t22 = t4 * t21;
     const float t23 = t4 * t22;
-    const float t24 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t25 = m_1 * t24;
-    const float m_2 = p->m_2;
-    const float t26 = m_2 + t25;
-    const float t27 = L * t26;
-    const float t28 = L * t27;
     const float Theta_1 = p->Theta_1;
-    const float t29 = Theta_1 * t7;
-    const float t30 = t28 + t29;
-    const float t31 = t23 * t30;
-    const float t32 = t20 * t31;
-    const float t33 = t5 * t6;
+    const float t24 = Theta_1 * t7;
+    const float t25 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t26 = m_1 * t25;
+    const float m_2 = p->m_2;
+    const float t27 = m_2 + t26;
+    const float t28 = t18 * t27;
+    const float t29 = t24 + t28;
+    const float t30 = t23 * t29;
+    const float t31 = t20 * t30;
+    const float t32 = t5 * t6;
+    const float t33 = t4 * t32;
     const float t34 = t4 * t33;
-    const float t35 = t4 * t34;
-    const float t36 = t35 * t30;
-    const float t37 = t20 * t36;
-    const float t38 = L / t19;
-    const float t39 = t6 * t4;
-    const float t40 = t3 * t39;
-    const float t41 = t40 * t30;
-    const float t42 = t38 * t41;
-    const float t43 = t5 * t5;
+    const float t35 = t34 * t29;
+    const float t36 = t20 * t35;
+    const float t37 = L / t19;
+    const float t38 = t6 * t4;
+    const float t39 = t3 * t38;
+    const float t40 = t39 * t29;
+    const float t41 = t37 * t40;
+    const float t42 = t5 * t5;
+    const float t43 = t4 * t42;
     const float t44 = t4 * t43;
-    const float t45 = t4 * t44;
-    const float t46 = t45 * t30;
-    const float t47 = t20 * t46;
-    const float t48 = t5 * t4;
-    const float t49 = t3 * t48;
-    const float t50 = t49 * t30;
-    const float t51 = t38 * t50;
-    const float t52 = m_2 * t18;
-    const float t53 = Theta_1 + t52;
-    const float t54 = t24 + (-2.0f);
-    const float t55 = t53 * t54;
-    const float t56 = m_1 + m_2;
-    const float t57 = t56 * t18;
-    const float t58 = t7 * t57;
-    const float t59 = t55 + t58;
+    const float t45 = t44 * t29;
+    const float t46 = t20 * t45;
+    const float t47 = t5 * t4;
+    const float t48 = t3 * t47;
+    const float t49 = t48 * t29;
+    const float t50 = t37 * t49;
+    const float t51 = m_2 * t18;
+    const float t52 = Theta_1 + t51;
+    const float t53 = t25 + (-2.0f);
+    const float t54 = t52 * t53;
+    const float t55 = m_1 + m_2;
+    const float t56 = t55 * t18;
+    const float t57 = t7 * t56;
+    const float t58 = t54 + t57;
+    const float t59 = t4 * t58;
     const float t60 = t4 * t59;
-    const float t61 = t4 * t60;
-    const float t62 = t53 + t61;
-    const float t63 = 1.0f / t19;
-    const float t64 = t62 * t63;
+    const float t61 = t52 + t60;
+    const float t62 = t61 / t19;
     const float Theta_2 = p->Theta_2;
-    float rest = t32 - t32;
-    rest += t37 - t37;
-    rest += t42 - t42;
-    rest += t47 - t47;
-    rest += t51 - t51;
-    rest += t64 - t64;
+    float rest = t31 - t31;
+    rest += t36 - t36;
+    rest += t41 - t41;
+    rest += t46 - t46;
+    rest += t50 - t50;
+    rest += t62 - t62;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_tilde[0] = t32;
-    G_tilde[1] = t37;
-    G_tilde[2] = t42;
+    G_tilde[0] = t31;
+    G_tilde[1] = t36;
+    G_tilde[2] = t41;
     G_tilde[3] = 0.0f;
-    G_tilde[4] = t37;
-    G_tilde[5] = t47;
-    G_tilde[6] = t51;
+    G_tilde[4] = t36;
+    G_tilde[5] = t46;
+    G_tilde[6] = t50;
     G_tilde[7] = 0.0f;
-    G_tilde[8] = t42;
-    G_tilde[9] = t51;
-    G_tilde[10] = t64;
+    G_tilde[8] = t41;
+    G_tilde[9] = t50;
+    G_tilde[10] = t62;
     G_tilde[11] = 0.0f;
     G_tilde[12] = 0.0f;
     G_tilde[13] = 0.0f;
@@ -1486,301 +1479,291 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t21 = t14 * t20;
     const float t22 = t18 / t21;
     const float t23 = t6 * t4;
-    const float x_dot = qd[0];
-    const float t24 = x_dot * t6;
-    const float y_dot = qd[1];
-    const float t25 = y_dot * t5;
-    const float t26 = t24 + t25;
-    const float t27 = t4 * t26;
-    const float t28 = L * t27;
-    const float theta_dot = qd[2];
-    const float t29 = theta_dot * t3;
-    const float t30 = t28 + t29;
-    const float t31 = L * t3;
-    const float t32 = t31 * t31;
-    const float t33 = t4 * t4;
-    const float t34 = t33 + (-2.0f);
-    const float t35 = t14 + t34;
-    const float t36 = t32 + t35;
-    const float t37 = t6 * t36;
     const float m_2 = p->m_2;
-    const float t38 = m_2 * t37;
-    const float t39 = t5 * t4;
-    const float t40 = t3 * t39;
-    const float m_1 = p->m_1;
-    const float t41 = m_1 + m_2;
-    const float t42 = t41 * t18;
-    const float t43 = t40 * t42;
-    const float t44 = t38 - t43;
-    const float t45 = t4 * t44;
-    const float t46 = m_2 * t18;
+    const float t24 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t47 = Theta_1 + t46;
-    const float t48 = t41 + t47;
-    const float t49 = t5 * t3;
-    const float t50 = t3 * t49;
-    const float t51 = t3 * t50;
-    const float t52 = t48 * t51;
-    const float t53 = t45 - t52;
-    const float t54 = t4 * t53;
-    const float t55 = t7 + t15;
-    const float t56 = 1.0f - t55;
-    const float t57 = t6 * t56;
-    const float t58 = m_2 * t57;
-    const float t59 = t54 + t58;
-    const float t60 = t30 * t59;
-    const float t61 = 2.0f * t41;
-    const float t62 = t47 - t61;
+    const float t25 = Theta_1 + t24;
+    const float t26 = t4 * t4;
+    const float t27 = 2.0f - t26;
+    const float x_dot = qd[0];
+    const float t28 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t29 = y_dot * t5;
+    const float t30 = t28 + t29;
+    const float t31 = t4 * t30;
+    const float t32 = L * t31;
+    const float theta_dot = qd[2];
+    const float t33 = theta_dot * t3;
+    const float t34 = t32 + t33;
+    const float t35 = t4 * t34;
+    const float t36 = t27 * t35;
+    const float t37 = t5 * t36;
     const float phi_dot = qd[3];
-    const float t63 = phi_dot * t6;
-    const float t64 = t3 * t63;
-    const float t65 = t14 * t64;
-    const float t66 = t62 * t65;
-    const float t67 = t60 + t66;
-    const float t68 = L * t67;
-    const float t69 = L * t68;
-    const float t70 = 2.0f - t33;
-    const float t71 = t4 * t30;
-    const float t72 = t70 * t71;
-    const float t73 = t5 * t72;
-    const float t74 = t14 * t63;
-    const float t75 = t73 + t74;
-    const float t76 = t3 * t75;
-    const float t77 = t47 * t76;
-    const float t78 = t69 + t77;
-    const float t79 = t4 * t78;
-    const float t80 = t30 * t49;
-    const float t81 = t47 * t80;
-    const float t82 = t79 - t81;
-    const float t83 = t4 * t82;
-    const float t84 = t47 * t65;
-    const float t85 = t83 - t84;
-    const float t86 = t23 * t85;
-    const float t87 = t22 * t86;
-    const float t88 = (-1.0f) + t18;
-    const float t89 = t41 * t88;
-    const float t90 = t89 - t47;
-    const float t91 = t3 * t90;
-    const float t92 = t6 * t91;
-    const float t93 = m_2 * t39;
-    const float t94 = t92 + t93;
-    const float t95 = t4 * t94;
-    const float t96 = (-2.0f) + t32;
-    const float t97 = t5 * t96;
-    const float t98 = m_2 * t97;
-    const float t99 = t95 + t98;
-    const float t100 = t4 * t99;
-    const float t101 = t6 * t3;
-    const float t102 = t101 * t48;
-    const float t103 = t100 + t102;
-    const float t104 = t4 * t103;
-    const float t105 = t7 * t14;
-    const float t106 = 1.0f - t105;
-    const float t107 = t5 * t106;
-    const float t108 = m_2 * t107;
-    const float t109 = t104 + t108;
-    const float t110 = t30 * t109;
-    const float t111 = phi_dot * t5;
-    const float t112 = t3 * t111;
-    const float t113 = t14 * t112;
-    const float t114 = t62 * t113;
-    const float t115 = t110 + t114;
-    const float t116 = L * t115;
-    const float t117 = L * t116;
-    const float t118 = t3 * t23;
-    const float t119 = t30 * t118;
-    const float t120 = t34 * t119;
-    const float t121 = t47 * t120;
-    const float t122 = t117 + t121;
+    const float t38 = phi_dot * t6;
+    const float t39 = t14 * t38;
+    const float t40 = t37 + t39;
+    const float t41 = t3 * t40;
+    const float t42 = t25 * t41;
+    const float t43 = L * t3;
+    const float t44 = t43 * t43;
+    const float t45 = t26 + (-2.0f);
+    const float t46 = t14 + t45;
+    const float t47 = t44 + t46;
+    const float t48 = t6 * t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t5 * t4;
+    const float t51 = t3 * t50;
+    const float m_1 = p->m_1;
+    const float t52 = m_1 + m_2;
+    const float t53 = t52 * t18;
+    const float t54 = t51 * t53;
+    const float t55 = t49 - t54;
+    const float t56 = t4 * t55;
+    const float t57 = t52 + t25;
+    const float t58 = t5 * t3;
+    const float t59 = t3 * t58;
+    const float t60 = t3 * t59;
+    const float t61 = t57 * t60;
+    const float t62 = t56 - t61;
+    const float t63 = t4 * t62;
+    const float t64 = t7 + t15;
+    const float t65 = 1.0f - t64;
+    const float t66 = t6 * t65;
+    const float t67 = m_2 * t66;
+    const float t68 = t63 + t67;
+    const float t69 = t34 * t68;
+    const float t70 = 2.0f * t52;
+    const float t71 = t25 - t70;
+    const float t72 = t3 * t38;
+    const float t73 = t14 * t72;
+    const float t74 = t71 * t73;
+    const float t75 = t69 + t74;
+    const float t76 = t18 * t75;
+    const float t77 = t42 + t76;
+    const float t78 = t4 * t77;
+    const float t79 = t34 * t58;
+    const float t80 = t25 * t79;
+    const float t81 = t78 - t80;
+    const float t82 = t4 * t81;
+    const float t83 = t25 * t73;
+    const float t84 = t82 - t83;
+    const float t85 = t23 * t84;
+    const float t86 = t22 * t85;
+    const float t87 = t6 * t3;
+    const float t88 = t34 * t87;
+    const float t89 = t25 * t88;
+    const float t90 = t3 * t23;
+    const float t91 = t34 * t90;
+    const float t92 = t45 * t91;
+    const float t93 = t25 * t92;
+    const float t94 = (-1.0f) + t18;
+    const float t95 = t52 * t94;
+    const float t96 = t95 - t25;
+    const float t97 = t3 * t96;
+    const float t98 = t6 * t97;
+    const float t99 = m_2 * t50;
+    const float t100 = t98 + t99;
+    const float t101 = t4 * t100;
+    const float t102 = (-2.0f) + t44;
+    const float t103 = t5 * t102;
+    const float t104 = m_2 * t103;
+    const float t105 = t101 + t104;
+    const float t106 = t4 * t105;
+    const float t107 = t87 * t57;
+    const float t108 = t106 + t107;
+    const float t109 = t4 * t108;
+    const float t110 = t7 * t14;
+    const float t111 = 1.0f - t110;
+    const float t112 = t5 * t111;
+    const float t113 = m_2 * t112;
+    const float t114 = t109 + t113;
+    const float t115 = t34 * t114;
+    const float t116 = phi_dot * t5;
+    const float t117 = t3 * t116;
+    const float t118 = t14 * t117;
+    const float t119 = t71 * t118;
+    const float t120 = t115 + t119;
+    const float t121 = t18 * t120;
+    const float t122 = t93 + t121;
     const float t123 = t4 * t122;
-    const float t124 = t30 * t101;
-    const float t125 = t47 * t124;
-    const float t126 = t123 + t125;
-    const float t127 = t4 * t126;
-    const float t128 = t3 * t112;
-    const float t129 = t3 * t128;
-    const float t130 = t14 * t129;
-    const float t131 = t47 * t130;
-    const float t132 = t127 - t131;
-    const float t133 = t23 * t132;
-    const float t134 = t22 * t133;
-    const float t135 = L * t18;
-    const float t136 = t135 / t21;
-    const float t137 = 2.0f * t47;
-    const float t138 = t137 - t41;
-    const float t139 = phi_dot * t3;
-    const float t140 = t14 * t139;
-    const float t141 = t138 * t140;
-    const float t142 = t3 * t141;
-    const float t143 = phi_dot * t4;
-    const float t144 = t4 * t143;
-    const float t145 = t14 * t144;
-    const float t146 = t42 * t145;
-    const float t147 = t142 + t146;
-    const float t148 = t4 * t23;
-    const float t149 = t147 * t148;
-    const float t150 = t136 * t149;
-    const float t151 = 1.0f - t18;
-    const float t152 = t41 * t151;
-    const float t153 = t47 + t152;
-    const float t154 = t3 * t153;
-    const float t155 = t5 * t154;
-    const float t156 = m_2 * t23;
-    const float t157 = t155 + t156;
-    const float t158 = t4 * t157;
-    const float t159 = t6 * t96;
-    const float t160 = m_2 * t159;
-    const float t161 = t158 + t160;
-    const float t162 = t4 * t161;
-    const float t163 = t49 * t48;
-    const float t164 = t162 - t163;
-    const float t165 = t4 * t164;
-    const float t166 = t6 * t106;
-    const float t167 = m_2 * t166;
-    const float t168 = t165 + t167;
-    const float t169 = t30 * t168;
-    const float t170 = t66 + t169;
-    const float t171 = L * t170;
-    const float t172 = L * t171;
-    const float t173 = t30 * t40;
-    const float t174 = t70 * t173;
-    const float t175 = t47 * t174;
-    const float t176 = t172 + t175;
-    const float t177 = t4 * t176;
-    const float t178 = t177 - t81;
-    const float t179 = t4 * t178;
-    const float t180 = t3 * t64;
-    const float t181 = t3 * t180;
-    const float t182 = t14 * t181;
-    const float t183 = t47 * t182;
-    const float t184 = t179 - t183;
-    const float t185 = t39 * t184;
-    const float t186 = t22 * t185;
-    const float t187 = t39 * t132;
-    const float t188 = t22 * t187;
-    const float t189 = t4 * t39;
-    const float t190 = t147 * t189;
-    const float t191 = t136 * t190;
-    const float t192 = 2.0f - t32;
-    const float t193 = t192 - t33;
-    const float t194 = t41 * t193;
-    const float t195 = t47 * t70;
-    const float t196 = t194 + t195;
-    const float t197 = t5 * t196;
-    const float t198 = m_2 * t118;
-    const float t199 = t197 + t198;
-    const float t200 = t4 * t199;
-    const float t201 = t101 * t96;
-    const float t202 = m_2 * t201;
-    const float t203 = t200 + t202;
-    const float t204 = t4 * t203;
-    const float t205 = t5 * t48;
-    const float t206 = t204 - t205;
-    const float t207 = t4 * t206;
-    const float t208 = t101 * t106;
-    const float t209 = m_2 * t208;
-    const float t210 = t207 + t209;
-    const float t211 = t30 * t210;
-    const float t212 = t14 * t180;
-    const float t213 = t62 * t212;
-    const float t214 = t211 + t213;
-    const float t215 = L * t214;
-    const float t216 = L * t215;
-    const float t217 = t4 * t33;
-    const float t218 = t4 * t217;
-    const float t219 = 3.0f * t7;
-    const float t220 = t218 + t219;
-    const float t221 = t30 * t220;
-    const float t222 = t5 * t221;
-    const float t223 = t4 * t63;
-    const float t224 = t14 * t223;
-    const float t225 = t222 - t224;
-    const float t226 = t4 * t225;
-    const float t227 = 2.0f * t74;
-    const float t228 = t226 + t227;
-    const float t229 = t47 * t228;
-    const float t230 = t216 + t229;
-    const float t231 = t4 * t230;
-    const float t232 = t5 * t30;
-    const float t233 = t47 * t232;
-    const float t234 = t231 - t233;
-    const float t235 = t4 * t234;
-    const float t236 = t47 * t74;
-    const float t237 = t235 - t236;
-    const float t238 = L / t21;
-    const float t239 = t237 * t238;
-    const float t240 = t47 * t34;
-    const float t241 = t33 + t96;
-    const float t242 = t41 * t241;
-    const float t243 = t240 + t242;
-    const float t244 = t6 * t243;
-    const float t245 = m_2 * t40;
-    const float t246 = t244 + t245;
-    const float t247 = t4 * t246;
-    const float t248 = t49 * t96;
-    const float t249 = m_2 * t248;
-    const float t250 = t247 + t249;
+    const float t124 = t89 + t123;
+    const float t125 = t4 * t124;
+    const float t126 = t3 * t117;
+    const float t127 = t3 * t126;
+    const float t128 = t14 * t127;
+    const float t129 = t25 * t128;
+    const float t130 = t125 - t129;
+    const float t131 = t23 * t130;
+    const float t132 = t22 * t131;
+    const float t133 = L * t18;
+    const float t134 = t133 / t21;
+    const float t135 = t4 * t23;
+    const float t136 = t26 * t53;
+    const float t137 = 2.0f * t25;
+    const float t138 = t137 - t52;
+    const float t139 = t3 * t138;
+    const float t140 = t3 * t139;
+    const float t141 = t136 + t140;
+    const float t142 = phi_dot * t14;
+    const float t143 = t141 * t142;
+    const float t144 = t135 * t143;
+    const float t145 = t134 * t144;
+    const float t146 = t34 * t51;
+    const float t147 = t27 * t146;
+    const float t148 = t25 * t147;
+    const float t149 = 1.0f - t18;
+    const float t150 = t52 * t149;
+    const float t151 = t25 + t150;
+    const float t152 = t3 * t151;
+    const float t153 = t5 * t152;
+    const float t154 = m_2 * t23;
+    const float t155 = t153 + t154;
+    const float t156 = t4 * t155;
+    const float t157 = t6 * t102;
+    const float t158 = m_2 * t157;
+    const float t159 = t156 + t158;
+    const float t160 = t4 * t159;
+    const float t161 = t58 * t57;
+    const float t162 = t160 - t161;
+    const float t163 = t4 * t162;
+    const float t164 = t6 * t111;
+    const float t165 = m_2 * t164;
+    const float t166 = t163 + t165;
+    const float t167 = t34 * t166;
+    const float t168 = t74 + t167;
+    const float t169 = t18 * t168;
+    const float t170 = t148 + t169;
+    const float t171 = t4 * t170;
+    const float t172 = t171 - t80;
+    const float t173 = t4 * t172;
+    const float t174 = t3 * t72;
+    const float t175 = t3 * t174;
+    const float t176 = t14 * t175;
+    const float t177 = t25 * t176;
+    const float t178 = t173 - t177;
+    const float t179 = t50 * t178;
+    const float t180 = t22 * t179;
+    const float t181 = t50 * t130;
+    const float t182 = t22 * t181;
+    const float t183 = t4 * t50;
+    const float t184 = t183 * t143;
+    const float t185 = t134 * t184;
+    const float t186 = L / t21;
+    const float t187 = t4 * t26;
+    const float t188 = t4 * t187;
+    const float t189 = 3.0f * t7;
+    const float t190 = t188 + t189;
+    const float t191 = t34 * t190;
+    const float t192 = t5 * t191;
+    const float t193 = t4 * t38;
+    const float t194 = t14 * t193;
+    const float t195 = t192 - t194;
+    const float t196 = t4 * t195;
+    const float t197 = 2.0f * t39;
+    const float t198 = t196 + t197;
+    const float t199 = t25 * t198;
+    const float t200 = 2.0f - t44;
+    const float t201 = t200 - t26;
+    const float t202 = t52 * t201;
+    const float t203 = t25 * t27;
+    const float t204 = t202 + t203;
+    const float t205 = t5 * t204;
+    const float t206 = m_2 * t90;
+    const float t207 = t205 + t206;
+    const float t208 = t4 * t207;
+    const float t209 = t87 * t102;
+    const float t210 = m_2 * t209;
+    const float t211 = t208 + t210;
+    const float t212 = t4 * t211;
+    const float t213 = t5 * t57;
+    const float t214 = t212 - t213;
+    const float t215 = t4 * t214;
+    const float t216 = t87 * t111;
+    const float t217 = m_2 * t216;
+    const float t218 = t215 + t217;
+    const float t219 = t34 * t218;
+    const float t220 = t14 * t174;
+    const float t221 = t71 * t220;
+    const float t222 = t219 + t221;
+    const float t223 = t18 * t222;
+    const float t224 = t199 + t223;
+    const float t225 = t4 * t224;
+    const float t226 = t5 * t34;
+    const float t227 = t25 * t226;
+    const float t228 = t225 - t227;
+    const float t229 = t4 * t228;
+    const float t230 = t25 * t39;
+    const float t231 = t229 - t230;
+    const float t232 = t186 * t231;
+    const float t233 = t6 * t34;
+    const float t234 = t25 * t233;
+    const float t235 = t14 * t116;
+    const float t236 = 2.0f * t235;
+    const float t237 = t6 * t191;
+    const float t238 = t4 * t116;
+    const float t239 = t14 * t238;
+    const float t240 = t237 + t239;
+    const float t241 = t4 * t240;
+    const float t242 = t236 - t241;
+    const float t243 = t25 * t242;
+    const float t244 = t25 * t45;
+    const float t245 = t26 + t102;
+    const float t246 = t52 * t245;
+    const float t247 = t244 + t246;
+    const float t248 = t6 * t247;
+    const float t249 = m_2 * t51;
+    const float t250 = t248 + t249;
     const float t251 = t4 * t250;
-    const float t252 = t6 * t48;
-    const float t253 = t251 + t252;
-    const float t254 = t4 * t253;
-    const float t255 = t49 * t106;
-    const float t256 = m_2 * t255;
-    const float t257 = t254 + t256;
-    const float t258 = t30 * t257;
-    const float t259 = t14 * t128;
-    const float t260 = t62 * t259;
+    const float t252 = t58 * t102;
+    const float t253 = m_2 * t252;
+    const float t254 = t251 + t253;
+    const float t255 = t4 * t254;
+    const float t256 = t6 * t57;
+    const float t257 = t255 + t256;
+    const float t258 = t4 * t257;
+    const float t259 = t58 * t111;
+    const float t260 = m_2 * t259;
     const float t261 = t258 + t260;
-    const float t262 = L * t261;
-    const float t263 = L * t262;
-    const float t264 = t14 * t111;
-    const float t265 = 2.0f * t264;
-    const float t266 = t6 * t221;
-    const float t267 = t4 * t111;
-    const float t268 = t14 * t267;
-    const float t269 = t266 + t268;
+    const float t262 = t34 * t261;
+    const float t263 = t14 * t126;
+    const float t264 = t71 * t263;
+    const float t265 = t262 + t264;
+    const float t266 = t18 * t265;
+    const float t267 = t243 + t266;
+    const float t268 = t4 * t267;
+    const float t269 = t234 + t268;
     const float t270 = t4 * t269;
-    const float t271 = t265 - t270;
-    const float t272 = t47 * t271;
-    const float t273 = t263 + t272;
-    const float t274 = t4 * t273;
-    const float t275 = t6 * t30;
-    const float t276 = t47 * t275;
-    const float t277 = t274 + t276;
-    const float t278 = t4 * t277;
-    const float t279 = t47 * t264;
-    const float t280 = t278 - t279;
-    const float t281 = t238 * t280;
-    const float t282 = t33 * t42;
-    const float t283 = t3 * t138;
-    const float t284 = t3 * t283;
-    const float t285 = t282 + t284;
-    const float t286 = t140 * t285;
-    const float t287 = t4 * t286;
-    const float t288 = t22 * t287;
-    float rest = t87 - t87;
-    rest += t134 - t134;
-    rest += t150 - t150;
-    rest += t186 - t186;
-    rest += t188 - t188;
-    rest += t191 - t191;
-    rest += t239 - t239;
-    rest += t281 - t281;
-    rest += t288 - t288;
-    if (!(rest >= 0.0f)) {
+    const float t271 = t25 * t235;
+    const float t272 = t270 - t271;
+    const float t273 = t186 * t272;
+    const float t274 = phi_dot * t3;
+    const float t275 = t14 * t274;
+    const float t276 = t275 * t141;
+    const float t277 = t4 * t276;
+    const float t278 = t22 * t277;
+    float rest = t86 - t86;
+    rest += t132 - t132;
+    rest += t145 - t145;
+    rest += t180 - t180;
+    rest += t182 - t182;
+    rest += t185 - t185;
+    rest += t232 - t232;
+    rest += t273 - t273;
+    rest += t278 - t278;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    C_tilde[0] = t87;
-    C_tilde[1] = t134;
-    C_tilde[2] = t150;
+    C_tilde[0] = t86;
+    C_tilde[1] = t132;
+    C_tilde[2] = t145;
     C_tilde[3] = 0.0f;
-    C_tilde[4] = t186;
-    C_tilde[5] = t188;
-    C_tilde[6] = t191;
+    C_tilde[4] = t180;
+    C_tilde[5] = t182;
+    C_tilde[6] = t185;
     C_tilde[7] = 0.0f;
-    C_tilde[8] = t239;
-    C_tilde[9] = t281;
-    C_tilde[10] = t288;
+    C_tilde[8] = t232;
+    C_tilde[9] = t273;
+    C_tilde[10] = t278;
     C_tilde[11] = 0.0f;
     C_tilde[12] = 0.0f;
     C_tilde[13] = 0.0f;
@@ -1858,15 +1841,14 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
     const float Theta_1 = p->Theta_1;
     const float t24 = Theta_1 * t23;
     const float t25 = t22 + t24;
-    const float t26 = 1.0f / t9;
-    const float t27 = t25 * t26;
+    const float t26 = t25 / t9;
     const float Theta_2 = p->Theta_2;
-    float rest = t27 - t27;
+    float rest = t26 - t26;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_bar[0] = t27;
+    G_bar[0] = t26;
     G_bar[1] = 0.0f;
     G_bar[2] = 0.0f;
     G_bar[3] = Theta_2;
@@ -1913,60 +1895,55 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
         }
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t5 * t4;
-    const float t19 = t3 * t18;
-    const float m_1 = p->m_1;
+    const float t18 = L * L;
     const float m_2 = p->m_2;
-    const float t20 = m_1 + m_2;
-    const float t21 = L * L;
-    const float t22 = m_2 * t21;
+    const float t19 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 + t22;
-    const float t24 = t20 + t23;
-    const float t25 = t19 * t24;
-    const float t26 = t3 * t25;
-    const float t27 = t20 * t21;
-    const float t28 = t4 * t18;
-    const float t29 = t4 * t28;
-    const float t30 = t27 * t29;
-    const float t31 = t26 + t30;
-    const float t32 = L * t31;
-    const float t33 = L * t32;
-    const float t34 = t4 * t4;
-    const float t35 = t34 + (-2.0f);
-    const float t36 = t18 * t35;
-    const float t37 = t23 * t36;
-    const float t38 = t33 + t37;
-    const float theta_dot = qd[2];
-    const float t39 = theta_dot * t38;
+    const float t20 = Theta_1 + t19;
     const float phi_dot = qd[3];
-    const float t40 = phi_dot * t6;
-    const float t41 = t3 * t40;
-    const float t42 = (-1.0f) + t21;
-    const float t43 = t41 * t42;
-    const float t44 = t23 * t43;
-    const float t45 = t39 + t44;
-    const float t46 = t4 * t45;
-    const float t47 = theta_dot * t5;
-    const float t48 = t23 * t47;
-    const float t49 = t46 + t48;
-    const float t50 = t4 * t49;
-    const float t51 = t23 * t41;
-    const float t52 = t50 + t51;
-    const float t53 = t6 * t21;
-    const float t54 = t6 * t53;
-    const float t55 = t6 * t54;
-    const float t56 = t4 * t55;
-    const float t57 = t4 * t56;
-    const float t58 = t4 * t57;
-    const float t59 = t14 * t58;
-    const float t60 = 1.0f / t59;
-    const float t61 = t52 * t60;
-    float rest = t61 - t61;
-    if (!(rest >= 0.0f)) {
+    const float t21 = phi_dot * t6;
+    const float t22 = t3 * t21;
+    const float t23 = t20 * t22;
+    const float theta_dot = qd[2];
+    const float t24 = theta_dot * t5;
+    const float t25 = t20 * t24;
+    const float t26 = (-1.0f) + t18;
+    const float t27 = t22 * t26;
+    const float t28 = t20 * t27;
+    const float t29 = t5 * t4;
+    const float t30 = t4 * t4;
+    const float t31 = t30 + (-2.0f);
+    const float t32 = t29 * t31;
+    const float t33 = t20 * t32;
+    const float m_1 = p->m_1;
+    const float t34 = m_1 + m_2;
+    const float t35 = t34 * t18;
+    const float t36 = t30 * t35;
+    const float t37 = t34 + t20;
+    const float t38 = t7 * t37;
+    const float t39 = t36 + t38;
+    const float t40 = t29 * t39;
+    const float t41 = t18 * t40;
+    const float t42 = t33 + t41;
+    const float t43 = theta_dot * t42;
+    const float t44 = t28 + t43;
+    const float t45 = t4 * t44;
+    const float t46 = t25 + t45;
+    const float t47 = t4 * t46;
+    const float t48 = t23 + t47;
+    const float t49 = t6 * t18;
+    const float t50 = t6 * t49;
+    const float t51 = t6 * t50;
+    const float t52 = t4 * t51;
+    const float t53 = t4 * t52;
+    const float t54 = t4 * t53;
+    const float t55 = t14 * t54;
+    const float t56 = t48 / t55;
+    float rest = t56 - t56;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    C_bar[0] = t61;
+    C_bar[0] = t56;
     C_bar[1] = 0.0f;
     C_bar[2] = 0.0f;
     C_bar[3] = 0.0f;
@@ -2030,7 +2007,7 @@ front_car_status front_car_minimal_control_matrix_f(const float q[4], const fron
     const float t18 = t4 * t6;
     const float t19 = 1.0f / t18;
     float rest = t19 - t19;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_bar[0] = t19;
@@ -2091,20 +2068,19 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
     const float t29 = t5 * t4;
     const float t30 = t25 * t29;
     const float t31 = t18 * t30;
-    const float t32 = 1.0f / t14;
-    const float t33 = t3 * t25;
-    const float t34 = t32 * t33;
+    const float t32 = t3 * t25;
+    const float t33 = t32 / t14;
     const float phi_dot = qd[3];
     float rest = t28 - t28;
     rest += t31 - t31;
-    rest += t34 - t34;
+    rest += t33 - t33;
     rest += phi_dot - phi_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     qd_admissible[0] = t28;
     qd_admissible[1] = t31;
-    qd_admissible[2] = t34;
+    qd_admissible[2] = t33;
     qd_admissible[3] = phi_dot;
     return FRONT_CAR_OK;
 }
@@ -2221,30 +2197,29 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t86 = t27 * t85;
     const float t87 = t82 - t86;
     const float t88 = t58 * t87;
-    const float t89 = 1.0f / t56;
-    const float t90 = t14 * t61;
-    const float t91 = t3 * t90;
-    const float t92 = phi_dot * t27;
-    const float t93 = L * t92;
-    const float t94 = t91 + t93;
-    const float t95 = t4 * t94;
-    const float t96 = L * t95;
-    const float t97 = theta_ddot * t3;
-    const float t98 = t3 * t97;
-    const float t99 = t14 * t98;
-    const float t100 = t96 + t99;
-    const float t101 = t89 * t100;
+    const float t89 = t14 * t61;
+    const float t90 = t3 * t89;
+    const float t91 = phi_dot * t27;
+    const float t92 = L * t91;
+    const float t93 = t90 + t92;
+    const float t94 = t4 * t93;
+    const float t95 = L * t94;
+    const float t96 = theta_ddot * t3;
+    const float t97 = t3 * t96;
+    const float t98 = t14 * t97;
+    const float t99 = t95 + t98;
+    const float t100 = t99 / t56;
     const float phi_ddot = qdd[3];
     float rest = t59 - t59;
     rest += t88 - t88;
-    rest += t101 - t101;
+    rest += t100 - t100;
     rest += phi_ddot - phi_ddot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
     qdd_admissible[1] = t88;
-    qdd_admissible[2] = t101;
+    qdd_admissible[2] = t100;
     qdd_admissible[3] = phi_ddot;
     return FRONT_CAR_OK;
 }
@@ -2259,7 +2234,7 @@ front_car_status front_car_projected_configuration_f(const float q[4], const fro
     rest += y - y;
     rest += theta - theta;
     rest += phi - phi;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2303,33 +2278,30 @@ front_car_status front_car_inverse_dynamics_f(const float q[4], const float qd[4
     const float t15 = t11 - t14;
     const float t4 = cosine[0];
     const float t16 = t4 * t15;
-    const float t17 = 1.0f / L;
-    const float t18 = L * L;
-    const float t19 = m_2 * t18;
+    const float t17 = L * t12;
     const float Theta_1 = p->Theta_1;
-    const float t20 = Theta_1 + t19;
+    const float t18 = Theta_1 + t17;
     const float theta_ddot = qdd[2];
-    const float t21 = theta_ddot * t20;
-    const float t22 = y_ddot * t6;
-    const float t23 = x_ddot * t5;
-    const float t24 = t22 - t23;
-    const float t25 = m_2 * t24;
-    const float t26 = L * t25;
-    const float t27 = t21 + t26;
-    const float t28 = t17 * t27;
+    const float t19 = theta_ddot * t18;
+    const float t20 = y_ddot * t6;
+    const float t21 = x_ddot * t5;
+    const float t22 = t20 - t21;
+    const float t23 = t12 * t22;
+    const float t24 = t19 + t23;
+    const float t25 = t24 / L;
     const float t3 = sine[0];
-    const float t29 = t3 * t28;
-    const float t30 = t16 + t29;
+    const float t26 = t3 * t25;
+    const float t27 = t16 + t26;
     const float phi_ddot = qdd[3];
     const float Theta_2 = p->Theta_2;
-    const float t31 = phi_ddot * Theta_2;
-    float rest = t30 - t30;
-    rest += t31 - t31;
-    if (!(rest >= 0.0f)) {
+    const float t28 = phi_ddot * Theta_2;
+    float rest = t27 - t27;
+    rest += t28 - t28;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    u[0] = t30;
-    u[1] = t31;
+    u[0] = t27;
+    u[1] = t28;
     return FRONT_CAR_OK;
 }
 
@@ -2377,7 +2349,7 @@ front_car_status front_car_actuator_velocity_f(const float q[4], const float qd[
     const float phi_dot = qd[3];
     float rest = t13 - t13;
     rest += phi_dot - phi_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     nu[0] = t13;
@@ -2421,27 +2393,25 @@ front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    const float t19 = t3 * t3;
-    const float m_1 = p->m_1;
-    const float t20 = m_1 * t19;
-    const float m_2 = p->m_2;
-    const float t21 = m_2 + t20;
-    const float t22 = L * t21;
-    const float t23 = L * t22;
-    const float t24 = t2 * t2;
+    const float t19 = t2 * t2;
     const float Theta_1 = p->Theta_1;
-    const float t25 = Theta_1 * t24;
-    const float t26 = t23 + t25;
-    const float t27 = L * L;
-    const float t28 = 1.0f / t27;
-    const float t29 = t26 * t28;
+    const float t20 = Theta_1 * t19;
+    const float t21 = L * L;
+    const float t22 = t3 * t3;
+    const float m_1 = p->m_1;
+    const float t23 = m_1 * t22;
+    const float m_2 = p->m_2;
+    const float t24 = m_2 + t23;
+    const float t25 = t21 * t24;
+    const float t26 = t20 + t25;
+    const float t27 = t26 / t21;
     const float Theta_2 = p->Theta_2;
-    float rest = t29 - t29;
+    float rest = t27 - t27;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_nu[0] = t29;
+    G_nu[0] = t27;
     G_nu[1] = 0.0f;
     G_nu[2] = 0.0f;
     G_nu[3] = Theta_2;
@@ -2489,77 +2459,76 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    const float t19 = L * L;
-    const float t20 = 1.0f / t19;
     const float phi_dot = qd[3];
-    const float t21 = phi_dot * t4;
-    const float t22 = t3 * t21;
+    const float t19 = phi_dot * t4;
+    const float t20 = t3 * t19;
+    const float t21 = L * L;
     const float m_2 = p->m_2;
-    const float t23 = m_2 * t19;
+    const float t22 = m_2 * t21;
     const float Theta_1 = p->Theta_1;
-    const float t24 = Theta_1 + t23;
+    const float t23 = Theta_1 + t22;
     const float theta_dot = qd[2];
-    const float t25 = theta_dot * t3;
-    const float t26 = t24 * t25;
+    const float t24 = theta_dot * t3;
+    const float t25 = t23 * t24;
     const float m_1 = p->m_1;
-    const float t27 = m_1 + m_2;
-    const float t28 = L * t3;
-    const float t29 = theta_dot * t28;
-    const float t30 = t6 * t4;
-    const float t31 = t5 * t3;
-    const float t32 = t30 - t31;
+    const float t26 = m_1 + m_2;
+    const float t27 = L * t3;
+    const float t28 = theta_dot * t27;
+    const float t29 = t6 * t4;
+    const float t30 = t5 * t3;
+    const float t31 = t29 - t30;
     const float x_dot = qd[0];
-    const float t33 = x_dot * t32;
-    const float t34 = t5 * t4;
-    const float t35 = t6 * t3;
-    const float t36 = t34 + t35;
+    const float t32 = x_dot * t31;
+    const float t33 = t5 * t4;
+    const float t34 = t6 * t3;
+    const float t35 = t33 + t34;
     const float y_dot = qd[1];
-    const float t37 = y_dot * t36;
-    const float t38 = t33 + t37;
-    const float t39 = t29 + t38;
-    const float t40 = t27 * t39;
-    const float t41 = L * t40;
-    const float t42 = t26 - t41;
-    const float t43 = L * t42;
-    const float t44 = t24 * t38;
-    const float t45 = t43 + t44;
-    const float t46 = t22 * t45;
-    const float t47 = t20 * t46;
-    float rest = t47 - t47;
-    if (!(rest >= 0.0f)) {
+    const float t36 = y_dot * t35;
+    const float t37 = t32 + t36;
+    const float t38 = t28 + t37;
+    const float t39 = t26 * t38;
+    const float t40 = L * t39;
+    const float t41 = t25 - t40;
+    const float t42 = L * t41;
+    const float t43 = t23 * t37;
+    const float t44 = t42 + t43;
+    const float t45 = t20 * t44;
+    const float t46 = t45 / t21;
+    float rest = t46 - t46;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    bias_nu[0] = t47;
+    bias_nu[0] = t46;
     bias_nu[1] = 0.0f;
     return FRONT_CAR_OK;
 }
 
 front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float qdd[4]) {
-    const float phi = q[3];
-    const float t1 = fabsf(phi);
     const float theta = q[2];
-    const float t2 = fabsf(theta);
+    const float t1 = fabsf(theta);
+    const float phi = q[3];
+    const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float angle[4] = {phi, theta, theta, theta};
+    const float angle[4] = {theta, phi, phi, phi};
     float sine[4];
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
-    const float t3 = sine[0];
-    const float t7 = t3 * t3;
-    const float L = p->L;
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
     const float t5 = sine[1];
-    const float t9 = t5 * t8;
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t6 = cosine[1];
+    const float t8 = L * t6;
+    const float t3 = sine[0];
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
     const float t11 = t7 + t10;
-    const float t6 = cosine[1];
-    const float t12 = t6 * t8;
+    const float t4 = cosine[0];
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -2568,16 +2537,16 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t6 * t6;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -2601,123 +2570,122 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     if (!(t26 > t43)) {
         return FRONT_CAR_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * t3;
+    const float t44 = L * t5;
     const float K_f = u[0];
-    const float t46 = K_f * t45;
-    const float t47 = t3 * t46;
-    const float t48 = L * m_2;
+    const float t45 = K_f * t44;
+    const float t46 = t5 * t45;
+    const float t47 = L * m_2;
     const float theta_dot = qd[2];
-    const float t49 = theta_dot * t48;
-    const float t50 = theta_dot * t6;
-    const float t51 = t49 * t50;
-    const float t52 = t6 * t4;
-    const float t53 = t5 * t3;
-    const float t54 = t52 - t53;
-    const float t55 = K_f * t54;
-    const float t56 = t51 + t55;
-    const float t57 = t12 * t56;
-    const float t58 = theta_dot * t5;
-    const float t59 = t49 * t58;
-    const float t60 = t5 * t4;
-    const float t61 = t6 * t3;
-    const float t62 = t60 + t61;
-    const float t63 = K_f * t62;
-    const float t64 = t59 + t63;
-    const float t65 = t9 * t64;
-    const float t66 = t57 + t65;
-    const float t67 = t47 + t66;
-    const float t68 = Theta_2 * t67;
-    const float t69 = t12 * t68;
-    const float t70 = t44 * t69;
-    const float t71 = L * L;
-    const float t72 = m_2 * t71;
-    const float t73 = Theta_1 + t72;
-    const float t74 = t3 * t73;
-    const float t75 = Theta_2 * t74;
-    const float phi_dot = qd[3];
-    const float t76 = phi_dot * t3;
-    const float t77 = L * t76;
-    const float t78 = theta_dot * t77;
-    const float t79 = theta_dot + phi_dot;
-    const float t80 = t79 * t54;
-    const float x_dot = qd[0];
-    const float t81 = x_dot * t80;
-    const float t82 = t79 * t62;
+    const float t48 = theta_dot * t47;
+    const float t49 = theta_dot * t4;
+    const float t50 = t48 * t49;
+    const float t51 = t4 * t6;
+    const float t52 = t3 * t5;
+    const float t53 = t51 - t52;
+    const float t54 = K_f * t53;
+    const float t55 = t50 + t54;
+    const float t56 = t12 * t55;
+    const float t57 = theta_dot * t3;
+    const float t58 = t48 * t57;
+    const float t59 = t3 * t6;
+    const float t60 = t4 * t5;
+    const float t61 = t59 + t60;
+    const float t62 = K_f * t61;
+    const float t63 = t58 + t62;
+    const float t64 = t9 * t63;
+    const float t65 = t56 + t64;
+    const float t66 = t46 + t65;
+    const float t67 = Theta_2 * t66;
+    const float t68 = t12 * t67;
+    const float t69 = 1.0f / t25;
+    const float t70 = t68 * t69;
     const float y_dot = qd[1];
-    const float t83 = y_dot * t82;
-    const float t84 = t81 + t83;
-    const float t85 = t78 + t84;
-    const float t86 = t6 * t85;
-    const float t87 = y_dot * t58;
-    const float t88 = x_dot * t50;
-    const float t89 = t87 + t88;
-    const float t90 = t89 * t54;
-    const float t91 = t86 - t90;
-    const float t92 = t75 * t91;
-    const float t93 = t8 * t89;
-    const float t94 = L * Theta_2;
-    const float t95 = m_1 * t60;
-    const float t96 = m_2 * t62;
-    const float t97 = t95 + t96;
-    const float t98 = t94 * t97;
-    const float t99 = t93 * t98;
-    const float t100 = t92 + t99;
-    const float t101 = t44 * t100;
-    const float t102 = t70 - t101;
-    const float t103 = t9 * t68;
-    const float t104 = t44 * t103;
-    const float t105 = t5 * t85;
-    const float t106 = t89 * t62;
-    const float t107 = t105 - t106;
-    const float t108 = t75 * t107;
-    const float t109 = m_1 * t52;
-    const float t110 = m_2 * t54;
-    const float t111 = t109 + t110;
-    const float t112 = t94 * t111;
-    const float t113 = t93 * t112;
-    const float t114 = t108 - t113;
-    const float t115 = t44 * t114;
-    const float t116 = t104 - t115;
-    const float t117 = t3 * t68;
-    const float t118 = t44 * t117;
-    const float t119 = t90 - t86;
-    const float t120 = t112 * t119;
-    const float t121 = t98 * t107;
-    const float t122 = t120 - t121;
-    const float t123 = t44 * t122;
-    const float t124 = t118 - t123;
-    const float t125 = m_1 + m_2;
+    const float t71 = y_dot * t57;
+    const float x_dot = qd[0];
+    const float t72 = x_dot * t49;
+    const float t73 = t71 + t72;
+    const float t74 = t8 * t73;
+    const float t75 = L * Theta_2;
+    const float t76 = m_1 * t59;
+    const float t77 = m_2 * t61;
+    const float t78 = t76 + t77;
+    const float t79 = t75 * t78;
+    const float t80 = t74 * t79;
+    const float phi_dot = qd[3];
+    const float t81 = phi_dot * t5;
+    const float t82 = L * t81;
+    const float t83 = theta_dot * t82;
+    const float t84 = theta_dot + phi_dot;
+    const float t85 = t84 * t53;
+    const float t86 = x_dot * t85;
+    const float t87 = t84 * t61;
+    const float t88 = y_dot * t87;
+    const float t89 = t86 + t88;
+    const float t90 = t83 + t89;
+    const float t91 = t4 * t90;
+    const float t92 = t73 * t53;
+    const float t93 = t91 - t92;
+    const float t94 = L * t47;
+    const float t95 = Theta_1 + t94;
+    const float t96 = t5 * t95;
+    const float t97 = Theta_2 * t96;
+    const float t98 = t93 * t97;
+    const float t99 = t80 + t98;
+    const float t100 = t69 * t99;
+    const float t101 = t70 - t100;
+    const float t102 = t9 * t67;
+    const float t103 = t102 * t69;
+    const float t104 = t3 * t90;
+    const float t105 = t73 * t61;
+    const float t106 = t104 - t105;
+    const float t107 = t106 * t97;
+    const float t108 = m_1 * t51;
+    const float t109 = m_2 * t53;
+    const float t110 = t108 + t109;
+    const float t111 = t75 * t110;
+    const float t112 = t74 * t111;
+    const float t113 = t107 - t112;
+    const float t114 = t69 * t113;
+    const float t115 = t103 - t114;
+    const float t116 = t5 * t67;
+    const float t117 = t116 * t69;
+    const float t118 = t92 - t91;
+    const float t119 = t111 * t118;
+    const float t120 = t79 * t106;
+    const float t121 = t119 - t120;
+    const float t122 = t121 * t69;
+    const float t123 = t117 - t122;
+    const float t124 = m_1 + m_2;
     const float T = u[1];
-    const float t126 = T * t12;
-    const float t127 = t125 * t126;
-    const float t128 = t5 * t48;
-    const float t129 = T * t3;
-    const float t130 = t128 * t129;
-    const float t131 = t127 - t130;
-    const float t132 = t12 * t131;
-    const float t133 = T * t9;
-    const float t134 = t125 * t133;
-    const float t135 = t6 * t48;
-    const float t136 = t135 * t129;
-    const float t137 = t134 + t136;
-    const float t138 = t9 * t137;
-    const float t139 = t132 + t138;
-    const float t140 = t73 * t129;
-    const float t141 = t3 * t140;
-    const float t142 = t139 + t141;
-    const float t143 = t44 * t142;
-    float rest = t102 - t102;
-    rest += t116 - t116;
-    rest += t124 - t124;
-    rest += t143 - t143;
-    if (!(rest >= 0.0f)) {
+    const float t125 = T * t12;
+    const float t126 = t124 * t125;
+    const float t127 = t3 * t47;
+    const float t128 = T * t5;
+    const float t129 = t127 * t128;
+    const float t130 = t126 - t129;
+    const float t131 = t12 * t130;
+    const float t132 = T * t9;
+    const float t133 = t124 * t132;
+    const float t134 = t4 * t47;
+    const float t135 = t134 * t128;
+    const float t136 = t133 + t135;
+    const float t137 = t9 * t136;
+    const float t138 = t131 + t137;
+    const float t139 = t128 * t95;
+    const float t140 = t5 * t139;
+    const float t141 = t138 + t140;
+    const float t142 = t69 * t141;
+    float rest = t101 - t101;
+    rest += t115 - t115;
+    rest += t123 - t123;
+    rest += t142 - t142;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    qdd[0] = t102;
-    qdd[1] = t116;
-    qdd[2] = t124;
-    qdd[3] = t143;
+    qdd[0] = t101;
+    qdd[1] = t115;
+    qdd[2] = t123;
+    qdd[3] = t142;
     return FRONT_CAR_OK;
 }
 
@@ -2755,16 +2723,16 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     if (!(t14 > t17)) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -2809,97 +2777,96 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t60 = K_f * t59;
     const float t61 = t56 + t60;
     const float t62 = m_1 + m_2;
-    const float t63 = L * L;
-    const float t64 = m_2 * t63;
-    const float t65 = Theta_1 + t64;
-    const float t66 = t3 * t65;
-    const float t67 = Theta_2 * t66;
-    const float phi_dot = qd[3];
-    const float t68 = phi_dot * t3;
-    const float t69 = L * t68;
-    const float t70 = theta_dot * t69;
-    const float t71 = theta_dot + phi_dot;
-    const float t72 = t71 * t59;
-    const float x_dot = qd[0];
-    const float t73 = x_dot * t72;
-    const float t74 = t71 * t49;
+    const float t63 = theta_dot * t5;
     const float y_dot = qd[1];
-    const float t75 = y_dot * t74;
-    const float t76 = t73 + t75;
-    const float t77 = t70 + t76;
-    const float t78 = t6 * t77;
-    const float t79 = theta_dot * t5;
-    const float t80 = y_dot * t79;
-    const float t81 = x_dot * t55;
-    const float t82 = t80 + t81;
-    const float t83 = t82 * t59;
-    const float t84 = t78 - t83;
-    const float t85 = t67 * t84;
-    const float t86 = t8 * t82;
-    const float t87 = t86 * t52;
-    const float t88 = t85 + t87;
-    const float t89 = t44 * t88;
-    const float t90 = t62 * t89;
-    const float t91 = t5 * t53;
-    const float t92 = m_1 * t57;
-    const float t93 = m_2 * t59;
-    const float t94 = t92 + t93;
-    const float t95 = t45 * t94;
-    const float t96 = t83 - t78;
-    const float t97 = t95 * t96;
-    const float t98 = t5 * t77;
-    const float t99 = t82 * t49;
-    const float t100 = t98 - t99;
-    const float t101 = t52 * t100;
-    const float t102 = t97 - t101;
-    const float t103 = t44 * t102;
-    const float t104 = t91 * t103;
-    const float t105 = t90 - t104;
-    const float t106 = t61 + t105;
-    const float t107 = t52 * t106;
-    const float t108 = t54 * t79;
-    const float t109 = K_f * t49;
-    const float t110 = t108 + t109;
-    const float t111 = t67 * t100;
-    const float t112 = t86 * t95;
-    const float t113 = t111 - t112;
-    const float t114 = t44 * t113;
-    const float t115 = t62 * t114;
-    const float t116 = t6 * t53;
-    const float t117 = t116 * t103;
-    const float t118 = t115 + t117;
-    const float t119 = t110 + t118;
-    const float t120 = t95 * t119;
-    const float t121 = t107 - t120;
-    const float t122 = t8 * t121;
-    const float t123 = t67 * t106;
-    const float t124 = L * t3;
-    const float t125 = K_f * t124;
-    const float t126 = t65 * t103;
-    const float t127 = t53 * t82;
-    const float t128 = t126 - t127;
-    const float t129 = t125 + t128;
-    const float t130 = t95 * t129;
-    const float t131 = t123 - t130;
-    const float t132 = t59 * t131;
-    const float t133 = t122 - t132;
-    const float t134 = t67 * t119;
-    const float t135 = t52 * t129;
-    const float t136 = t134 - t135;
-    const float t137 = t49 * t136;
-    const float t138 = t133 - t137;
-    const float t139 = t44 * t138;
-    const float t140 = t6 * t131;
-    const float t141 = t5 * t136;
-    const float t142 = t140 + t141;
-    const float t143 = t44 * t142;
-    float rest = t139 - t139;
-    rest += t143 - t143;
-    if (!(rest >= 0.0f)) {
+    const float t64 = y_dot * t63;
+    const float x_dot = qd[0];
+    const float t65 = x_dot * t55;
+    const float t66 = t64 + t65;
+    const float t67 = t8 * t66;
+    const float t68 = t67 * t52;
+    const float phi_dot = qd[3];
+    const float t69 = phi_dot * t3;
+    const float t70 = L * t69;
+    const float t71 = theta_dot * t70;
+    const float t72 = theta_dot + phi_dot;
+    const float t73 = t72 * t59;
+    const float t74 = x_dot * t73;
+    const float t75 = t72 * t49;
+    const float t76 = y_dot * t75;
+    const float t77 = t74 + t76;
+    const float t78 = t71 + t77;
+    const float t79 = t6 * t78;
+    const float t80 = t66 * t59;
+    const float t81 = t79 - t80;
+    const float t82 = L * t53;
+    const float t83 = Theta_1 + t82;
+    const float t84 = t3 * t83;
+    const float t85 = Theta_2 * t84;
+    const float t86 = t81 * t85;
+    const float t87 = t68 + t86;
+    const float t88 = t44 * t87;
+    const float t89 = t62 * t88;
+    const float t90 = t5 * t53;
+    const float t91 = m_1 * t57;
+    const float t92 = m_2 * t59;
+    const float t93 = t91 + t92;
+    const float t94 = t45 * t93;
+    const float t95 = t80 - t79;
+    const float t96 = t94 * t95;
+    const float t97 = t5 * t78;
+    const float t98 = t66 * t49;
+    const float t99 = t97 - t98;
+    const float t100 = t52 * t99;
+    const float t101 = t96 - t100;
+    const float t102 = t101 * t44;
+    const float t103 = t90 * t102;
+    const float t104 = t89 - t103;
+    const float t105 = t61 + t104;
+    const float t106 = t52 * t105;
+    const float t107 = t54 * t63;
+    const float t108 = K_f * t49;
+    const float t109 = t107 + t108;
+    const float t110 = t99 * t85;
+    const float t111 = t67 * t94;
+    const float t112 = t110 - t111;
+    const float t113 = t44 * t112;
+    const float t114 = t62 * t113;
+    const float t115 = t6 * t53;
+    const float t116 = t115 * t102;
+    const float t117 = t114 + t116;
+    const float t118 = t109 + t117;
+    const float t119 = t94 * t118;
+    const float t120 = t106 - t119;
+    const float t121 = t8 * t120;
+    const float t122 = t85 * t105;
+    const float t123 = L * t3;
+    const float t124 = K_f * t123;
+    const float t125 = t83 * t102;
+    const float t126 = t53 * t66;
+    const float t127 = t125 - t126;
+    const float t128 = t124 + t127;
+    const float t129 = t94 * t128;
+    const float t130 = t122 - t129;
+    const float t131 = t59 * t130;
+    const float t132 = t121 - t131;
+    const float t133 = t85 * t118;
+    const float t134 = t52 * t128;
+    const float t135 = t133 - t134;
+    const float t136 = t49 * t135;
+    const float t137 = t132 - t136;
+    const float t138 = t44 * t137;
+    const float t139 = t6 * t130;
+    const float t140 = t5 * t135;
+    const float t141 = t139 + t140;
+    const float t142 = t44 * t141;
+    float rest = t138 - t138;
+    rest += t142 - t142;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t139;
-    lambda_B[1] = t143;
+    lambda_B[0] = t138;
+    lambda_B[1] = t142;
     return FRONT_CAR_OK;
 }
 
@@ -2912,43 +2879,42 @@ front_car_status front_car_energy_f(const float q[4], const float qd[4], const f
     float t2;
     float t3;
     front_car_sincos_f(theta, &t2, &t3);
-    const float L = p->L;
-    const float t4 = L * L;
-    const float m_2 = p->m_2;
-    const float t5 = m_2 * t4;
-    const float Theta_1 = p->Theta_1;
-    const float t6 = Theta_1 + t5;
-    const float theta_dot = qd[2];
-    const float t7 = theta_dot * t6;
-    const float t8 = 0.5f * t7;
-    const float t9 = L * m_2;
-    const float y_dot = qd[1];
-    const float t10 = y_dot * t3;
-    const float x_dot = qd[0];
-    const float t11 = x_dot * t2;
-    const float t12 = t10 - t11;
-    const float t13 = t9 * t12;
-    const float t14 = t8 + t13;
-    const float t15 = theta_dot * t14;
     const float m_1 = p->m_1;
-    const float t16 = m_1 + m_2;
-    const float t17 = x_dot * x_dot;
-    const float t18 = y_dot * y_dot;
-    const float t19 = t17 + t18;
-    const float t20 = t16 * t19;
-    const float t21 = 0.5f * t20;
+    const float m_2 = p->m_2;
+    const float t4 = m_1 + m_2;
+    const float x_dot = qd[0];
+    const float t5 = x_dot * x_dot;
+    const float y_dot = qd[1];
+    const float t6 = y_dot * y_dot;
+    const float t7 = t5 + t6;
+    const float t8 = t4 * t7;
+    const float t9 = 0.5f * t8;
     const float phi_dot = qd[3];
-    const float t22 = phi_dot * phi_dot;
+    const float t10 = phi_dot * phi_dot;
     const float Theta_2 = p->Theta_2;
-    const float t23 = Theta_2 * t22;
-    const float t24 = 0.5f * t23;
-    const float t25 = t21 + t24;
-    const float t26 = t15 + t25;
-    float rest = t26 - t26;
-    if (!(rest >= 0.0f)) {
+    const float t11 = Theta_2 * t10;
+    const float t12 = 0.5f * t11;
+    const float t13 = t9 + t12;
+    const float L = p->L;
+    const float t14 = L * m_2;
+    const float t15 = y_dot * t3;
+    const float t16 = x_dot * t2;
+    const float t17 = t15 - t16;
+    const float t18 = t14 * t17;
+    const float t19 = L * t14;
+    const float Theta_1 = p->Theta_1;
+    const float t20 = Theta_1 + t19;
+    const float theta_dot = qd[2];
+    const float t21 = theta_dot * t20;
+    const float t22 = 0.5f * t21;
+    const float t23 = t18 + t22;
+    const float t24 = theta_dot * t23;
+    const float t25 = t13 + t24;
+    float rest = t25 - t25;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
-    T_U[0] = t26;
+    T_U[0] = t25;
     T_U[1] = 0.0f;
     return FRONT_CAR_OK;
 }
@@ -2975,7 +2941,7 @@ front_car_status front_car_singularity_f(const float q[4], const front_car_param
     const float t9 = t7 * t7;
     const float t10 = 1.0f + t9;
     const float t11 = sqrtf(t10);
-    const float t12 = (t11 != 0.0f) ? (t8 / t11) : 0.0f;
+    const float t12 = ((t11 != 0.0f) ? t8 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t13 = t12 * t12;
     const float t5 = sine[1];
     const float t14 = t5 * t4;
@@ -2983,7 +2949,7 @@ front_car_status front_car_singularity_f(const float q[4], const front_car_param
     const float t3 = sine[0];
     const float t15 = t6 * t3;
     const float t16 = t14 + t15;
-    const float t17 = (t11 != 0.0f) ? (t16 / t11) : 0.0f;
+    const float t17 = ((t11 != 0.0f) ? t16 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t18 = t6 * t6;
     const float t19 = t18 * t17;
     const float t20 = t17 * t19;
@@ -2992,7 +2958,7 @@ front_car_status front_car_singularity_f(const float q[4], const front_car_param
     const float t23 = t5 * t3;
     const float t24 = t22 - t23;
     const float t25 = -t24;
-    const float t26 = (t11 != 0.0f) ? (t25 / t11) : 0.0f;
+    const float t26 = ((t11 != 0.0f) ? t25 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t27 = t5 * t26;
     const float t28 = t6 * t17;
     const float t29 = 2.0f * t28;
@@ -3015,13 +2981,13 @@ front_car_status front_car_singularity_f(const float q[4], const front_car_param
     const float t46 = t35 * t35;
     const float t47 = t45 + t46;
     const float t48 = t44 + t47;
-    const float t49 = (t48 != 0.0f) ? (t43 / t48) : 0.0f;
+    const float t49 = ((t48 != 0.0f) ? t43 : 0.0f) / ((t48 != 0.0f) ? t48 : 1.0f);
     const float t50 = t34 * t34;
     const float t51 = 1.0f + t50;
-    const float t52 = (t51 != 0.0f) ? (t49 / t51) : 0.0f;
+    const float t52 = ((t51 != 0.0f) ? t49 : 0.0f) / ((t51 != 0.0f) ? t51 : 1.0f);
     float rest = t33 - t33;
     rest += t52 - t52;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_NOT_FINITE;
     }
     measure[0] = t33;

@@ -15,7 +15,7 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           3      5      0      0      1      0
+ * mass_matrix                           3      4      0      0      1      0
  * coriolis_matrix                       0      4      0      0      1      0
  * coriolis_force                        0      6      0      0      1      0
  * potential_force                       0      0      0      0      0      0
@@ -25,32 +25,32 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     49      3      0      2      0
- * weighted_nullspace_projector         15     55      4      0      2      0
+ * weighted_pseudoinverse               17     47      3      0      2      0
+ * weighted_nullspace_projector         15     54      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     14      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
- * orthogonal_complement                 1      6      2      0      2      0
- * projected_mass_matrix                12     49      5      0      2      0
- * projected_coriolis_matrix            81    224      5      0      2      0
+ * orthogonal_complement                 1      5      2      0      2      0
+ * projected_mass_matrix                12     48      5      0      2      0
+ * projected_coriolis_matrix            80    216      5      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                   6     12      2      0      2      0
- * minimal_coriolis_matrix              17     51      2      0      2      0
+ * minimal_mass_matrix                   6     11      2      0      2      0
+ * minimal_coriolis_matrix              17     46      2      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
- * admissible_velocity                   5     21      2      0      2      0
- * admissible_acceleration              17     76      2      0      2      0
+ * admissible_velocity                   5     20      2      0      2      0
+ * admissible_acceleration              17     75      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                     10     18      1      0      2      0
+ * inverse_dynamics                     10     15      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
  * actuator_mass_matrix                  4      7      1      0      1      0
- * actuator_bias                        12     30      2      0      2      0
- * forward_dynamics                     41     96      1      0      2      0
- * multipliers                          44     95      1      0      2      0
- * energy                                8     17      0      0      1      0
+ * actuator_bias                        12     29      2      0      2      0
+ * forward_dynamics                     41     95      1      0      2      0
+ * multipliers                          44     94      1      0      2      0
+ * energy                                8     16      0      0      1      0
  * singularity                          12     26      5      1      2      0
  * (changes of sign are not counted)
  *
@@ -346,18 +346,17 @@ front_car_wheelset_status front_car_wheelset_mass_matrix_f(const float q[4], con
     const float t6 = t2 * t5;
     const float t7 = -t6;
     const float t8 = t3 * t5;
-    const float t9 = L * L;
-    const float t10 = m_2 * t9;
+    const float t9 = L * t5;
     const float Theta_1 = p->Theta_1;
-    const float t11 = Theta_1 + t10;
+    const float t10 = Theta_1 + t9;
     const float Theta_2 = p->Theta_2;
-    const float t12 = Theta_2 + t11;
+    const float t11 = Theta_2 + t10;
     float rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
-    rest += t12 - t12;
+    rest += t11 - t11;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G[0] = t4;
@@ -370,7 +369,7 @@ front_car_wheelset_status front_car_wheelset_mass_matrix_f(const float q[4], con
     G[7] = 0.0f;
     G[8] = t7;
     G[9] = t8;
-    G[10] = t12;
+    G[10] = t11;
     G[11] = Theta_2;
     G[12] = 0.0f;
     G[13] = 0.0f;
@@ -399,7 +398,7 @@ front_car_wheelset_status front_car_wheelset_coriolis_matrix_f(const float q[4],
     const float t9 = -t8;
     float rest = t7 - t7;
     rest += t9 - t9;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C[0] = 0.0f;
@@ -443,7 +442,7 @@ front_car_wheelset_status front_car_wheelset_coriolis_force_f(const float q[4], 
     const float t11 = -t10;
     float rest = t8 - t8;
     rest += t11 - t11;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -509,7 +508,7 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_f(const float q
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B[0] = t3;
@@ -563,7 +562,7 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot_f(const flo
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -640,7 +639,7 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const fl
     rest += t35 - t35;
     rest += t38 - t38;
     rest += t40 - t40;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -704,7 +703,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
     rest += t24 - t24;
     rest += t26 - t26;
     rest += t27 - t27;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -835,7 +834,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     rest += t70 - t70;
     rest += t80 - t80;
     rest += t84 - t84;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -891,16 +890,16 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -937,53 +936,51 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t54 = t6 * t4;
     const float t55 = t5 * t3;
     const float t56 = t54 - t55;
-    const float t57 = L * L;
-    const float t58 = m_2 * t57;
-    const float t59 = Theta_1 + t58;
+    const float t57 = m_2 * t19;
+    const float t58 = Theta_1 + t57;
+    const float t59 = Theta_2 * t58;
     const float t60 = t3 * t59;
-    const float t61 = Theta_2 * t60;
-    const float t62 = t56 * t61;
-    const float t63 = t53 - t62;
-    const float t64 = t44 * t63;
-    const float t65 = Theta_2 * t59;
-    const float t66 = t65 / t25;
-    const float t67 = t48 * t66;
-    const float t68 = m_1 * t54;
-    const float t69 = m_2 * t56;
-    const float t70 = t68 + t69;
-    const float t71 = t45 * t70;
-    const float t72 = t8 * t71;
-    const float t73 = t49 * t61;
-    const float t74 = t72 + t73;
-    const float t75 = t44 * t74;
-    const float t76 = -t75;
-    const float t77 = t55 * t66;
-    const float t78 = t45 / t25;
-    const float t79 = t20 * t78;
-    const float t80 = m_1 + m_2;
-    const float t81 = t4 * t80;
-    const float t82 = t78 * t81;
-    const float t83 = -t82;
-    const float t84 = -t79;
-    float rest = t64 - t64;
-    rest += t67 - t67;
-    rest += t76 - t76;
+    const float t61 = t56 * t60;
+    const float t62 = t53 - t61;
+    const float t63 = t44 * t62;
+    const float t64 = t59 / t25;
+    const float t65 = t48 * t64;
+    const float t66 = m_1 * t54;
+    const float t67 = m_2 * t56;
+    const float t68 = t66 + t67;
+    const float t69 = t45 * t68;
+    const float t70 = t8 * t69;
+    const float t71 = t49 * t60;
+    const float t72 = t70 + t71;
+    const float t73 = t44 * t72;
+    const float t74 = -t73;
+    const float t75 = t55 * t64;
+    const float t76 = t45 / t25;
+    const float t77 = t22 * t76;
+    const float t78 = m_1 + m_2;
+    const float t79 = t4 * t78;
+    const float t80 = t79 * t76;
+    const float t81 = -t80;
+    const float t82 = -t77;
+    float rest = t63 - t63;
+    rest += t65 - t65;
+    rest += t74 - t74;
+    rest += t75 - t75;
     rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t83 - t83;
-    rest += t84 - t84;
+    rest += t81 - t81;
     rest += t82 - t82;
-    if (!(rest >= 0.0f)) {
+    rest += t80 - t80;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    B_G_pinv[0] = t64;
-    B_G_pinv[1] = t67;
-    B_G_pinv[2] = t76;
-    B_G_pinv[3] = t77;
-    B_G_pinv[4] = t79;
-    B_G_pinv[5] = t83;
-    B_G_pinv[6] = t84;
-    B_G_pinv[7] = t82;
+    B_G_pinv[0] = t63;
+    B_G_pinv[1] = t65;
+    B_G_pinv[2] = t74;
+    B_G_pinv[3] = t75;
+    B_G_pinv[4] = t77;
+    B_G_pinv[5] = t81;
+    B_G_pinv[6] = t82;
+    B_G_pinv[7] = t80;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -1021,16 +1018,16 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -1054,81 +1051,80 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     if (!(t26 > t43)) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const float t44 = L * L;
-    const float t45 = Theta_2 * t44;
-    const float t46 = t45 / t25;
-    const float t47 = t6 * t4;
-    const float t48 = m_1 * t47;
-    const float t49 = t5 * t3;
-    const float t50 = t47 - t49;
-    const float t51 = m_2 * t50;
-    const float t52 = t48 + t51;
-    const float t53 = t47 * t52;
-    const float t54 = t46 * t53;
-    const float t55 = t5 * t4;
-    const float t56 = m_1 * t55;
-    const float t57 = t6 * t3;
-    const float t58 = t55 + t57;
-    const float t59 = m_2 * t58;
-    const float t60 = t56 + t59;
-    const float t61 = t47 * t60;
-    const float t62 = t46 * t61;
-    const float t63 = t3 * t47;
-    const float t64 = m_2 * t44;
-    const float t65 = Theta_1 + t64;
-    const float t66 = L * Theta_2;
-    const float t67 = t65 * t66;
-    const float t68 = t67 / t25;
-    const float t69 = t63 * t68;
-    const float t70 = t55 * t52;
-    const float t71 = t46 * t70;
-    const float t72 = t55 * t60;
-    const float t73 = t46 * t72;
-    const float t74 = t3 * t55;
-    const float t75 = t74 * t68;
-    const float t76 = t66 / t25;
-    const float t77 = t3 * t52;
-    const float t78 = t76 * t77;
-    const float t79 = t3 * t60;
-    const float t80 = t76 * t79;
-    const float t81 = Theta_2 * t65;
-    const float t82 = t81 / t25;
-    const float t83 = t7 * t82;
-    const float t84 = -t78;
-    const float t85 = -t80;
-    const float t86 = m_1 + m_2;
-    const float t87 = t86 * t18;
-    const float t88 = t46 * t87;
-    float rest = t54 - t54;
-    rest += t62 - t62;
-    rest += t69 - t69;
-    rest += t71 - t71;
-    rest += t73 - t73;
-    rest += t75 - t75;
-    rest += t78 - t78;
-    rest += t80 - t80;
+    const float t44 = Theta_2 * t19;
+    const float t45 = t44 / t25;
+    const float t46 = t6 * t4;
+    const float t47 = m_1 * t46;
+    const float t48 = t5 * t3;
+    const float t49 = t46 - t48;
+    const float t50 = m_2 * t49;
+    const float t51 = t47 + t50;
+    const float t52 = t46 * t51;
+    const float t53 = t45 * t52;
+    const float t54 = t5 * t4;
+    const float t55 = m_1 * t54;
+    const float t56 = t6 * t3;
+    const float t57 = t54 + t56;
+    const float t58 = m_2 * t57;
+    const float t59 = t55 + t58;
+    const float t60 = t46 * t59;
+    const float t61 = t45 * t60;
+    const float t62 = t3 * t46;
+    const float t63 = m_2 * t19;
+    const float t64 = Theta_1 + t63;
+    const float t65 = L * Theta_2;
+    const float t66 = t64 * t65;
+    const float t67 = t66 / t25;
+    const float t68 = t62 * t67;
+    const float t69 = t54 * t51;
+    const float t70 = t45 * t69;
+    const float t71 = t54 * t59;
+    const float t72 = t45 * t71;
+    const float t73 = t3 * t54;
+    const float t74 = t73 * t67;
+    const float t75 = t65 / t25;
+    const float t76 = t3 * t51;
+    const float t77 = t75 * t76;
+    const float t78 = t3 * t59;
+    const float t79 = t75 * t78;
+    const float t80 = Theta_2 * t64;
+    const float t81 = t80 / t25;
+    const float t82 = t7 * t81;
+    const float t83 = -t77;
+    const float t84 = -t79;
+    const float t85 = m_1 + m_2;
+    const float t86 = t85 * t20;
+    const float t87 = t86 * t45;
+    float rest = t53 - t53;
+    rest += t61 - t61;
+    rest += t68 - t68;
+    rest += t70 - t70;
+    rest += t72 - t72;
+    rest += t74 - t74;
+    rest += t77 - t77;
+    rest += t79 - t79;
+    rest += t82 - t82;
     rest += t83 - t83;
     rest += t84 - t84;
-    rest += t85 - t85;
-    rest += t88 - t88;
-    if (!(rest >= 0.0f)) {
+    rest += t87 - t87;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    N_BG[0] = t54;
-    N_BG[1] = t62;
-    N_BG[2] = t69;
+    N_BG[0] = t53;
+    N_BG[1] = t61;
+    N_BG[2] = t68;
     N_BG[3] = 0.0f;
-    N_BG[4] = t71;
-    N_BG[5] = t73;
-    N_BG[6] = t75;
+    N_BG[4] = t70;
+    N_BG[5] = t72;
+    N_BG[6] = t74;
     N_BG[7] = 0.0f;
-    N_BG[8] = t78;
-    N_BG[9] = t80;
-    N_BG[10] = t83;
+    N_BG[8] = t77;
+    N_BG[9] = t79;
+    N_BG[10] = t82;
     N_BG[11] = 0.0f;
-    N_BG[12] = t84;
-    N_BG[13] = t85;
-    N_BG[14] = t88;
+    N_BG[12] = t83;
+    N_BG[13] = t84;
+    N_BG[14] = t87;
     N_BG[15] = 1.0f;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1157,7 +1153,7 @@ front_car_wheelset_status front_car_wheelset_control_matrix_f(const float q[4], 
     float rest = t5 - t5;
     rest += t4 - t4;
     rest += t8 - t8;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M[0] = t5;
@@ -1217,7 +1213,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix_f(const fl
     float rest = t21 - t21;
     rest += t24 - t24;
     rest += t26 - t26;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_tilde[0] = t21;
@@ -1275,7 +1271,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse_f(c
     float rest = t19 - t19;
     rest += t20 - t20;
     rest += t21 - t21;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_tilde_pinv[0] = t19;
@@ -1326,19 +1322,18 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float
         }
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t18 = 1.0f / t4;
-    const float t19 = t3 * t18;
-    const float t20 = t5 / t8;
-    float rest = t19 - t19;
-    rest += t20 - t20;
-    if (!(rest >= 0.0f)) {
+    const float t18 = t3 / t4;
+    const float t19 = t5 / t8;
+    float rest = t18 - t18;
+    rest += t19 - t19;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     F_B[0] = 1.0f;
     F_B[1] = 0.0f;
-    F_B[2] = t19;
+    F_B[2] = t18;
     F_B[3] = 0.0f;
-    F_B[4] = t20;
+    F_B[4] = t19;
     F_B[5] = 0.0f;
     F_B[6] = 0.0f;
     F_B[7] = 1.0f;
@@ -1434,10 +1429,9 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t66 = t4 * t65;
     const float t67 = t4 * t66;
     const float t68 = t26 + t67;
-    const float t69 = 1.0f / t19;
-    const float t70 = t68 * t69;
-    const float t71 = Theta_2 / t14;
-    const float t72 = t7 * t71;
+    const float t69 = t68 / t19;
+    const float t70 = Theta_2 / t14;
+    const float t71 = t7 * t70;
     float rest = t34 - t34;
     rest += t43 - t43;
     rest += t48 - t48;
@@ -1445,10 +1439,10 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     rest += t56 - t56;
     rest += t60 - t60;
     rest += t61 - t61;
-    rest += t70 - t70;
-    rest += t72 - t72;
+    rest += t69 - t69;
+    rest += t71 - t71;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_tilde[0] = t34;
@@ -1461,11 +1455,11 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     G_tilde[7] = t61;
     G_tilde[8] = t48;
     G_tilde[9] = t60;
-    G_tilde[10] = t70;
-    G_tilde[11] = t72;
+    G_tilde[10] = t69;
+    G_tilde[11] = t71;
     G_tilde[12] = t51;
     G_tilde[13] = t61;
-    G_tilde[14] = t72;
+    G_tilde[14] = t71;
     G_tilde[15] = Theta_2;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1510,337 +1504,328 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t21 = t14 * t20;
     const float t22 = t18 / t21;
     const float t23 = t6 * t4;
-    const float x_dot = qd[0];
-    const float t24 = x_dot * t6;
-    const float y_dot = qd[1];
-    const float t25 = y_dot * t5;
-    const float t26 = t24 + t25;
-    const float t27 = t4 * t26;
-    const float t28 = L * t27;
-    const float theta_dot = qd[2];
-    const float t29 = theta_dot * t3;
-    const float t30 = t28 + t29;
-    const float t31 = L * t3;
-    const float t32 = t31 * t31;
-    const float t33 = t4 * t4;
-    const float t34 = t33 + (-2.0f);
-    const float t35 = t14 + t34;
-    const float t36 = t32 + t35;
-    const float t37 = t6 * t36;
     const float m_2 = p->m_2;
-    const float t38 = m_2 * t37;
-    const float t39 = t5 * t4;
-    const float t40 = t3 * t39;
-    const float m_1 = p->m_1;
-    const float t41 = m_1 + m_2;
-    const float t42 = t41 * t18;
-    const float t43 = t40 * t42;
-    const float t44 = t38 - t43;
-    const float t45 = t4 * t44;
-    const float t46 = m_2 * t18;
+    const float t24 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t47 = Theta_1 + t46;
+    const float t25 = Theta_1 + t24;
     const float Theta_2 = p->Theta_2;
-    const float t48 = Theta_2 + t47;
-    const float t49 = t41 + t48;
-    const float t50 = t5 * t3;
-    const float t51 = t3 * t50;
-    const float t52 = t3 * t51;
-    const float t53 = t49 * t52;
-    const float t54 = t45 - t53;
-    const float t55 = t4 * t54;
-    const float t56 = t7 + t15;
-    const float t57 = 1.0f - t56;
-    const float t58 = t6 * t57;
-    const float t59 = m_2 * t58;
-    const float t60 = t55 + t59;
-    const float t61 = t30 * t60;
-    const float t62 = 2.0f * t41;
-    const float t63 = t48 - t62;
+    const float t26 = Theta_2 + t25;
+    const float t27 = t4 * t4;
+    const float t28 = 2.0f - t27;
+    const float x_dot = qd[0];
+    const float t29 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t30 = y_dot * t5;
+    const float t31 = t29 + t30;
+    const float t32 = t4 * t31;
+    const float t33 = L * t32;
+    const float theta_dot = qd[2];
+    const float t34 = theta_dot * t3;
+    const float t35 = t33 + t34;
+    const float t36 = t4 * t35;
+    const float t37 = t28 * t36;
+    const float t38 = t5 * t37;
     const float phi_dot = qd[3];
-    const float t64 = phi_dot * t6;
-    const float t65 = t3 * t64;
-    const float t66 = t14 * t65;
-    const float t67 = t63 * t66;
-    const float t68 = t61 + t67;
-    const float t69 = L * t68;
-    const float t70 = L * t69;
-    const float t71 = 2.0f - t33;
-    const float t72 = t4 * t30;
-    const float t73 = t71 * t72;
-    const float t74 = t5 * t73;
-    const float t75 = t14 * t64;
-    const float t76 = t74 + t75;
-    const float t77 = t3 * t76;
-    const float t78 = t48 * t77;
-    const float t79 = t70 + t78;
-    const float t80 = t4 * t79;
-    const float t81 = t30 * t50;
-    const float t82 = t48 * t81;
-    const float t83 = t80 - t82;
-    const float t84 = t4 * t83;
-    const float t85 = t48 * t66;
-    const float t86 = t84 - t85;
-    const float t87 = t23 * t86;
-    const float t88 = t22 * t87;
-    const float t89 = (-1.0f) + t18;
-    const float t90 = t41 * t89;
-    const float t91 = t90 - t48;
-    const float t92 = t3 * t91;
-    const float t93 = t6 * t92;
-    const float t94 = m_2 * t39;
-    const float t95 = t93 + t94;
-    const float t96 = t4 * t95;
-    const float t97 = (-2.0f) + t32;
-    const float t98 = t5 * t97;
-    const float t99 = m_2 * t98;
-    const float t100 = t96 + t99;
-    const float t101 = t4 * t100;
-    const float t102 = t6 * t3;
-    const float t103 = t102 * t49;
-    const float t104 = t101 + t103;
-    const float t105 = t4 * t104;
-    const float t106 = t7 * t14;
-    const float t107 = 1.0f - t106;
-    const float t108 = t5 * t107;
-    const float t109 = m_2 * t108;
-    const float t110 = t105 + t109;
-    const float t111 = t30 * t110;
-    const float t112 = phi_dot * t5;
-    const float t113 = t3 * t112;
-    const float t114 = t14 * t113;
-    const float t115 = t63 * t114;
-    const float t116 = t111 + t115;
-    const float t117 = L * t116;
-    const float t118 = L * t117;
-    const float t119 = t3 * t23;
-    const float t120 = t30 * t119;
-    const float t121 = t34 * t120;
-    const float t122 = t48 * t121;
-    const float t123 = t118 + t122;
+    const float t39 = phi_dot * t6;
+    const float t40 = t14 * t39;
+    const float t41 = t38 + t40;
+    const float t42 = t3 * t41;
+    const float t43 = t26 * t42;
+    const float t44 = L * t3;
+    const float t45 = t44 * t44;
+    const float t46 = t27 + (-2.0f);
+    const float t47 = t14 + t46;
+    const float t48 = t45 + t47;
+    const float t49 = t6 * t48;
+    const float t50 = m_2 * t49;
+    const float t51 = t5 * t4;
+    const float t52 = t3 * t51;
+    const float m_1 = p->m_1;
+    const float t53 = m_1 + m_2;
+    const float t54 = t53 * t18;
+    const float t55 = t52 * t54;
+    const float t56 = t50 - t55;
+    const float t57 = t4 * t56;
+    const float t58 = t53 + t26;
+    const float t59 = t5 * t3;
+    const float t60 = t3 * t59;
+    const float t61 = t3 * t60;
+    const float t62 = t58 * t61;
+    const float t63 = t57 - t62;
+    const float t64 = t4 * t63;
+    const float t65 = t7 + t15;
+    const float t66 = 1.0f - t65;
+    const float t67 = t6 * t66;
+    const float t68 = m_2 * t67;
+    const float t69 = t64 + t68;
+    const float t70 = t35 * t69;
+    const float t71 = 2.0f * t53;
+    const float t72 = t26 - t71;
+    const float t73 = t3 * t39;
+    const float t74 = t14 * t73;
+    const float t75 = t72 * t74;
+    const float t76 = t70 + t75;
+    const float t77 = t18 * t76;
+    const float t78 = t43 + t77;
+    const float t79 = t4 * t78;
+    const float t80 = t35 * t59;
+    const float t81 = t26 * t80;
+    const float t82 = t79 - t81;
+    const float t83 = t4 * t82;
+    const float t84 = t26 * t74;
+    const float t85 = t83 - t84;
+    const float t86 = t23 * t85;
+    const float t87 = t22 * t86;
+    const float t88 = t6 * t3;
+    const float t89 = t35 * t88;
+    const float t90 = t26 * t89;
+    const float t91 = t3 * t23;
+    const float t92 = t35 * t91;
+    const float t93 = t46 * t92;
+    const float t94 = t26 * t93;
+    const float t95 = (-1.0f) + t18;
+    const float t96 = t53 * t95;
+    const float t97 = t96 - t26;
+    const float t98 = t3 * t97;
+    const float t99 = t6 * t98;
+    const float t100 = m_2 * t51;
+    const float t101 = t99 + t100;
+    const float t102 = t4 * t101;
+    const float t103 = (-2.0f) + t45;
+    const float t104 = t5 * t103;
+    const float t105 = m_2 * t104;
+    const float t106 = t102 + t105;
+    const float t107 = t4 * t106;
+    const float t108 = t88 * t58;
+    const float t109 = t107 + t108;
+    const float t110 = t4 * t109;
+    const float t111 = t7 * t14;
+    const float t112 = 1.0f - t111;
+    const float t113 = t5 * t112;
+    const float t114 = m_2 * t113;
+    const float t115 = t110 + t114;
+    const float t116 = t35 * t115;
+    const float t117 = phi_dot * t5;
+    const float t118 = t3 * t117;
+    const float t119 = t14 * t118;
+    const float t120 = t72 * t119;
+    const float t121 = t116 + t120;
+    const float t122 = t18 * t121;
+    const float t123 = t94 + t122;
     const float t124 = t4 * t123;
-    const float t125 = t30 * t102;
-    const float t126 = t48 * t125;
-    const float t127 = t124 + t126;
-    const float t128 = t4 * t127;
-    const float t129 = t3 * t113;
-    const float t130 = t3 * t129;
-    const float t131 = t14 * t130;
-    const float t132 = t48 * t131;
-    const float t133 = t128 - t132;
-    const float t134 = t23 * t133;
-    const float t135 = t22 * t134;
-    const float t136 = L * t18;
-    const float t137 = t136 / t21;
-    const float t138 = 2.0f * t48;
-    const float t139 = t138 - t41;
-    const float t140 = phi_dot * t3;
-    const float t141 = t14 * t140;
-    const float t142 = t139 * t141;
-    const float t143 = t3 * t142;
-    const float t144 = phi_dot * t4;
-    const float t145 = t4 * t144;
-    const float t146 = t14 * t145;
-    const float t147 = t42 * t146;
-    const float t148 = t143 + t147;
-    const float t149 = t4 * t23;
-    const float t150 = t148 * t149;
-    const float t151 = t137 * t150;
-    const float t152 = 1.0f - t18;
-    const float t153 = t41 * t152;
-    const float t154 = t48 + t153;
-    const float t155 = t3 * t154;
-    const float t156 = t5 * t155;
-    const float t157 = m_2 * t23;
-    const float t158 = t156 + t157;
-    const float t159 = t4 * t158;
-    const float t160 = t6 * t97;
-    const float t161 = m_2 * t160;
-    const float t162 = t159 + t161;
-    const float t163 = t4 * t162;
-    const float t164 = t50 * t49;
-    const float t165 = t163 - t164;
-    const float t166 = t4 * t165;
-    const float t167 = t6 * t107;
-    const float t168 = m_2 * t167;
-    const float t169 = t166 + t168;
-    const float t170 = t30 * t169;
-    const float t171 = t67 + t170;
-    const float t172 = L * t171;
-    const float t173 = L * t172;
-    const float t174 = t30 * t40;
-    const float t175 = t71 * t174;
-    const float t176 = t48 * t175;
-    const float t177 = t173 + t176;
-    const float t178 = t4 * t177;
-    const float t179 = t178 - t82;
-    const float t180 = t4 * t179;
-    const float t181 = t3 * t65;
-    const float t182 = t3 * t181;
-    const float t183 = t14 * t182;
-    const float t184 = t48 * t183;
-    const float t185 = t180 - t184;
-    const float t186 = t39 * t185;
-    const float t187 = t22 * t186;
-    const float t188 = t39 * t133;
-    const float t189 = t22 * t188;
-    const float t190 = t4 * t39;
-    const float t191 = t148 * t190;
-    const float t192 = t137 * t191;
-    const float t193 = 2.0f - t32;
-    const float t194 = t193 - t33;
-    const float t195 = t41 * t194;
-    const float t196 = t48 * t71;
-    const float t197 = t195 + t196;
-    const float t198 = t5 * t197;
-    const float t199 = m_2 * t119;
-    const float t200 = t198 + t199;
-    const float t201 = t4 * t200;
-    const float t202 = t102 * t97;
-    const float t203 = m_2 * t202;
-    const float t204 = t201 + t203;
-    const float t205 = t4 * t204;
-    const float t206 = t5 * t49;
-    const float t207 = t205 - t206;
-    const float t208 = t4 * t207;
-    const float t209 = t102 * t107;
-    const float t210 = m_2 * t209;
-    const float t211 = t208 + t210;
-    const float t212 = t30 * t211;
-    const float t213 = t14 * t181;
-    const float t214 = t63 * t213;
-    const float t215 = t212 + t214;
-    const float t216 = L * t215;
-    const float t217 = L * t216;
-    const float t218 = t4 * t33;
-    const float t219 = t4 * t218;
-    const float t220 = 3.0f * t7;
-    const float t221 = t219 + t220;
-    const float t222 = t30 * t221;
-    const float t223 = t5 * t222;
-    const float t224 = t4 * t64;
-    const float t225 = t14 * t224;
-    const float t226 = t223 - t225;
-    const float t227 = t4 * t226;
-    const float t228 = 2.0f * t75;
-    const float t229 = t227 + t228;
-    const float t230 = t48 * t229;
-    const float t231 = t217 + t230;
-    const float t232 = t4 * t231;
-    const float t233 = t5 * t30;
-    const float t234 = t48 * t233;
-    const float t235 = t232 - t234;
-    const float t236 = t4 * t235;
-    const float t237 = t48 * t75;
-    const float t238 = t236 - t237;
-    const float t239 = L / t21;
-    const float t240 = t238 * t239;
-    const float t241 = t48 * t34;
-    const float t242 = t33 + t97;
-    const float t243 = t41 * t242;
-    const float t244 = t241 + t243;
-    const float t245 = t6 * t244;
-    const float t246 = m_2 * t40;
-    const float t247 = t245 + t246;
-    const float t248 = t4 * t247;
-    const float t249 = t50 * t97;
-    const float t250 = m_2 * t249;
-    const float t251 = t248 + t250;
+    const float t125 = t90 + t124;
+    const float t126 = t4 * t125;
+    const float t127 = t3 * t118;
+    const float t128 = t3 * t127;
+    const float t129 = t14 * t128;
+    const float t130 = t26 * t129;
+    const float t131 = t126 - t130;
+    const float t132 = t23 * t131;
+    const float t133 = t22 * t132;
+    const float t134 = L * t18;
+    const float t135 = t134 / t21;
+    const float t136 = t4 * t23;
+    const float t137 = t27 * t54;
+    const float t138 = 2.0f * t26;
+    const float t139 = t138 - t53;
+    const float t140 = t3 * t139;
+    const float t141 = t3 * t140;
+    const float t142 = t137 + t141;
+    const float t143 = phi_dot * t14;
+    const float t144 = t142 * t143;
+    const float t145 = t136 * t144;
+    const float t146 = t135 * t145;
+    const float t147 = t35 * t52;
+    const float t148 = t28 * t147;
+    const float t149 = t26 * t148;
+    const float t150 = 1.0f - t18;
+    const float t151 = t53 * t150;
+    const float t152 = t26 + t151;
+    const float t153 = t3 * t152;
+    const float t154 = t5 * t153;
+    const float t155 = m_2 * t23;
+    const float t156 = t154 + t155;
+    const float t157 = t4 * t156;
+    const float t158 = t6 * t103;
+    const float t159 = m_2 * t158;
+    const float t160 = t157 + t159;
+    const float t161 = t4 * t160;
+    const float t162 = t59 * t58;
+    const float t163 = t161 - t162;
+    const float t164 = t4 * t163;
+    const float t165 = t6 * t112;
+    const float t166 = m_2 * t165;
+    const float t167 = t164 + t166;
+    const float t168 = t35 * t167;
+    const float t169 = t75 + t168;
+    const float t170 = t18 * t169;
+    const float t171 = t149 + t170;
+    const float t172 = t4 * t171;
+    const float t173 = t172 - t81;
+    const float t174 = t4 * t173;
+    const float t175 = t3 * t73;
+    const float t176 = t3 * t175;
+    const float t177 = t14 * t176;
+    const float t178 = t26 * t177;
+    const float t179 = t174 - t178;
+    const float t180 = t51 * t179;
+    const float t181 = t22 * t180;
+    const float t182 = t51 * t131;
+    const float t183 = t22 * t182;
+    const float t184 = t4 * t51;
+    const float t185 = t184 * t144;
+    const float t186 = t135 * t185;
+    const float t187 = L / t21;
+    const float t188 = t4 * t27;
+    const float t189 = t4 * t188;
+    const float t190 = 3.0f * t7;
+    const float t191 = t189 + t190;
+    const float t192 = t35 * t191;
+    const float t193 = t5 * t192;
+    const float t194 = t4 * t39;
+    const float t195 = t14 * t194;
+    const float t196 = t193 - t195;
+    const float t197 = t4 * t196;
+    const float t198 = 2.0f * t40;
+    const float t199 = t197 + t198;
+    const float t200 = t26 * t199;
+    const float t201 = 2.0f - t45;
+    const float t202 = t201 - t27;
+    const float t203 = t53 * t202;
+    const float t204 = t26 * t28;
+    const float t205 = t203 + t204;
+    const float t206 = t5 * t205;
+    const float t207 = m_2 * t91;
+    const float t208 = t206 + t207;
+    const float t209 = t4 * t208;
+    const float t210 = t88 * t103;
+    const float t211 = m_2 * t210;
+    const float t212 = t209 + t211;
+    const float t213 = t4 * t212;
+    const float t214 = t5 * t58;
+    const float t215 = t213 - t214;
+    const float t216 = t4 * t215;
+    const float t217 = t88 * t112;
+    const float t218 = m_2 * t217;
+    const float t219 = t216 + t218;
+    const float t220 = t35 * t219;
+    const float t221 = t14 * t175;
+    const float t222 = t72 * t221;
+    const float t223 = t220 + t222;
+    const float t224 = t18 * t223;
+    const float t225 = t200 + t224;
+    const float t226 = t4 * t225;
+    const float t227 = t5 * t35;
+    const float t228 = t26 * t227;
+    const float t229 = t226 - t228;
+    const float t230 = t4 * t229;
+    const float t231 = t26 * t40;
+    const float t232 = t230 - t231;
+    const float t233 = t187 * t232;
+    const float t234 = t6 * t35;
+    const float t235 = t26 * t234;
+    const float t236 = t14 * t117;
+    const float t237 = 2.0f * t236;
+    const float t238 = t6 * t192;
+    const float t239 = t4 * t117;
+    const float t240 = t14 * t239;
+    const float t241 = t238 + t240;
+    const float t242 = t4 * t241;
+    const float t243 = t237 - t242;
+    const float t244 = t26 * t243;
+    const float t245 = t26 * t46;
+    const float t246 = t27 + t103;
+    const float t247 = t53 * t246;
+    const float t248 = t245 + t247;
+    const float t249 = t6 * t248;
+    const float t250 = m_2 * t52;
+    const float t251 = t249 + t250;
     const float t252 = t4 * t251;
-    const float t253 = t6 * t49;
-    const float t254 = t252 + t253;
-    const float t255 = t4 * t254;
-    const float t256 = t50 * t107;
-    const float t257 = m_2 * t256;
-    const float t258 = t255 + t257;
-    const float t259 = t30 * t258;
-    const float t260 = t14 * t129;
-    const float t261 = t63 * t260;
+    const float t253 = t59 * t103;
+    const float t254 = m_2 * t253;
+    const float t255 = t252 + t254;
+    const float t256 = t4 * t255;
+    const float t257 = t6 * t58;
+    const float t258 = t256 + t257;
+    const float t259 = t4 * t258;
+    const float t260 = t59 * t112;
+    const float t261 = m_2 * t260;
     const float t262 = t259 + t261;
-    const float t263 = L * t262;
-    const float t264 = L * t263;
-    const float t265 = t14 * t112;
-    const float t266 = 2.0f * t265;
-    const float t267 = t6 * t222;
-    const float t268 = t4 * t112;
-    const float t269 = t14 * t268;
-    const float t270 = t267 + t269;
+    const float t263 = t35 * t262;
+    const float t264 = t14 * t127;
+    const float t265 = t72 * t264;
+    const float t266 = t263 + t265;
+    const float t267 = t18 * t266;
+    const float t268 = t244 + t267;
+    const float t269 = t4 * t268;
+    const float t270 = t235 + t269;
     const float t271 = t4 * t270;
-    const float t272 = t266 - t271;
-    const float t273 = t48 * t272;
-    const float t274 = t264 + t273;
-    const float t275 = t4 * t274;
-    const float t276 = t6 * t30;
-    const float t277 = t48 * t276;
-    const float t278 = t275 + t277;
-    const float t279 = t4 * t278;
-    const float t280 = t48 * t265;
-    const float t281 = t279 - t280;
-    const float t282 = t239 * t281;
-    const float t283 = t33 * t42;
-    const float t284 = t3 * t139;
-    const float t285 = t3 * t284;
-    const float t286 = t283 + t285;
-    const float t287 = t141 * t286;
-    const float t288 = t4 * t287;
-    const float t289 = t22 * t288;
-    const float t290 = t4 * t194;
-    const float t291 = t4 * t290;
-    const float t292 = (-1.0f) + t291;
-    const float t293 = t30 * t292;
-    const float t294 = t5 * t293;
-    const float t295 = t18 * t225;
-    const float t296 = t294 + t295;
-    const float t297 = t4 * t296;
-    const float t298 = t297 - t213;
-    const float t299 = L * Theta_2;
-    const float t300 = t299 / t20;
-    const float t301 = t298 * t300;
-    const float t302 = t4 * t242;
-    const float t303 = t4 * t302;
-    const float t304 = 1.0f + t303;
-    const float t305 = t30 * t304;
-    const float t306 = t6 * t305;
-    const float t307 = t18 * t269;
-    const float t308 = t306 + t307;
-    const float t309 = t4 * t308;
-    const float t310 = t309 - t260;
-    const float t311 = t300 * t310;
-    const float t312 = t3 * t144;
-    const float t313 = Theta_2 * t18;
-    const float t314 = t313 / t19;
-    const float t315 = t312 * t314;
-    const float t316 = 2.0f * t315;
-    float rest = t88 - t88;
-    rest += t135 - t135;
-    rest += t151 - t151;
-    rest += t187 - t187;
-    rest += t189 - t189;
-    rest += t192 - t192;
-    rest += t240 - t240;
-    rest += t282 - t282;
-    rest += t289 - t289;
+    const float t272 = t26 * t236;
+    const float t273 = t271 - t272;
+    const float t274 = t187 * t273;
+    const float t275 = phi_dot * t3;
+    const float t276 = t14 * t275;
+    const float t277 = t276 * t142;
+    const float t278 = t4 * t277;
+    const float t279 = t22 * t278;
+    const float t280 = t4 * t202;
+    const float t281 = t4 * t280;
+    const float t282 = (-1.0f) + t281;
+    const float t283 = t35 * t282;
+    const float t284 = t5 * t283;
+    const float t285 = t18 * t195;
+    const float t286 = t284 + t285;
+    const float t287 = t4 * t286;
+    const float t288 = t287 - t221;
+    const float t289 = L * Theta_2;
+    const float t290 = t289 / t20;
+    const float t291 = t288 * t290;
+    const float t292 = t4 * t246;
+    const float t293 = t4 * t292;
+    const float t294 = 1.0f + t293;
+    const float t295 = t35 * t294;
+    const float t296 = t6 * t295;
+    const float t297 = t18 * t240;
+    const float t298 = t296 + t297;
+    const float t299 = t4 * t298;
+    const float t300 = t299 - t264;
+    const float t301 = t290 * t300;
+    const float t302 = phi_dot * t4;
+    const float t303 = t3 * t302;
+    const float t304 = Theta_2 * t18;
+    const float t305 = t304 / t19;
+    const float t306 = t303 * t305;
+    const float t307 = 2.0f * t306;
+    float rest = t87 - t87;
+    rest += t133 - t133;
+    rest += t146 - t146;
+    rest += t181 - t181;
+    rest += t183 - t183;
+    rest += t186 - t186;
+    rest += t233 - t233;
+    rest += t274 - t274;
+    rest += t279 - t279;
+    rest += t291 - t291;
     rest += t301 - t301;
-    rest += t311 - t311;
-    rest += t316 - t316;
-    if (!(rest >= 0.0f)) {
+    rest += t307 - t307;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_tilde[0] = t88;
-    C_tilde[1] = t135;
-    C_tilde[2] = t151;
+    C_tilde[0] = t87;
+    C_tilde[1] = t133;
+    C_tilde[2] = t146;
     C_tilde[3] = 0.0f;
-    C_tilde[4] = t187;
-    C_tilde[5] = t189;
-    C_tilde[6] = t192;
+    C_tilde[4] = t181;
+    C_tilde[5] = t183;
+    C_tilde[6] = t186;
     C_tilde[7] = 0.0f;
-    C_tilde[8] = t240;
-    C_tilde[9] = t282;
-    C_tilde[10] = t289;
+    C_tilde[8] = t233;
+    C_tilde[9] = t274;
+    C_tilde[10] = t279;
     C_tilde[11] = 0.0f;
-    C_tilde[12] = t301;
-    C_tilde[13] = t311;
-    C_tilde[14] = t316;
+    C_tilde[12] = t291;
+    C_tilde[13] = t301;
+    C_tilde[14] = t307;
     C_tilde[15] = 0.0f;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1917,19 +1902,18 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix_f(const float q
     const float t25 = t4 * t24;
     const float t26 = t4 * t25;
     const float t27 = t21 + t26;
-    const float t28 = 1.0f / t9;
-    const float t29 = t27 * t28;
-    const float t30 = t3 / t8;
-    const float t31 = Theta_2 * t30;
-    float rest = t29 - t29;
-    rest += t31 - t31;
+    const float t28 = t27 / t9;
+    const float t29 = t3 / t8;
+    const float t30 = Theta_2 * t29;
+    float rest = t28 - t28;
+    rest += t30 - t30;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    G_bar[0] = t29;
-    G_bar[1] = t31;
-    G_bar[2] = t31;
+    G_bar[0] = t28;
+    G_bar[1] = t30;
+    G_bar[2] = t30;
     G_bar[3] = Theta_2;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1974,79 +1958,74 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
         }
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t18 = t5 * t4;
-    const float t19 = t3 * t18;
-    const float m_1 = p->m_1;
+    const float t18 = L * L;
     const float m_2 = p->m_2;
-    const float t20 = m_1 + m_2;
-    const float t21 = L * L;
-    const float t22 = m_2 * t21;
+    const float t19 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 + t22;
+    const float t20 = Theta_1 + t19;
     const float Theta_2 = p->Theta_2;
-    const float t24 = Theta_2 + t23;
-    const float t25 = t20 + t24;
-    const float t26 = t19 * t25;
-    const float t27 = t3 * t26;
-    const float t28 = t20 * t21;
-    const float t29 = t4 * t18;
-    const float t30 = t4 * t29;
-    const float t31 = t28 * t30;
-    const float t32 = t27 + t31;
-    const float t33 = L * t32;
-    const float t34 = L * t33;
-    const float t35 = t4 * t4;
-    const float t36 = t35 + (-2.0f);
-    const float t37 = t18 * t36;
-    const float t38 = t24 * t37;
-    const float t39 = t34 + t38;
-    const float theta_dot = qd[2];
-    const float t40 = theta_dot * t39;
+    const float t21 = Theta_2 + t20;
     const float phi_dot = qd[3];
-    const float t41 = phi_dot * t6;
-    const float t42 = t3 * t41;
-    const float t43 = (-1.0f) + t21;
-    const float t44 = t42 * t43;
-    const float t45 = t24 * t44;
-    const float t46 = t40 + t45;
-    const float t47 = t4 * t46;
-    const float t48 = theta_dot * t5;
-    const float t49 = t24 * t48;
-    const float t50 = t47 + t49;
-    const float t51 = t4 * t50;
-    const float t52 = t24 * t42;
-    const float t53 = t51 + t52;
-    const float t54 = t6 * t21;
-    const float t55 = t6 * t54;
-    const float t56 = t6 * t55;
-    const float t57 = t4 * t56;
-    const float t58 = t4 * t57;
+    const float t22 = phi_dot * t6;
+    const float t23 = t3 * t22;
+    const float t24 = t21 * t23;
+    const float theta_dot = qd[2];
+    const float t25 = theta_dot * t5;
+    const float t26 = t21 * t25;
+    const float t27 = (-1.0f) + t18;
+    const float t28 = t23 * t27;
+    const float t29 = t21 * t28;
+    const float t30 = t5 * t4;
+    const float t31 = t4 * t4;
+    const float t32 = t31 + (-2.0f);
+    const float t33 = t30 * t32;
+    const float t34 = t21 * t33;
+    const float m_1 = p->m_1;
+    const float t35 = m_1 + m_2;
+    const float t36 = t35 * t18;
+    const float t37 = t31 * t36;
+    const float t38 = t35 + t21;
+    const float t39 = t7 * t38;
+    const float t40 = t37 + t39;
+    const float t41 = t30 * t40;
+    const float t42 = t18 * t41;
+    const float t43 = t34 + t42;
+    const float t44 = theta_dot * t43;
+    const float t45 = t29 + t44;
+    const float t46 = t4 * t45;
+    const float t47 = t26 + t46;
+    const float t48 = t4 * t47;
+    const float t49 = t24 + t48;
+    const float t50 = t6 * t18;
+    const float t51 = t6 * t50;
+    const float t52 = t6 * t51;
+    const float t53 = t4 * t52;
+    const float t54 = t4 * t53;
+    const float t55 = t4 * t54;
+    const float t56 = t14 * t55;
+    const float t57 = t49 / t56;
+    const float t58 = t6 * t12;
     const float t59 = t4 * t58;
     const float t60 = t14 * t59;
-    const float t61 = 1.0f / t60;
-    const float t62 = t53 * t61;
-    const float t63 = t19 * t43;
-    const float t64 = theta_dot * t63;
-    const float t65 = t41 * t43;
-    const float t66 = t64 + t65;
+    const float t61 = Theta_2 / t60;
+    const float t62 = t3 * t25;
+    const float t63 = t4 * t25;
+    const float t64 = t3 * t63;
+    const float t65 = t22 + t64;
+    const float t66 = t27 * t65;
     const float t67 = t4 * t66;
-    const float t68 = t3 * t48;
-    const float t69 = t67 + t68;
-    const float t70 = t4 * t69;
-    const float t71 = t41 + t70;
-    const float t72 = t6 * t12;
-    const float t73 = t4 * t72;
-    const float t74 = t14 * t73;
-    const float t75 = Theta_2 / t74;
-    const float t76 = t71 * t75;
-    float rest = t62 - t62;
-    rest += t76 - t76;
-    if (!(rest >= 0.0f)) {
+    const float t68 = t62 + t67;
+    const float t69 = t4 * t68;
+    const float t70 = t22 + t69;
+    const float t71 = t61 * t70;
+    float rest = t57 - t57;
+    rest += t71 - t71;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_bar[0] = t62;
+    C_bar[0] = t57;
     C_bar[1] = 0.0f;
-    C_bar[2] = t76;
+    C_bar[2] = t71;
     C_bar[3] = 0.0f;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -2108,7 +2087,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix_f(const floa
     const float t18 = t4 * t6;
     const float t19 = 1.0f / t18;
     float rest = t19 - t19;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_bar[0] = t19;
@@ -2169,20 +2148,19 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q
     const float t29 = t5 * t4;
     const float t30 = t25 * t29;
     const float t31 = t18 * t30;
-    const float t32 = 1.0f / t14;
-    const float t33 = t3 * t25;
-    const float t34 = t32 * t33;
+    const float t32 = t3 * t25;
+    const float t33 = t32 / t14;
     const float phi_dot = qd[3];
     float rest = t28 - t28;
     rest += t31 - t31;
-    rest += t34 - t34;
+    rest += t33 - t33;
     rest += phi_dot - phi_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     qd_admissible[0] = t28;
     qd_admissible[1] = t31;
-    qd_admissible[2] = t34;
+    qd_admissible[2] = t33;
     qd_admissible[3] = phi_dot;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -2299,30 +2277,29 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t86 = t27 * t85;
     const float t87 = t82 - t86;
     const float t88 = t58 * t87;
-    const float t89 = 1.0f / t56;
-    const float t90 = t14 * t61;
-    const float t91 = t3 * t90;
-    const float t92 = phi_dot * t27;
-    const float t93 = L * t92;
-    const float t94 = t91 + t93;
-    const float t95 = t4 * t94;
-    const float t96 = L * t95;
-    const float t97 = theta_ddot * t3;
-    const float t98 = t3 * t97;
-    const float t99 = t14 * t98;
-    const float t100 = t96 + t99;
-    const float t101 = t89 * t100;
+    const float t89 = t14 * t61;
+    const float t90 = t3 * t89;
+    const float t91 = phi_dot * t27;
+    const float t92 = L * t91;
+    const float t93 = t90 + t92;
+    const float t94 = t4 * t93;
+    const float t95 = L * t94;
+    const float t96 = theta_ddot * t3;
+    const float t97 = t3 * t96;
+    const float t98 = t14 * t97;
+    const float t99 = t95 + t98;
+    const float t100 = t99 / t56;
     const float phi_ddot = qdd[3];
     float rest = t59 - t59;
     rest += t88 - t88;
-    rest += t101 - t101;
+    rest += t100 - t100;
     rest += phi_ddot - phi_ddot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
     qdd_admissible[1] = t88;
-    qdd_admissible[2] = t101;
+    qdd_admissible[2] = t100;
     qdd_admissible[3] = phi_ddot;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -2337,7 +2314,7 @@ front_car_wheelset_status front_car_wheelset_projected_configuration_f(const flo
     rest += y - y;
     rest += theta - theta;
     rest += phi - phi;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2381,37 +2358,34 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_f(const float q[4]
     const float t15 = t11 - t14;
     const float t4 = cosine[0];
     const float t16 = t4 * t15;
-    const float t17 = 1.0f / L;
-    const float t18 = y_ddot * t6;
-    const float t19 = x_ddot * t5;
-    const float t20 = t18 - t19;
-    const float t21 = m_2 * t20;
-    const float t22 = L * t21;
-    const float t23 = L * L;
-    const float t24 = m_2 * t23;
-    const float Theta_1 = p->Theta_1;
-    const float t25 = Theta_1 + t24;
-    const float Theta_2 = p->Theta_2;
-    const float t26 = Theta_2 + t25;
-    const float theta_ddot = qdd[2];
-    const float t27 = theta_ddot * t26;
+    const float t17 = y_ddot * t6;
+    const float t18 = x_ddot * t5;
+    const float t19 = t17 - t18;
+    const float t20 = t12 * t19;
     const float phi_ddot = qdd[3];
-    const float t28 = phi_ddot * Theta_2;
-    const float t29 = t27 + t28;
-    const float t30 = t22 + t29;
-    const float t31 = t17 * t30;
+    const float Theta_2 = p->Theta_2;
+    const float t21 = phi_ddot * Theta_2;
+    const float t22 = L * t12;
+    const float Theta_1 = p->Theta_1;
+    const float t23 = Theta_1 + t22;
+    const float t24 = Theta_2 + t23;
+    const float theta_ddot = qdd[2];
+    const float t25 = theta_ddot * t24;
+    const float t26 = t21 + t25;
+    const float t27 = t20 + t26;
+    const float t28 = t27 / L;
     const float t3 = sine[0];
-    const float t32 = t3 * t31;
-    const float t33 = t16 + t32;
-    const float t34 = theta_ddot + phi_ddot;
-    const float t35 = Theta_2 * t34;
-    float rest = t33 - t33;
-    rest += t35 - t35;
-    if (!(rest >= 0.0f)) {
+    const float t29 = t3 * t28;
+    const float t30 = t16 + t29;
+    const float t31 = theta_ddot + phi_ddot;
+    const float t32 = Theta_2 * t31;
+    float rest = t30 - t30;
+    rest += t32 - t32;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    u[0] = t33;
-    u[1] = t35;
+    u[0] = t30;
+    u[1] = t32;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2459,7 +2433,7 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity_f(const float q[4
     const float phi_dot = qd[3];
     float rest = t13 - t13;
     rest += phi_dot - phi_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     nu[0] = t13;
@@ -2522,7 +2496,7 @@ front_car_wheelset_status front_car_wheelset_actuator_mass_matrix_f(const float 
     float rest = t29 - t29;
     rest += t30 - t30;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_nu[0] = t29;
@@ -2573,54 +2547,53 @@ front_car_wheelset_status front_car_wheelset_actuator_bias_f(const float q[4], c
         }
         return FRONT_CAR_WHEELSET_ACTUATION_RANK;
     }
-    const float t19 = L * L;
-    const float t20 = 1.0f / t19;
     const float phi_dot = qd[3];
-    const float t21 = phi_dot * t4;
-    const float t22 = t3 * t21;
+    const float t19 = phi_dot * t4;
+    const float t20 = t3 * t19;
+    const float t21 = L * L;
     const float m_2 = p->m_2;
-    const float t23 = m_2 * t19;
+    const float t22 = m_2 * t21;
     const float Theta_1 = p->Theta_1;
-    const float t24 = Theta_1 + t23;
+    const float t23 = Theta_1 + t22;
     const float Theta_2 = p->Theta_2;
-    const float t25 = Theta_2 + t24;
+    const float t24 = Theta_2 + t23;
     const float theta_dot = qd[2];
-    const float t26 = theta_dot * t3;
-    const float t27 = t25 * t26;
+    const float t25 = theta_dot * t3;
+    const float t26 = t24 * t25;
     const float m_1 = p->m_1;
-    const float t28 = m_1 + m_2;
-    const float t29 = L * t3;
-    const float t30 = theta_dot * t29;
-    const float t31 = t6 * t4;
-    const float t32 = t5 * t3;
-    const float t33 = t31 - t32;
+    const float t27 = m_1 + m_2;
+    const float t28 = L * t3;
+    const float t29 = theta_dot * t28;
+    const float t30 = t6 * t4;
+    const float t31 = t5 * t3;
+    const float t32 = t30 - t31;
     const float x_dot = qd[0];
-    const float t34 = x_dot * t33;
-    const float t35 = t5 * t4;
-    const float t36 = t6 * t3;
-    const float t37 = t35 + t36;
+    const float t33 = x_dot * t32;
+    const float t34 = t5 * t4;
+    const float t35 = t6 * t3;
+    const float t36 = t34 + t35;
     const float y_dot = qd[1];
-    const float t38 = y_dot * t37;
-    const float t39 = t34 + t38;
-    const float t40 = t30 + t39;
-    const float t41 = t28 * t40;
-    const float t42 = L * t41;
-    const float t43 = t27 - t42;
-    const float t44 = L * t43;
-    const float t45 = t25 * t39;
-    const float t46 = t44 + t45;
-    const float t47 = t22 * t46;
-    const float t48 = t20 * t47;
-    const float t49 = t21 / L;
-    const float t50 = t49 * t40;
-    const float t51 = Theta_2 * t50;
-    float rest = t48 - t48;
-    rest += t51 - t51;
-    if (!(rest >= 0.0f)) {
+    const float t37 = y_dot * t36;
+    const float t38 = t33 + t37;
+    const float t39 = t29 + t38;
+    const float t40 = t27 * t39;
+    const float t41 = L * t40;
+    const float t42 = t26 - t41;
+    const float t43 = L * t42;
+    const float t44 = t24 * t38;
+    const float t45 = t43 + t44;
+    const float t46 = t20 * t45;
+    const float t47 = t46 / t21;
+    const float t48 = t19 / L;
+    const float t49 = t48 * t39;
+    const float t50 = Theta_2 * t49;
+    float rest = t47 - t47;
+    rest += t50 - t50;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    bias_nu[0] = t48;
-    bias_nu[1] = t51;
+    bias_nu[0] = t47;
+    bias_nu[1] = t50;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2658,16 +2631,16 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -2710,29 +2683,29 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t57 = t53 + t56;
     const float t58 = t51 * t57;
     const float t59 = t50 * t58;
-    const float t60 = L * L;
-    const float t61 = m_2 * t60;
-    const float t62 = Theta_1 + t61;
-    const float t63 = t3 * t62;
-    const float t64 = Theta_2 * t63;
     const float phi_dot = qd[3];
-    const float t65 = phi_dot * t3;
-    const float t66 = L * t65;
-    const float t67 = theta_dot * t66;
-    const float t68 = theta_dot + phi_dot;
-    const float t69 = t6 * t4;
-    const float t70 = t5 * t3;
-    const float t71 = t69 - t70;
-    const float t72 = t68 * t71;
-    const float t73 = x_dot * t72;
-    const float t74 = t68 * t55;
-    const float t75 = y_dot * t74;
-    const float t76 = t73 + t75;
-    const float t77 = t67 + t76;
-    const float t78 = t6 * t77;
-    const float t79 = t49 * t71;
-    const float t80 = t78 - t79;
-    const float t81 = t64 * t80;
+    const float t60 = phi_dot * t3;
+    const float t61 = L * t60;
+    const float t62 = theta_dot * t61;
+    const float t63 = theta_dot + phi_dot;
+    const float t64 = t6 * t4;
+    const float t65 = t5 * t3;
+    const float t66 = t64 - t65;
+    const float t67 = t63 * t66;
+    const float t68 = x_dot * t67;
+    const float t69 = t63 * t55;
+    const float t70 = y_dot * t69;
+    const float t71 = t68 + t70;
+    const float t72 = t62 + t71;
+    const float t73 = t6 * t72;
+    const float t74 = t49 * t66;
+    const float t75 = t73 - t74;
+    const float t76 = L * m_2;
+    const float t77 = L * t76;
+    const float t78 = Theta_1 + t77;
+    const float t79 = t3 * t78;
+    const float t80 = Theta_2 * t79;
+    const float t81 = t75 * t80;
     const float t82 = t59 + t81;
     const float t83 = t44 * t82;
     const float T = u[1];
@@ -2742,82 +2715,81 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float K_f = u[0];
     const float t87 = K_f * t86;
     const float t88 = t3 * t87;
-    const float t89 = L * m_2;
-    const float t90 = theta_dot * t89;
-    const float t91 = t90 * t47;
-    const float t92 = K_f * t71;
-    const float t93 = t91 + t92;
-    const float t94 = t12 * t93;
-    const float t95 = t90 * t45;
-    const float t96 = K_f * t55;
-    const float t97 = t95 + t96;
-    const float t98 = t9 * t97;
-    const float t99 = t94 + t98;
-    const float t100 = t88 + t99;
-    const float t101 = Theta_2 * t100;
-    const float t102 = t85 - t101;
-    const float t103 = t12 * t102;
-    const float t104 = t44 * t103;
-    const float t105 = t83 + t104;
-    const float t106 = -t105;
-    const float t107 = t5 * t77;
-    const float t108 = t49 * t55;
-    const float t109 = t107 - t108;
-    const float t110 = t64 * t109;
-    const float t111 = m_1 * t69;
-    const float t112 = m_2 * t71;
-    const float t113 = t111 + t112;
-    const float t114 = t51 * t113;
-    const float t115 = t50 * t114;
-    const float t116 = t110 - t115;
-    const float t117 = t44 * t116;
-    const float t118 = t9 * t102;
-    const float t119 = t44 * t118;
-    const float t120 = t117 + t119;
-    const float t121 = -t120;
-    const float t122 = t79 - t78;
-    const float t123 = t114 * t122;
-    const float t124 = t58 * t109;
-    const float t125 = t123 - t124;
-    const float t126 = t44 * t125;
-    const float t127 = t3 * t102;
-    const float t128 = t44 * t127;
-    const float t129 = t126 + t128;
-    const float t130 = -t129;
-    const float t131 = m_1 + m_2;
-    const float t132 = T * t12;
-    const float t133 = t131 * t132;
-    const float t134 = t5 * t89;
-    const float t135 = t134 * t84;
-    const float t136 = t133 - t135;
-    const float t137 = t12 * t136;
-    const float t138 = T * t9;
-    const float t139 = t131 * t138;
-    const float t140 = t6 * t89;
-    const float t141 = t140 * t84;
-    const float t142 = t139 + t141;
-    const float t143 = t9 * t142;
-    const float t144 = t137 + t143;
-    const float t145 = Theta_2 + t62;
-    const float t146 = t145 * t84;
-    const float t147 = t146 - t101;
-    const float t148 = t3 * t147;
-    const float t149 = t144 + t148;
-    const float t150 = t44 * t149;
-    const float t151 = t124 - t123;
-    const float t152 = t44 * t151;
-    const float t153 = t150 - t152;
-    float rest = t106 - t106;
-    rest += t121 - t121;
-    rest += t130 - t130;
-    rest += t153 - t153;
-    if (!(rest >= 0.0f)) {
+    const float t89 = theta_dot * t76;
+    const float t90 = t89 * t47;
+    const float t91 = K_f * t66;
+    const float t92 = t90 + t91;
+    const float t93 = t12 * t92;
+    const float t94 = t89 * t45;
+    const float t95 = K_f * t55;
+    const float t96 = t94 + t95;
+    const float t97 = t9 * t96;
+    const float t98 = t93 + t97;
+    const float t99 = t88 + t98;
+    const float t100 = Theta_2 * t99;
+    const float t101 = t85 - t100;
+    const float t102 = t12 * t101;
+    const float t103 = t102 * t44;
+    const float t104 = t83 + t103;
+    const float t105 = -t104;
+    const float t106 = t5 * t72;
+    const float t107 = t49 * t55;
+    const float t108 = t106 - t107;
+    const float t109 = t108 * t80;
+    const float t110 = m_1 * t64;
+    const float t111 = m_2 * t66;
+    const float t112 = t110 + t111;
+    const float t113 = t51 * t112;
+    const float t114 = t50 * t113;
+    const float t115 = t109 - t114;
+    const float t116 = t44 * t115;
+    const float t117 = t9 * t101;
+    const float t118 = t117 * t44;
+    const float t119 = t116 + t118;
+    const float t120 = -t119;
+    const float t121 = t74 - t73;
+    const float t122 = t113 * t121;
+    const float t123 = t58 * t108;
+    const float t124 = t122 - t123;
+    const float t125 = t124 * t44;
+    const float t126 = t3 * t101;
+    const float t127 = t126 * t44;
+    const float t128 = t125 + t127;
+    const float t129 = -t128;
+    const float t130 = m_1 + m_2;
+    const float t131 = T * t12;
+    const float t132 = t130 * t131;
+    const float t133 = t5 * t76;
+    const float t134 = t133 * t84;
+    const float t135 = t132 - t134;
+    const float t136 = t12 * t135;
+    const float t137 = T * t9;
+    const float t138 = t130 * t137;
+    const float t139 = t6 * t76;
+    const float t140 = t139 * t84;
+    const float t141 = t138 + t140;
+    const float t142 = t9 * t141;
+    const float t143 = t136 + t142;
+    const float t144 = Theta_2 + t78;
+    const float t145 = t84 * t144;
+    const float t146 = t145 - t100;
+    const float t147 = t3 * t146;
+    const float t148 = t143 + t147;
+    const float t149 = t44 * t148;
+    const float t150 = t123 - t122;
+    const float t151 = t150 * t44;
+    const float t152 = t149 - t151;
+    float rest = t105 - t105;
+    rest += t120 - t120;
+    rest += t129 - t129;
+    rest += t152 - t152;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    qdd[0] = t106;
-    qdd[1] = t121;
-    qdd[2] = t130;
-    qdd[3] = t153;
+    qdd[0] = t105;
+    qdd[1] = t120;
+    qdd[2] = t129;
+    qdd[3] = t152;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2855,16 +2827,16 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     if (!(t14 > t17)) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -2917,99 +2889,98 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t66 = t64 + t65;
     const float t67 = t8 * t66;
     const float t68 = t67 * t52;
-    const float t69 = L * L;
-    const float t70 = m_2 * t69;
-    const float t71 = Theta_1 + t70;
-    const float t72 = t3 * t71;
-    const float t73 = Theta_2 * t72;
     const float phi_dot = qd[3];
-    const float t74 = phi_dot * t3;
-    const float t75 = L * t74;
-    const float t76 = theta_dot * t75;
-    const float t77 = theta_dot + phi_dot;
-    const float t78 = t77 * t59;
-    const float t79 = x_dot * t78;
-    const float t80 = t77 * t49;
-    const float t81 = y_dot * t80;
-    const float t82 = t79 + t81;
-    const float t83 = t76 + t82;
-    const float t84 = t6 * t83;
-    const float t85 = t66 * t59;
-    const float t86 = t84 - t85;
-    const float t87 = t73 * t86;
-    const float t88 = t68 + t87;
-    const float t89 = t44 * t88;
-    const float t90 = t62 * t89;
-    const float t91 = t5 * t53;
-    const float t92 = m_1 * t57;
-    const float t93 = m_2 * t59;
-    const float t94 = t92 + t93;
-    const float t95 = t45 * t94;
-    const float t96 = t85 - t84;
-    const float t97 = t95 * t96;
-    const float t98 = t5 * t83;
-    const float t99 = t66 * t49;
-    const float t100 = t98 - t99;
-    const float t101 = t52 * t100;
-    const float t102 = t97 - t101;
-    const float t103 = t44 * t102;
-    const float t104 = t91 * t103;
-    const float t105 = t90 - t104;
-    const float t106 = t61 + t105;
-    const float t107 = t52 * t106;
-    const float t108 = t54 * t63;
-    const float t109 = K_f * t49;
-    const float t110 = t108 + t109;
-    const float t111 = t73 * t100;
-    const float t112 = t67 * t95;
-    const float t113 = t111 - t112;
-    const float t114 = t44 * t113;
-    const float t115 = t62 * t114;
-    const float t116 = t6 * t53;
-    const float t117 = t116 * t103;
-    const float t118 = t115 + t117;
-    const float t119 = t110 + t118;
-    const float t120 = t95 * t119;
-    const float t121 = t107 - t120;
-    const float t122 = t8 * t121;
+    const float t69 = phi_dot * t3;
+    const float t70 = L * t69;
+    const float t71 = theta_dot * t70;
+    const float t72 = theta_dot + phi_dot;
+    const float t73 = t72 * t59;
+    const float t74 = x_dot * t73;
+    const float t75 = t72 * t49;
+    const float t76 = y_dot * t75;
+    const float t77 = t74 + t76;
+    const float t78 = t71 + t77;
+    const float t79 = t6 * t78;
+    const float t80 = t66 * t59;
+    const float t81 = t79 - t80;
+    const float t82 = L * t53;
+    const float t83 = Theta_1 + t82;
+    const float t84 = t3 * t83;
+    const float t85 = Theta_2 * t84;
+    const float t86 = t81 * t85;
+    const float t87 = t68 + t86;
+    const float t88 = t44 * t87;
+    const float t89 = t62 * t88;
+    const float t90 = t5 * t53;
+    const float t91 = m_1 * t57;
+    const float t92 = m_2 * t59;
+    const float t93 = t91 + t92;
+    const float t94 = t45 * t93;
+    const float t95 = t80 - t79;
+    const float t96 = t94 * t95;
+    const float t97 = t5 * t78;
+    const float t98 = t66 * t49;
+    const float t99 = t97 - t98;
+    const float t100 = t52 * t99;
+    const float t101 = t96 - t100;
+    const float t102 = t101 * t44;
+    const float t103 = t90 * t102;
+    const float t104 = t89 - t103;
+    const float t105 = t61 + t104;
+    const float t106 = t52 * t105;
+    const float t107 = t54 * t63;
+    const float t108 = K_f * t49;
+    const float t109 = t107 + t108;
+    const float t110 = t99 * t85;
+    const float t111 = t67 * t94;
+    const float t112 = t110 - t111;
+    const float t113 = t44 * t112;
+    const float t114 = t62 * t113;
+    const float t115 = t6 * t53;
+    const float t116 = t115 * t102;
+    const float t117 = t114 + t116;
+    const float t118 = t109 + t117;
+    const float t119 = t94 * t118;
+    const float t120 = t106 - t119;
+    const float t121 = t8 * t120;
     const float T = u[1];
-    const float t123 = T * t95;
-    const float t124 = L * t3;
-    const float t125 = K_f * t124;
-    const float t126 = Theta_2 + t71;
-    const float t127 = t126 * t103;
-    const float t128 = t53 * t66;
-    const float t129 = t127 - t128;
-    const float t130 = t101 - t97;
-    const float t131 = t44 * t130;
-    const float t132 = Theta_2 * t131;
-    const float t133 = t129 + t132;
-    const float t134 = t125 + t133;
-    const float t135 = t95 * t134;
-    const float t136 = t123 - t135;
-    const float t137 = t73 * t106;
-    const float t138 = t136 + t137;
-    const float t139 = t59 * t138;
-    const float t140 = t122 - t139;
-    const float t141 = T * t52;
-    const float t142 = t52 * t134;
-    const float t143 = t141 - t142;
-    const float t144 = t73 * t119;
-    const float t145 = t143 + t144;
-    const float t146 = t49 * t145;
-    const float t147 = t140 - t146;
-    const float t148 = t44 * t147;
-    const float t149 = t6 * t138;
-    const float t150 = t5 * t145;
-    const float t151 = t149 + t150;
-    const float t152 = t44 * t151;
-    float rest = t148 - t148;
-    rest += t152 - t152;
-    if (!(rest >= 0.0f)) {
+    const float t122 = T * t94;
+    const float t123 = L * t3;
+    const float t124 = K_f * t123;
+    const float t125 = Theta_2 + t83;
+    const float t126 = t125 * t102;
+    const float t127 = t53 * t66;
+    const float t128 = t126 - t127;
+    const float t129 = t100 - t96;
+    const float t130 = t129 * t44;
+    const float t131 = Theta_2 * t130;
+    const float t132 = t128 + t131;
+    const float t133 = t124 + t132;
+    const float t134 = t94 * t133;
+    const float t135 = t122 - t134;
+    const float t136 = t85 * t105;
+    const float t137 = t135 + t136;
+    const float t138 = t59 * t137;
+    const float t139 = t121 - t138;
+    const float t140 = T * t52;
+    const float t141 = t52 * t133;
+    const float t142 = t140 - t141;
+    const float t143 = t85 * t118;
+    const float t144 = t142 + t143;
+    const float t145 = t49 * t144;
+    const float t146 = t139 - t145;
+    const float t147 = t44 * t146;
+    const float t148 = t6 * t137;
+    const float t149 = t5 * t144;
+    const float t150 = t148 + t149;
+    const float t151 = t44 * t150;
+    float rest = t147 - t147;
+    rest += t151 - t151;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t148;
-    lambda_B[1] = t152;
+    lambda_B[0] = t147;
+    lambda_B[1] = t151;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -3022,45 +2993,44 @@ front_car_wheelset_status front_car_wheelset_energy_f(const float q[4], const fl
     float t2;
     float t3;
     front_car_wheelset_sincos_f(theta, &t2, &t3);
+    const float theta_dot = qd[2];
+    const float phi_dot = qd[3];
+    const float t4 = theta_dot + phi_dot;
+    const float t5 = t4 * t4;
+    const float Theta_2 = p->Theta_2;
+    const float t6 = Theta_2 * t5;
+    const float t7 = 0.5f * t6;
     const float m_1 = p->m_1;
     const float m_2 = p->m_2;
-    const float t4 = m_1 + m_2;
+    const float t8 = m_1 + m_2;
     const float x_dot = qd[0];
-    const float t5 = x_dot * x_dot;
+    const float t9 = x_dot * x_dot;
     const float y_dot = qd[1];
-    const float t6 = y_dot * y_dot;
-    const float t7 = t5 + t6;
-    const float t8 = t4 * t7;
-    const float t9 = 0.5f * t8;
+    const float t10 = y_dot * y_dot;
+    const float t11 = t9 + t10;
+    const float t12 = t8 * t11;
+    const float t13 = 0.5f * t12;
     const float L = p->L;
-    const float t10 = L * m_2;
-    const float theta_dot = qd[2];
-    const float t11 = theta_dot * t10;
-    const float t12 = y_dot * t3;
-    const float t13 = x_dot * t2;
-    const float t14 = t12 - t13;
-    const float t15 = t11 * t14;
-    const float t16 = t9 + t15;
-    const float t17 = L * L;
-    const float t18 = m_2 * t17;
+    const float t14 = L * m_2;
+    const float t15 = theta_dot * t14;
+    const float t16 = y_dot * t3;
+    const float t17 = x_dot * t2;
+    const float t18 = t16 - t17;
+    const float t19 = t15 * t18;
+    const float t20 = t13 + t19;
+    const float t21 = theta_dot * theta_dot;
+    const float t22 = L * t14;
     const float Theta_1 = p->Theta_1;
-    const float t19 = Theta_1 + t18;
-    const float t20 = theta_dot * theta_dot;
-    const float t21 = t19 * t20;
-    const float t22 = 0.5f * t21;
-    const float t23 = t16 + t22;
-    const float phi_dot = qd[3];
-    const float t24 = theta_dot + phi_dot;
-    const float t25 = t24 * t24;
-    const float Theta_2 = p->Theta_2;
-    const float t26 = Theta_2 * t25;
-    const float t27 = 0.5f * t26;
-    const float t28 = t23 + t27;
-    float rest = t28 - t28;
-    if (!(rest >= 0.0f)) {
+    const float t23 = Theta_1 + t22;
+    const float t24 = t21 * t23;
+    const float t25 = 0.5f * t24;
+    const float t26 = t20 + t25;
+    const float t27 = t7 + t26;
+    float rest = t27 - t27;
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    T_U[0] = t28;
+    T_U[0] = t27;
     T_U[1] = 0.0f;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -3087,7 +3057,7 @@ front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], con
     const float t9 = t7 * t7;
     const float t10 = 1.0f + t9;
     const float t11 = sqrtf(t10);
-    const float t12 = (t11 != 0.0f) ? (t8 / t11) : 0.0f;
+    const float t12 = ((t11 != 0.0f) ? t8 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t13 = t12 * t12;
     const float t5 = sine[1];
     const float t14 = t5 * t4;
@@ -3095,7 +3065,7 @@ front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], con
     const float t3 = sine[0];
     const float t15 = t6 * t3;
     const float t16 = t14 + t15;
-    const float t17 = (t11 != 0.0f) ? (t16 / t11) : 0.0f;
+    const float t17 = ((t11 != 0.0f) ? t16 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t18 = t6 * t6;
     const float t19 = t18 * t17;
     const float t20 = t17 * t19;
@@ -3104,7 +3074,7 @@ front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], con
     const float t23 = t5 * t3;
     const float t24 = t22 - t23;
     const float t25 = -t24;
-    const float t26 = (t11 != 0.0f) ? (t25 / t11) : 0.0f;
+    const float t26 = ((t11 != 0.0f) ? t25 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t27 = t5 * t26;
     const float t28 = t6 * t17;
     const float t29 = 2.0f * t28;
@@ -3127,13 +3097,13 @@ front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], con
     const float t46 = t35 * t35;
     const float t47 = t45 + t46;
     const float t48 = t44 + t47;
-    const float t49 = (t48 != 0.0f) ? (t43 / t48) : 0.0f;
+    const float t49 = ((t48 != 0.0f) ? t43 : 0.0f) / ((t48 != 0.0f) ? t48 : 1.0f);
     const float t50 = t34 * t34;
     const float t51 = 1.0f + t50;
-    const float t52 = (t51 != 0.0f) ? (t49 / t51) : 0.0f;
+    const float t52 = ((t51 != 0.0f) ? t49 : 0.0f) / ((t51 != 0.0f) ? t51 : 1.0f);
     float rest = t33 - t33;
     rest += t52 - t52;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     measure[0] = t33;

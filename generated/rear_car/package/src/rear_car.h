@@ -14,7 +14,7 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           2      5      0      0      1      0
+ * mass_matrix                           2      4      0      0      1      0
  * coriolis_matrix                       0      4      0      0      1      0
  * coriolis_force                        0      6      0      0      1      0
  * potential_force                       0      0      0      0      0      0
@@ -24,32 +24,32 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     49      3      0      2      0
- * weighted_nullspace_projector         14     53      4      0      2      0
+ * weighted_pseudoinverse               17     47      3      0      2      0
+ * weighted_nullspace_projector         14     52      4      0      2      0
  * control_matrix                        0      0      0      0      1      0
  * projected_control_matrix              3     11      3      0      2      0
  * projected_control_pseudoinverse       1      3      1      0      2      0
- * orthogonal_complement                 1      6      2      0      2      0
- * projected_mass_matrix                10     45      3      0      2      0
- * projected_coriolis_matrix            74    205      3      0      2      0
+ * orthogonal_complement                 1      5      2      0      2      0
+ * projected_mass_matrix                10     43      3      0      2      0
+ * projected_coriolis_matrix            73    195      3      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                   3     12      1      0      2      0
- * minimal_coriolis_matrix              13     41      1      0      2      0
+ * minimal_mass_matrix                   3     11      1      0      2      0
+ * minimal_coriolis_matrix              13     36      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      5      1      0      2      0
- * admissible_velocity                   5     21      2      0      2      0
- * admissible_acceleration              17     76      2      0      2      0
+ * admissible_velocity                   5     20      2      0      2      0
+ * admissible_acceleration              17     75      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                      7     17      1      0      2      0
+ * inverse_dynamics                      7     15      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                         5     16      1      0      2      0
- * forward_dynamics                     35     91      1      0      2      0
- * multipliers                          38     89      1      0      2      0
- * energy                                7     16      0      0      1      0
+ * forward_dynamics                     35     90      1      0      2      0
+ * multipliers                          38     88      1      0      2      0
+ * energy                                7     15      0      0      1      0
  * singularity                           9     20      4      1      2      0
  * (changes of sign are not counted)
  *
@@ -353,17 +353,16 @@ rear_car_status rear_car_mass_matrix(const double q[4], const rear_car_params *p
     const double t6 = t2 * t5;
     const double t7 = -t6;
     const double t8 = t3 * t5;
-    const double t9 = L * L;
-    const double t10 = m_2 * t9;
+    const double t9 = L * t5;
     const double Theta_1 = p->Theta_1;
-    const double t11 = Theta_1 + t10;
+    const double t10 = Theta_1 + t9;
     const double Theta_2 = p->Theta_2;
     double rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
-    rest += t11 - t11;
+    rest += t10 - t10;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     G[0] = t4;
@@ -376,7 +375,7 @@ rear_car_status rear_car_mass_matrix(const double q[4], const rear_car_params *p
     G[7] = 0.0;
     G[8] = t7;
     G[9] = t8;
-    G[10] = t11;
+    G[10] = t10;
     G[11] = 0.0;
     G[12] = 0.0;
     G[13] = 0.0;
@@ -405,7 +404,7 @@ rear_car_status rear_car_coriolis_matrix(const double q[4], const double qd[4], 
     const double t9 = -t8;
     double rest = t7 - t7;
     rest += t9 - t9;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     C[0] = 0.0;
@@ -449,7 +448,7 @@ rear_car_status rear_car_coriolis_force(const double q[4], const double qd[4], c
     const double t11 = -t10;
     double rest = t8 - t8;
     rest += t11 - t11;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -515,7 +514,7 @@ rear_car_status rear_car_constraint_jacobian(const double q[4], const rear_car_p
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     B[0] = t3;
@@ -569,7 +568,7 @@ rear_car_status rear_car_constraint_jacobian_dot(const double q[4], const double
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -646,7 +645,7 @@ rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_
     rest += t35 - t35;
     rest += t38 - t38;
     rest += t40 - t40;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -710,7 +709,7 @@ rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_p
     rest += t24 - t24;
     rest += t26 - t26;
     rest += t27 - t27;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -841,7 +840,7 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     rest += t70 - t70;
     rest += t80 - t80;
     rest += t84 - t84;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -897,16 +896,16 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = t4 * t4;
-    const double m_1 = p->m_1;
-    const double t19 = m_1 * t18;
-    const double m_2 = p->m_2;
-    const double t20 = m_2 + t19;
-    const double t21 = L * t20;
-    const double t22 = L * t21;
     const double Theta_1 = p->Theta_1;
-    const double t23 = Theta_1 * t7;
-    const double t24 = t22 + t23;
+    const double t18 = Theta_1 * t7;
+    const double t19 = L * L;
+    const double t20 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t21 = m_1 * t20;
+    const double m_2 = p->m_2;
+    const double t22 = m_2 + t21;
+    const double t23 = t19 * t22;
+    const double t24 = t18 + t23;
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
@@ -943,48 +942,46 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t54 = t6 * t4;
     const double t55 = t5 * t3;
     const double t56 = t54 - t55;
-    const double t57 = L * L;
-    const double t58 = m_2 * t57;
-    const double t59 = Theta_1 + t58;
+    const double t57 = m_2 * t19;
+    const double t58 = Theta_1 + t57;
+    const double t59 = Theta_2 * t58;
     const double t60 = t3 * t59;
-    const double t61 = Theta_2 * t60;
-    const double t62 = t56 * t61;
-    const double t63 = t53 - t62;
-    const double t64 = t44 * t63;
-    const double t65 = Theta_2 * t59;
-    const double t66 = t65 / t25;
-    const double t67 = t48 * t66;
-    const double t68 = m_1 * t54;
-    const double t69 = m_2 * t56;
-    const double t70 = t68 + t69;
-    const double t71 = t45 * t70;
-    const double t72 = t8 * t71;
-    const double t73 = t49 * t61;
-    const double t74 = t72 + t73;
-    const double t75 = t44 * t74;
-    const double t76 = -t75;
-    const double t77 = t55 * t66;
-    const double t78 = t45 / t25;
-    const double t79 = t20 * t78;
-    const double t80 = m_1 + m_2;
-    const double t81 = t4 * t80;
-    const double t82 = t78 * t81;
-    const double t83 = -t82;
-    double rest = t64 - t64;
-    rest += t67 - t67;
-    rest += t76 - t76;
+    const double t61 = t56 * t60;
+    const double t62 = t53 - t61;
+    const double t63 = t44 * t62;
+    const double t64 = t59 / t25;
+    const double t65 = t48 * t64;
+    const double t66 = m_1 * t54;
+    const double t67 = m_2 * t56;
+    const double t68 = t66 + t67;
+    const double t69 = t45 * t68;
+    const double t70 = t8 * t69;
+    const double t71 = t49 * t60;
+    const double t72 = t70 + t71;
+    const double t73 = t44 * t72;
+    const double t74 = -t73;
+    const double t75 = t55 * t64;
+    const double t76 = t45 / t25;
+    const double t77 = t22 * t76;
+    const double t78 = m_1 + m_2;
+    const double t79 = t4 * t78;
+    const double t80 = t79 * t76;
+    const double t81 = -t80;
+    double rest = t63 - t63;
+    rest += t65 - t65;
+    rest += t74 - t74;
+    rest += t75 - t75;
     rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t83 - t83;
-    if (!(rest >= 0.0)) {
+    rest += t81 - t81;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    B_G_pinv[0] = t64;
-    B_G_pinv[1] = t67;
-    B_G_pinv[2] = t76;
-    B_G_pinv[3] = t77;
-    B_G_pinv[4] = t79;
-    B_G_pinv[5] = t83;
+    B_G_pinv[0] = t63;
+    B_G_pinv[1] = t65;
+    B_G_pinv[2] = t74;
+    B_G_pinv[3] = t75;
+    B_G_pinv[4] = t77;
+    B_G_pinv[5] = t81;
     B_G_pinv[6] = 0.0;
     B_G_pinv[7] = 0.0;
     return REAR_CAR_OK;
@@ -1024,16 +1021,16 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = t4 * t4;
-    const double m_1 = p->m_1;
-    const double t19 = m_1 * t18;
-    const double m_2 = p->m_2;
-    const double t20 = m_2 + t19;
-    const double t21 = L * t20;
-    const double t22 = L * t21;
     const double Theta_1 = p->Theta_1;
-    const double t23 = Theta_1 * t7;
-    const double t24 = t22 + t23;
+    const double t18 = Theta_1 * t7;
+    const double t19 = L * L;
+    const double t20 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t21 = m_1 * t20;
+    const double m_2 = p->m_2;
+    const double t22 = m_2 + t21;
+    const double t23 = t19 * t22;
+    const double t24 = t18 + t23;
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
@@ -1057,69 +1054,68 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     if (!(t26 > t43)) {
         return REAR_CAR_MASS_RANK;
     }
-    const double t44 = L * L;
-    const double t45 = Theta_2 * t44;
-    const double t46 = t45 / t25;
-    const double t47 = t6 * t4;
-    const double t48 = m_1 * t47;
-    const double t49 = t5 * t3;
-    const double t50 = t47 - t49;
-    const double t51 = m_2 * t50;
-    const double t52 = t48 + t51;
-    const double t53 = t47 * t52;
-    const double t54 = t46 * t53;
-    const double t55 = t5 * t4;
-    const double t56 = m_1 * t55;
-    const double t57 = t6 * t3;
-    const double t58 = t55 + t57;
-    const double t59 = m_2 * t58;
-    const double t60 = t56 + t59;
-    const double t61 = t47 * t60;
-    const double t62 = t46 * t61;
-    const double t63 = t3 * t47;
-    const double t64 = m_2 * t44;
-    const double t65 = Theta_1 + t64;
-    const double t66 = L * Theta_2;
-    const double t67 = t65 * t66;
-    const double t68 = t67 / t25;
-    const double t69 = t63 * t68;
-    const double t70 = t55 * t52;
-    const double t71 = t46 * t70;
-    const double t72 = t55 * t60;
-    const double t73 = t46 * t72;
-    const double t74 = t3 * t55;
-    const double t75 = t74 * t68;
-    const double t76 = t66 / t25;
-    const double t77 = t3 * t52;
-    const double t78 = t76 * t77;
-    const double t79 = t3 * t60;
-    const double t80 = t76 * t79;
-    const double t81 = Theta_2 * t65;
-    const double t82 = t81 / t25;
-    const double t83 = t7 * t82;
-    double rest = t54 - t54;
-    rest += t62 - t62;
-    rest += t69 - t69;
-    rest += t71 - t71;
-    rest += t73 - t73;
-    rest += t75 - t75;
-    rest += t78 - t78;
-    rest += t80 - t80;
-    rest += t83 - t83;
-    if (!(rest >= 0.0)) {
+    const double t44 = Theta_2 * t19;
+    const double t45 = t44 / t25;
+    const double t46 = t6 * t4;
+    const double t47 = m_1 * t46;
+    const double t48 = t5 * t3;
+    const double t49 = t46 - t48;
+    const double t50 = m_2 * t49;
+    const double t51 = t47 + t50;
+    const double t52 = t46 * t51;
+    const double t53 = t45 * t52;
+    const double t54 = t5 * t4;
+    const double t55 = m_1 * t54;
+    const double t56 = t6 * t3;
+    const double t57 = t54 + t56;
+    const double t58 = m_2 * t57;
+    const double t59 = t55 + t58;
+    const double t60 = t46 * t59;
+    const double t61 = t45 * t60;
+    const double t62 = t3 * t46;
+    const double t63 = m_2 * t19;
+    const double t64 = Theta_1 + t63;
+    const double t65 = L * Theta_2;
+    const double t66 = t64 * t65;
+    const double t67 = t66 / t25;
+    const double t68 = t62 * t67;
+    const double t69 = t54 * t51;
+    const double t70 = t45 * t69;
+    const double t71 = t54 * t59;
+    const double t72 = t45 * t71;
+    const double t73 = t3 * t54;
+    const double t74 = t73 * t67;
+    const double t75 = t65 / t25;
+    const double t76 = t3 * t51;
+    const double t77 = t75 * t76;
+    const double t78 = t3 * t59;
+    const double t79 = t75 * t78;
+    const double t80 = Theta_2 * t64;
+    const double t81 = t80 / t25;
+    const double t82 = t7 * t81;
+    double rest = t53 - t53;
+    rest += t61 - t61;
+    rest += t68 - t68;
+    rest += t70 - t70;
+    rest += t72 - t72;
+    rest += t74 - t74;
+    rest += t77 - t77;
+    rest += t79 - t79;
+    rest += t82 - t82;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    N_BG[0] = t54;
-    N_BG[1] = t62;
-    N_BG[2] = t69;
+    N_BG[0] = t53;
+    N_BG[1] = t61;
+    N_BG[2] = t68;
     N_BG[3] = 0.0;
-    N_BG[4] = t71;
-    N_BG[5] = t73;
-    N_BG[6] = t75;
+    N_BG[4] = t70;
+    N_BG[5] = t72;
+    N_BG[6] = t74;
     N_BG[7] = 0.0;
-    N_BG[8] = t78;
-    N_BG[9] = t80;
-    N_BG[10] = t83;
+    N_BG[8] = t77;
+    N_BG[9] = t79;
+    N_BG[10] = t82;
     N_BG[11] = 0.0;
     N_BG[12] = 0.0;
     N_BG[13] = 0.0;
@@ -1140,7 +1136,7 @@ rear_car_status rear_car_control_matrix(const double q[4], const rear_car_params
     rear_car_sincos(theta, &t2, &t3);
     double rest = t3 - t3;
     rest += t2 - t2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     M[0] = t3;
@@ -1197,7 +1193,7 @@ rear_car_status rear_car_projected_control_matrix(const double q[4], const rear_
     double rest = t19 - t19;
     rest += t21 - t21;
     rest += t23 - t23;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     M_tilde[0] = t19;
@@ -1252,7 +1248,7 @@ rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], cons
     double rest = t4 - t4;
     rest += t3 - t3;
     rest += t18 - t18;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     M_tilde_pinv[0] = t4;
@@ -1303,19 +1299,18 @@ rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car
         }
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = 1.0 / t4;
-    const double t19 = t3 * t18;
-    const double t20 = t5 / t8;
-    double rest = t19 - t19;
-    rest += t20 - t20;
-    if (!(rest >= 0.0)) {
+    const double t18 = t3 / t4;
+    const double t19 = t5 / t8;
+    double rest = t18 - t18;
+    rest += t19 - t19;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0;
     F_B[1] = 0.0;
-    F_B[2] = t19;
+    F_B[2] = t18;
     F_B[3] = 0.0;
-    F_B[4] = t20;
+    F_B[4] = t19;
     F_B[5] = 0.0;
     F_B[6] = 0.0;
     F_B[7] = 1.0;
@@ -1362,72 +1357,70 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     const double t21 = t6 * t6;
     const double t22 = t4 * t21;
     const double t23 = t4 * t22;
-    const double t24 = t4 * t4;
-    const double m_1 = p->m_1;
-    const double t25 = m_1 * t24;
-    const double m_2 = p->m_2;
-    const double t26 = m_2 + t25;
-    const double t27 = L * t26;
-    const double t28 = L * t27;
     const double Theta_1 = p->Theta_1;
-    const double t29 = Theta_1 * t7;
-    const double t30 = t28 + t29;
-    const double t31 = t23 * t30;
-    const double t32 = t20 * t31;
-    const double t33 = t5 * t6;
+    const double t24 = Theta_1 * t7;
+    const double t25 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t26 = m_1 * t25;
+    const double m_2 = p->m_2;
+    const double t27 = m_2 + t26;
+    const double t28 = t18 * t27;
+    const double t29 = t24 + t28;
+    const double t30 = t23 * t29;
+    const double t31 = t20 * t30;
+    const double t32 = t5 * t6;
+    const double t33 = t4 * t32;
     const double t34 = t4 * t33;
-    const double t35 = t4 * t34;
-    const double t36 = t35 * t30;
-    const double t37 = t20 * t36;
-    const double t38 = L / t19;
-    const double t39 = t6 * t4;
-    const double t40 = t3 * t39;
-    const double t41 = t40 * t30;
-    const double t42 = t38 * t41;
-    const double t43 = t5 * t5;
+    const double t35 = t34 * t29;
+    const double t36 = t20 * t35;
+    const double t37 = L / t19;
+    const double t38 = t6 * t4;
+    const double t39 = t3 * t38;
+    const double t40 = t39 * t29;
+    const double t41 = t37 * t40;
+    const double t42 = t5 * t5;
+    const double t43 = t4 * t42;
     const double t44 = t4 * t43;
-    const double t45 = t4 * t44;
-    const double t46 = t45 * t30;
-    const double t47 = t20 * t46;
-    const double t48 = t5 * t4;
-    const double t49 = t3 * t48;
-    const double t50 = t49 * t30;
-    const double t51 = t38 * t50;
-    const double t52 = m_2 * t18;
-    const double t53 = Theta_1 + t52;
-    const double t54 = t24 + (-2.0);
-    const double t55 = t53 * t54;
-    const double t56 = m_1 + m_2;
-    const double t57 = t56 * t18;
-    const double t58 = t7 * t57;
-    const double t59 = t55 + t58;
+    const double t45 = t44 * t29;
+    const double t46 = t20 * t45;
+    const double t47 = t5 * t4;
+    const double t48 = t3 * t47;
+    const double t49 = t48 * t29;
+    const double t50 = t37 * t49;
+    const double t51 = m_2 * t18;
+    const double t52 = Theta_1 + t51;
+    const double t53 = t25 + (-2.0);
+    const double t54 = t52 * t53;
+    const double t55 = m_1 + m_2;
+    const double t56 = t55 * t18;
+    const double t57 = t7 * t56;
+    const double t58 = t54 + t57;
+    const double t59 = t4 * t58;
     const double t60 = t4 * t59;
-    const double t61 = t4 * t60;
-    const double t62 = t53 + t61;
-    const double t63 = 1.0 / t19;
-    const double t64 = t62 * t63;
+    const double t61 = t52 + t60;
+    const double t62 = t61 / t19;
     const double Theta_2 = p->Theta_2;
-    double rest = t32 - t32;
-    rest += t37 - t37;
-    rest += t42 - t42;
-    rest += t47 - t47;
-    rest += t51 - t51;
-    rest += t64 - t64;
+    double rest = t31 - t31;
+    rest += t36 - t36;
+    rest += t41 - t41;
+    rest += t46 - t46;
+    rest += t50 - t50;
+    rest += t62 - t62;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    G_tilde[0] = t32;
-    G_tilde[1] = t37;
-    G_tilde[2] = t42;
+    G_tilde[0] = t31;
+    G_tilde[1] = t36;
+    G_tilde[2] = t41;
     G_tilde[3] = 0.0;
-    G_tilde[4] = t37;
-    G_tilde[5] = t47;
-    G_tilde[6] = t51;
+    G_tilde[4] = t36;
+    G_tilde[5] = t46;
+    G_tilde[6] = t50;
     G_tilde[7] = 0.0;
-    G_tilde[8] = t42;
-    G_tilde[9] = t51;
-    G_tilde[10] = t64;
+    G_tilde[8] = t41;
+    G_tilde[9] = t50;
+    G_tilde[10] = t62;
     G_tilde[11] = 0.0;
     G_tilde[12] = 0.0;
     G_tilde[13] = 0.0;
@@ -1476,301 +1469,290 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t21 = t14 * t20;
     const double t22 = t18 / t21;
     const double t23 = t6 * t4;
-    const double x_dot = qd[0];
-    const double t24 = x_dot * t6;
-    const double y_dot = qd[1];
-    const double t25 = y_dot * t5;
-    const double t26 = t24 + t25;
-    const double t27 = t4 * t26;
-    const double t28 = L * t27;
-    const double theta_dot = qd[2];
-    const double t29 = theta_dot * t3;
-    const double t30 = t28 + t29;
-    const double t31 = L * t7;
-    const double t32 = L * t31;
-    const double t33 = t4 * t4;
-    const double t34 = t33 + (-2.0);
-    const double t35 = t14 + t34;
-    const double t36 = t32 + t35;
-    const double t37 = t6 * t36;
     const double m_2 = p->m_2;
-    const double t38 = m_2 * t37;
-    const double t39 = t5 * t4;
-    const double t40 = t3 * t39;
-    const double m_1 = p->m_1;
-    const double t41 = m_1 + m_2;
-    const double t42 = t41 * t18;
-    const double t43 = t40 * t42;
-    const double t44 = t38 - t43;
-    const double t45 = t4 * t44;
-    const double t46 = m_2 * t18;
+    const double t24 = m_2 * t18;
     const double Theta_1 = p->Theta_1;
-    const double t47 = Theta_1 + t46;
-    const double t48 = t41 + t47;
-    const double t49 = t5 * t3;
-    const double t50 = t3 * t49;
-    const double t51 = t3 * t50;
-    const double t52 = t48 * t51;
-    const double t53 = t45 - t52;
-    const double t54 = t4 * t53;
-    const double t55 = t7 + t15;
-    const double t56 = 1.0 - t55;
+    const double t25 = Theta_1 + t24;
+    const double t26 = t4 * t4;
+    const double t27 = 2.0 - t26;
+    const double x_dot = qd[0];
+    const double t28 = x_dot * t6;
+    const double y_dot = qd[1];
+    const double t29 = y_dot * t5;
+    const double t30 = t28 + t29;
+    const double t31 = t4 * t30;
+    const double t32 = L * t31;
+    const double theta_dot = qd[2];
+    const double t33 = theta_dot * t3;
+    const double t34 = t32 + t33;
+    const double t35 = t4 * t34;
+    const double t36 = t27 * t35;
+    const double t37 = t5 * t36;
+    const double phi_dot = qd[3];
+    const double t38 = phi_dot * t6;
+    const double t39 = t14 * t38;
+    const double t40 = t37 + t39;
+    const double t41 = t3 * t40;
+    const double t42 = t25 * t41;
+    const double m_1 = p->m_1;
+    const double t43 = m_1 + m_2;
+    const double t44 = 2.0 * t43;
+    const double t45 = t25 - t44;
+    const double t46 = t3 * t38;
+    const double t47 = t14 * t46;
+    const double t48 = t45 * t47;
+    const double t49 = t7 + t15;
+    const double t50 = 1.0 - t49;
+    const double t51 = t6 * t50;
+    const double t52 = m_2 * t51;
+    const double t53 = t26 + (-2.0);
+    const double t54 = t14 + t53;
+    const double t55 = t7 * t18;
+    const double t56 = t54 + t55;
     const double t57 = t6 * t56;
     const double t58 = m_2 * t57;
-    const double t59 = t54 + t58;
-    const double t60 = t30 * t59;
-    const double t61 = 2.0 * t41;
-    const double t62 = t47 - t61;
-    const double phi_dot = qd[3];
-    const double t63 = phi_dot * t6;
-    const double t64 = t3 * t63;
-    const double t65 = t14 * t64;
-    const double t66 = t62 * t65;
-    const double t67 = t60 + t66;
-    const double t68 = L * t67;
-    const double t69 = L * t68;
-    const double t70 = 2.0 - t33;
-    const double t71 = t4 * t30;
-    const double t72 = t70 * t71;
-    const double t73 = t5 * t72;
-    const double t74 = t14 * t63;
-    const double t75 = t73 + t74;
-    const double t76 = t3 * t75;
-    const double t77 = t47 * t76;
-    const double t78 = t69 + t77;
-    const double t79 = t4 * t78;
-    const double t80 = t30 * t49;
-    const double t81 = t47 * t80;
-    const double t82 = t79 - t81;
-    const double t83 = t4 * t82;
-    const double t84 = t47 * t65;
-    const double t85 = t83 - t84;
-    const double t86 = t23 * t85;
-    const double t87 = t22 * t86;
-    const double t88 = (-1.0) + t18;
-    const double t89 = t41 * t88;
-    const double t90 = t89 - t47;
-    const double t91 = t3 * t90;
-    const double t92 = t6 * t91;
-    const double t93 = m_2 * t39;
-    const double t94 = t92 + t93;
-    const double t95 = t4 * t94;
-    const double t96 = (-2.0) + t32;
-    const double t97 = t5 * t96;
-    const double t98 = m_2 * t97;
-    const double t99 = t95 + t98;
-    const double t100 = t4 * t99;
-    const double t101 = t6 * t3;
-    const double t102 = t101 * t48;
-    const double t103 = t100 + t102;
-    const double t104 = t4 * t103;
-    const double t105 = t7 * t14;
-    const double t106 = 1.0 - t105;
-    const double t107 = t5 * t106;
-    const double t108 = m_2 * t107;
-    const double t109 = t104 + t108;
-    const double t110 = t30 * t109;
-    const double t111 = phi_dot * t5;
-    const double t112 = t3 * t111;
-    const double t113 = t14 * t112;
-    const double t114 = t62 * t113;
-    const double t115 = t110 + t114;
-    const double t116 = L * t115;
-    const double t117 = L * t116;
-    const double t118 = t3 * t23;
-    const double t119 = t30 * t118;
-    const double t120 = t34 * t119;
-    const double t121 = t47 * t120;
-    const double t122 = t117 + t121;
-    const double t123 = t4 * t122;
-    const double t124 = t30 * t101;
-    const double t125 = t47 * t124;
-    const double t126 = t123 + t125;
-    const double t127 = t4 * t126;
-    const double t128 = t3 * t112;
-    const double t129 = t3 * t128;
-    const double t130 = t14 * t129;
-    const double t131 = t47 * t130;
-    const double t132 = t127 - t131;
-    const double t133 = t23 * t132;
-    const double t134 = t22 * t133;
-    const double t135 = L * t18;
-    const double t136 = t135 / t21;
-    const double t137 = t4 * t23;
-    const double t138 = 2.0 * t47;
-    const double t139 = t138 - t41;
-    const double t140 = phi_dot * t3;
-    const double t141 = t14 * t140;
-    const double t142 = t139 * t141;
-    const double t143 = t3 * t142;
-    const double t144 = phi_dot * t4;
-    const double t145 = t4 * t144;
-    const double t146 = t14 * t145;
-    const double t147 = t42 * t146;
-    const double t148 = t143 + t147;
-    const double t149 = t137 * t148;
-    const double t150 = t136 * t149;
-    const double t151 = 1.0 - t18;
-    const double t152 = t41 * t151;
-    const double t153 = t47 + t152;
-    const double t154 = t3 * t153;
-    const double t155 = t5 * t154;
-    const double t156 = m_2 * t23;
-    const double t157 = t155 + t156;
-    const double t158 = t4 * t157;
-    const double t159 = t6 * t96;
-    const double t160 = m_2 * t159;
-    const double t161 = t158 + t160;
-    const double t162 = t4 * t161;
-    const double t163 = t49 * t48;
-    const double t164 = t162 - t163;
-    const double t165 = t4 * t164;
-    const double t166 = t6 * t106;
-    const double t167 = m_2 * t166;
-    const double t168 = t165 + t167;
-    const double t169 = t30 * t168;
-    const double t170 = t66 + t169;
-    const double t171 = L * t170;
-    const double t172 = L * t171;
-    const double t173 = t30 * t40;
-    const double t174 = t70 * t173;
-    const double t175 = t47 * t174;
-    const double t176 = t172 + t175;
-    const double t177 = t4 * t176;
-    const double t178 = t177 - t81;
-    const double t179 = t4 * t178;
-    const double t180 = t3 * t64;
-    const double t181 = t3 * t180;
-    const double t182 = t14 * t181;
-    const double t183 = t47 * t182;
-    const double t184 = t179 - t183;
-    const double t185 = t39 * t184;
-    const double t186 = t22 * t185;
-    const double t187 = t39 * t132;
-    const double t188 = t22 * t187;
-    const double t189 = t4 * t39;
-    const double t190 = t189 * t148;
-    const double t191 = t136 * t190;
-    const double t192 = 2.0 - t32;
-    const double t193 = t192 - t33;
-    const double t194 = t41 * t193;
-    const double t195 = t47 * t70;
-    const double t196 = t194 + t195;
-    const double t197 = t5 * t196;
-    const double t198 = m_2 * t118;
-    const double t199 = t197 + t198;
-    const double t200 = t4 * t199;
-    const double t201 = t101 * t96;
+    const double t59 = t5 * t4;
+    const double t60 = t3 * t59;
+    const double t61 = t43 * t18;
+    const double t62 = t60 * t61;
+    const double t63 = t58 - t62;
+    const double t64 = t4 * t63;
+    const double t65 = t43 + t25;
+    const double t66 = t5 * t3;
+    const double t67 = t3 * t66;
+    const double t68 = t3 * t67;
+    const double t69 = t65 * t68;
+    const double t70 = t64 - t69;
+    const double t71 = t4 * t70;
+    const double t72 = t52 + t71;
+    const double t73 = t34 * t72;
+    const double t74 = t48 + t73;
+    const double t75 = t18 * t74;
+    const double t76 = t42 + t75;
+    const double t77 = t4 * t76;
+    const double t78 = t34 * t66;
+    const double t79 = t25 * t78;
+    const double t80 = t77 - t79;
+    const double t81 = t4 * t80;
+    const double t82 = t25 * t47;
+    const double t83 = t81 - t82;
+    const double t84 = t23 * t83;
+    const double t85 = t22 * t84;
+    const double t86 = t6 * t3;
+    const double t87 = t34 * t86;
+    const double t88 = t25 * t87;
+    const double t89 = t3 * t23;
+    const double t90 = t34 * t89;
+    const double t91 = t53 * t90;
+    const double t92 = t25 * t91;
+    const double t93 = phi_dot * t5;
+    const double t94 = t3 * t93;
+    const double t95 = t14 * t94;
+    const double t96 = t45 * t95;
+    const double t97 = t7 * t14;
+    const double t98 = 1.0 - t97;
+    const double t99 = t5 * t98;
+    const double t100 = m_2 * t99;
+    const double t101 = t86 * t65;
+    const double t102 = (-1.0) + t18;
+    const double t103 = t43 * t102;
+    const double t104 = t103 - t25;
+    const double t105 = t3 * t104;
+    const double t106 = t6 * t105;
+    const double t107 = m_2 * t59;
+    const double t108 = t106 + t107;
+    const double t109 = t4 * t108;
+    const double t110 = (-2.0) + t55;
+    const double t111 = t5 * t110;
+    const double t112 = m_2 * t111;
+    const double t113 = t109 + t112;
+    const double t114 = t4 * t113;
+    const double t115 = t101 + t114;
+    const double t116 = t4 * t115;
+    const double t117 = t100 + t116;
+    const double t118 = t34 * t117;
+    const double t119 = t96 + t118;
+    const double t120 = t18 * t119;
+    const double t121 = t92 + t120;
+    const double t122 = t4 * t121;
+    const double t123 = t88 + t122;
+    const double t124 = t4 * t123;
+    const double t125 = t3 * t94;
+    const double t126 = t3 * t125;
+    const double t127 = t14 * t126;
+    const double t128 = t25 * t127;
+    const double t129 = t124 - t128;
+    const double t130 = t23 * t129;
+    const double t131 = t22 * t130;
+    const double t132 = L * t18;
+    const double t133 = t132 / t21;
+    const double t134 = t4 * t23;
+    const double t135 = t26 * t61;
+    const double t136 = 2.0 * t25;
+    const double t137 = t136 - t43;
+    const double t138 = t3 * t137;
+    const double t139 = t3 * t138;
+    const double t140 = t135 + t139;
+    const double t141 = phi_dot * t14;
+    const double t142 = t140 * t141;
+    const double t143 = t134 * t142;
+    const double t144 = t133 * t143;
+    const double t145 = t34 * t60;
+    const double t146 = t27 * t145;
+    const double t147 = t25 * t146;
+    const double t148 = t6 * t98;
+    const double t149 = m_2 * t148;
+    const double t150 = 1.0 - t18;
+    const double t151 = t43 * t150;
+    const double t152 = t25 + t151;
+    const double t153 = t3 * t152;
+    const double t154 = t5 * t153;
+    const double t155 = m_2 * t23;
+    const double t156 = t154 + t155;
+    const double t157 = t4 * t156;
+    const double t158 = t6 * t110;
+    const double t159 = m_2 * t158;
+    const double t160 = t157 + t159;
+    const double t161 = t4 * t160;
+    const double t162 = t66 * t65;
+    const double t163 = t161 - t162;
+    const double t164 = t4 * t163;
+    const double t165 = t149 + t164;
+    const double t166 = t34 * t165;
+    const double t167 = t48 + t166;
+    const double t168 = t18 * t167;
+    const double t169 = t147 + t168;
+    const double t170 = t4 * t169;
+    const double t171 = t170 - t79;
+    const double t172 = t4 * t171;
+    const double t173 = t3 * t46;
+    const double t174 = t3 * t173;
+    const double t175 = t14 * t174;
+    const double t176 = t25 * t175;
+    const double t177 = t172 - t176;
+    const double t178 = t59 * t177;
+    const double t179 = t22 * t178;
+    const double t180 = t59 * t129;
+    const double t181 = t22 * t180;
+    const double t182 = t4 * t59;
+    const double t183 = t182 * t142;
+    const double t184 = t133 * t183;
+    const double t185 = L / t21;
+    const double t186 = t4 * t26;
+    const double t187 = t4 * t186;
+    const double t188 = 3.0 * t7;
+    const double t189 = t187 + t188;
+    const double t190 = t34 * t189;
+    const double t191 = t5 * t190;
+    const double t192 = t4 * t38;
+    const double t193 = t14 * t192;
+    const double t194 = t191 - t193;
+    const double t195 = t4 * t194;
+    const double t196 = 2.0 * t39;
+    const double t197 = t195 + t196;
+    const double t198 = t25 * t197;
+    const double t199 = t14 * t173;
+    const double t200 = t45 * t199;
+    const double t201 = t86 * t98;
     const double t202 = m_2 * t201;
-    const double t203 = t200 + t202;
-    const double t204 = t4 * t203;
-    const double t205 = t5 * t48;
-    const double t206 = t204 - t205;
-    const double t207 = t4 * t206;
-    const double t208 = t101 * t106;
-    const double t209 = m_2 * t208;
-    const double t210 = t207 + t209;
-    const double t211 = t30 * t210;
-    const double t212 = t14 * t180;
-    const double t213 = t62 * t212;
+    const double t203 = m_2 * t89;
+    const double t204 = t25 * t27;
+    const double t205 = 2.0 - t55;
+    const double t206 = t205 - t26;
+    const double t207 = t43 * t206;
+    const double t208 = t204 + t207;
+    const double t209 = t5 * t208;
+    const double t210 = t203 + t209;
+    const double t211 = t4 * t210;
+    const double t212 = t86 * t110;
+    const double t213 = m_2 * t212;
     const double t214 = t211 + t213;
-    const double t215 = L * t214;
-    const double t216 = L * t215;
-    const double t217 = t4 * t33;
+    const double t215 = t4 * t214;
+    const double t216 = t5 * t65;
+    const double t217 = t215 - t216;
     const double t218 = t4 * t217;
-    const double t219 = 3.0 * t7;
-    const double t220 = t218 + t219;
-    const double t221 = t30 * t220;
-    const double t222 = t5 * t221;
-    const double t223 = t4 * t63;
-    const double t224 = t14 * t223;
-    const double t225 = t222 - t224;
-    const double t226 = t4 * t225;
-    const double t227 = 2.0 * t74;
-    const double t228 = t226 + t227;
-    const double t229 = t47 * t228;
-    const double t230 = t216 + t229;
-    const double t231 = t4 * t230;
-    const double t232 = t5 * t30;
-    const double t233 = t47 * t232;
-    const double t234 = t231 - t233;
-    const double t235 = t4 * t234;
-    const double t236 = t47 * t74;
-    const double t237 = t235 - t236;
-    const double t238 = L / t21;
-    const double t239 = t237 * t238;
-    const double t240 = t47 * t34;
-    const double t241 = t33 + t96;
-    const double t242 = t41 * t241;
-    const double t243 = t240 + t242;
-    const double t244 = t6 * t243;
-    const double t245 = m_2 * t40;
-    const double t246 = t244 + t245;
-    const double t247 = t4 * t246;
-    const double t248 = t49 * t96;
-    const double t249 = m_2 * t248;
-    const double t250 = t247 + t249;
-    const double t251 = t4 * t250;
-    const double t252 = t6 * t48;
-    const double t253 = t251 + t252;
-    const double t254 = t4 * t253;
-    const double t255 = t49 * t106;
-    const double t256 = m_2 * t255;
-    const double t257 = t254 + t256;
-    const double t258 = t30 * t257;
-    const double t259 = t14 * t128;
-    const double t260 = t62 * t259;
-    const double t261 = t258 + t260;
-    const double t262 = L * t261;
-    const double t263 = L * t262;
-    const double t264 = t14 * t111;
-    const double t265 = 2.0 * t264;
-    const double t266 = t6 * t221;
-    const double t267 = t4 * t111;
-    const double t268 = t14 * t267;
-    const double t269 = t266 + t268;
-    const double t270 = t4 * t269;
-    const double t271 = t265 - t270;
-    const double t272 = t47 * t271;
-    const double t273 = t263 + t272;
-    const double t274 = t4 * t273;
-    const double t275 = t6 * t30;
-    const double t276 = t47 * t275;
-    const double t277 = t274 + t276;
-    const double t278 = t4 * t277;
-    const double t279 = t47 * t264;
-    const double t280 = t278 - t279;
-    const double t281 = t238 * t280;
-    const double t282 = t33 * t42;
-    const double t283 = t3 * t139;
-    const double t284 = t3 * t283;
-    const double t285 = t282 + t284;
-    const double t286 = t141 * t285;
-    const double t287 = t4 * t286;
-    const double t288 = t22 * t287;
-    double rest = t87 - t87;
-    rest += t134 - t134;
-    rest += t150 - t150;
-    rest += t186 - t186;
-    rest += t188 - t188;
-    rest += t191 - t191;
-    rest += t239 - t239;
-    rest += t281 - t281;
-    rest += t288 - t288;
-    if (!(rest >= 0.0)) {
+    const double t219 = t202 + t218;
+    const double t220 = t34 * t219;
+    const double t221 = t200 + t220;
+    const double t222 = t18 * t221;
+    const double t223 = t198 + t222;
+    const double t224 = t4 * t223;
+    const double t225 = t5 * t34;
+    const double t226 = t25 * t225;
+    const double t227 = t224 - t226;
+    const double t228 = t4 * t227;
+    const double t229 = t25 * t39;
+    const double t230 = t228 - t229;
+    const double t231 = t185 * t230;
+    const double t232 = t6 * t34;
+    const double t233 = t25 * t232;
+    const double t234 = t14 * t93;
+    const double t235 = 2.0 * t234;
+    const double t236 = t6 * t190;
+    const double t237 = t4 * t93;
+    const double t238 = t14 * t237;
+    const double t239 = t236 + t238;
+    const double t240 = t4 * t239;
+    const double t241 = t235 - t240;
+    const double t242 = t25 * t241;
+    const double t243 = t14 * t125;
+    const double t244 = t45 * t243;
+    const double t245 = t66 * t98;
+    const double t246 = m_2 * t245;
+    const double t247 = t6 * t65;
+    const double t248 = m_2 * t60;
+    const double t249 = t25 * t53;
+    const double t250 = t26 + t110;
+    const double t251 = t43 * t250;
+    const double t252 = t249 + t251;
+    const double t253 = t6 * t252;
+    const double t254 = t248 + t253;
+    const double t255 = t4 * t254;
+    const double t256 = t66 * t110;
+    const double t257 = m_2 * t256;
+    const double t258 = t255 + t257;
+    const double t259 = t4 * t258;
+    const double t260 = t247 + t259;
+    const double t261 = t4 * t260;
+    const double t262 = t246 + t261;
+    const double t263 = t34 * t262;
+    const double t264 = t244 + t263;
+    const double t265 = t18 * t264;
+    const double t266 = t242 + t265;
+    const double t267 = t4 * t266;
+    const double t268 = t233 + t267;
+    const double t269 = t4 * t268;
+    const double t270 = t25 * t234;
+    const double t271 = t269 - t270;
+    const double t272 = t185 * t271;
+    const double t273 = phi_dot * t3;
+    const double t274 = t14 * t273;
+    const double t275 = t274 * t140;
+    const double t276 = t4 * t275;
+    const double t277 = t22 * t276;
+    double rest = t85 - t85;
+    rest += t131 - t131;
+    rest += t144 - t144;
+    rest += t179 - t179;
+    rest += t181 - t181;
+    rest += t184 - t184;
+    rest += t231 - t231;
+    rest += t272 - t272;
+    rest += t277 - t277;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    C_tilde[0] = t87;
-    C_tilde[1] = t134;
-    C_tilde[2] = t150;
+    C_tilde[0] = t85;
+    C_tilde[1] = t131;
+    C_tilde[2] = t144;
     C_tilde[3] = 0.0;
-    C_tilde[4] = t186;
-    C_tilde[5] = t188;
-    C_tilde[6] = t191;
+    C_tilde[4] = t179;
+    C_tilde[5] = t181;
+    C_tilde[6] = t184;
     C_tilde[7] = 0.0;
-    C_tilde[8] = t239;
-    C_tilde[9] = t281;
-    C_tilde[10] = t288;
+    C_tilde[8] = t231;
+    C_tilde[9] = t272;
+    C_tilde[10] = t277;
     C_tilde[11] = 0.0;
     C_tilde[12] = 0.0;
     C_tilde[13] = 0.0;
@@ -1848,15 +1830,14 @@ rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_p
     const double Theta_1 = p->Theta_1;
     const double t24 = Theta_1 * t23;
     const double t25 = t22 + t24;
-    const double t26 = 1.0 / t9;
-    const double t27 = t25 * t26;
+    const double t26 = t25 / t9;
     const double Theta_2 = p->Theta_2;
-    double rest = t27 - t27;
+    double rest = t26 - t26;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    G_bar[0] = t27;
+    G_bar[0] = t26;
     G_bar[1] = 0.0;
     G_bar[2] = 0.0;
     G_bar[3] = Theta_2;
@@ -1903,60 +1884,55 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
         }
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = t5 * t4;
-    const double t19 = t3 * t18;
-    const double m_1 = p->m_1;
+    const double t18 = L * L;
     const double m_2 = p->m_2;
-    const double t20 = m_1 + m_2;
-    const double t21 = L * L;
-    const double t22 = m_2 * t21;
+    const double t19 = m_2 * t18;
     const double Theta_1 = p->Theta_1;
-    const double t23 = Theta_1 + t22;
-    const double t24 = t20 + t23;
-    const double t25 = t19 * t24;
-    const double t26 = t3 * t25;
-    const double t27 = t20 * t21;
-    const double t28 = t4 * t18;
-    const double t29 = t4 * t28;
-    const double t30 = t27 * t29;
-    const double t31 = t26 + t30;
-    const double t32 = L * t31;
-    const double t33 = L * t32;
-    const double t34 = t4 * t4;
-    const double t35 = t34 + (-2.0);
-    const double t36 = t18 * t35;
-    const double t37 = t23 * t36;
-    const double t38 = t33 + t37;
-    const double theta_dot = qd[2];
-    const double t39 = theta_dot * t38;
+    const double t20 = Theta_1 + t19;
     const double phi_dot = qd[3];
-    const double t40 = phi_dot * t6;
-    const double t41 = t3 * t40;
-    const double t42 = (-1.0) + t21;
-    const double t43 = t41 * t42;
-    const double t44 = t23 * t43;
-    const double t45 = t39 + t44;
-    const double t46 = t4 * t45;
-    const double t47 = theta_dot * t5;
-    const double t48 = t23 * t47;
-    const double t49 = t46 + t48;
-    const double t50 = t4 * t49;
-    const double t51 = t23 * t41;
-    const double t52 = t50 + t51;
-    const double t53 = t6 * t21;
-    const double t54 = t6 * t53;
-    const double t55 = t6 * t54;
-    const double t56 = t4 * t55;
-    const double t57 = t4 * t56;
-    const double t58 = t4 * t57;
-    const double t59 = t14 * t58;
-    const double t60 = 1.0 / t59;
-    const double t61 = t52 * t60;
-    double rest = t61 - t61;
-    if (!(rest >= 0.0)) {
+    const double t21 = phi_dot * t6;
+    const double t22 = t3 * t21;
+    const double t23 = t20 * t22;
+    const double theta_dot = qd[2];
+    const double t24 = theta_dot * t5;
+    const double t25 = t20 * t24;
+    const double t26 = (-1.0) + t18;
+    const double t27 = t22 * t26;
+    const double t28 = t20 * t27;
+    const double t29 = t5 * t4;
+    const double t30 = t4 * t4;
+    const double t31 = t30 + (-2.0);
+    const double t32 = t29 * t31;
+    const double t33 = t20 * t32;
+    const double m_1 = p->m_1;
+    const double t34 = m_1 + m_2;
+    const double t35 = t34 * t18;
+    const double t36 = t30 * t35;
+    const double t37 = t34 + t20;
+    const double t38 = t7 * t37;
+    const double t39 = t36 + t38;
+    const double t40 = t29 * t39;
+    const double t41 = t18 * t40;
+    const double t42 = t33 + t41;
+    const double t43 = theta_dot * t42;
+    const double t44 = t28 + t43;
+    const double t45 = t4 * t44;
+    const double t46 = t25 + t45;
+    const double t47 = t4 * t46;
+    const double t48 = t23 + t47;
+    const double t49 = t6 * t18;
+    const double t50 = t6 * t49;
+    const double t51 = t6 * t50;
+    const double t52 = t4 * t51;
+    const double t53 = t4 * t52;
+    const double t54 = t4 * t53;
+    const double t55 = t14 * t54;
+    const double t56 = t48 / t55;
+    double rest = t56 - t56;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    C_bar[0] = t61;
+    C_bar[0] = t56;
     C_bar[1] = 0.0;
     C_bar[2] = 0.0;
     C_bar[3] = 0.0;
@@ -2019,7 +1995,7 @@ rear_car_status rear_car_minimal_control_matrix(const double q[4], const rear_ca
     }
     const double t18 = 1.0 / t4;
     double rest = t18 - t18;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     M_bar[0] = t18;
@@ -2080,20 +2056,19 @@ rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[
     const double t29 = t5 * t4;
     const double t30 = t25 * t29;
     const double t31 = t18 * t30;
-    const double t32 = 1.0 / t14;
-    const double t33 = t3 * t25;
-    const double t34 = t32 * t33;
+    const double t32 = t3 * t25;
+    const double t33 = t32 / t14;
     const double phi_dot = qd[3];
     double rest = t28 - t28;
     rest += t31 - t31;
-    rest += t34 - t34;
+    rest += t33 - t33;
     rest += phi_dot - phi_dot;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     qd_admissible[0] = t28;
     qd_admissible[1] = t31;
-    qd_admissible[2] = t34;
+    qd_admissible[2] = t33;
     qd_admissible[3] = phi_dot;
     return REAR_CAR_OK;
 }
@@ -2210,30 +2185,29 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t86 = t27 * t85;
     const double t87 = t82 - t86;
     const double t88 = t58 * t87;
-    const double t89 = 1.0 / t56;
-    const double t90 = t14 * t61;
-    const double t91 = t3 * t90;
-    const double t92 = phi_dot * t27;
-    const double t93 = L * t92;
-    const double t94 = t91 + t93;
-    const double t95 = t4 * t94;
-    const double t96 = L * t95;
-    const double t97 = theta_ddot * t3;
-    const double t98 = t3 * t97;
-    const double t99 = t14 * t98;
-    const double t100 = t96 + t99;
-    const double t101 = t89 * t100;
+    const double t89 = t14 * t61;
+    const double t90 = t3 * t89;
+    const double t91 = phi_dot * t27;
+    const double t92 = L * t91;
+    const double t93 = t90 + t92;
+    const double t94 = t4 * t93;
+    const double t95 = L * t94;
+    const double t96 = theta_ddot * t3;
+    const double t97 = t3 * t96;
+    const double t98 = t14 * t97;
+    const double t99 = t95 + t98;
+    const double t100 = t99 / t56;
     const double phi_ddot = qdd[3];
     double rest = t59 - t59;
     rest += t88 - t88;
-    rest += t101 - t101;
+    rest += t100 - t100;
     rest += phi_ddot - phi_ddot;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
     qdd_admissible[1] = t88;
-    qdd_admissible[2] = t101;
+    qdd_admissible[2] = t100;
     qdd_admissible[3] = phi_ddot;
     return REAR_CAR_OK;
 }
@@ -2248,7 +2222,7 @@ rear_car_status rear_car_projected_configuration(const double q[4], const rear_c
     rest += y - y;
     rest += theta - theta;
     rest += phi - phi;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2277,62 +2251,59 @@ rear_car_status rear_car_inverse_dynamics(const double q[4], const double qd[4],
     const double t6 = cosine[1];
     const double t7 = L * t6;
     const double t8 = fabs(t7);
-    const double t9 = fabs(L);
-    const double t10 = t9 * 3.552713678800501e-15;
+    const double t9 = L * 3.552713678800501e-15;
     const double t5 = sine[1];
-    if (!(t8 > t10)) {
-        const double t11 = t5 * t5;
-        const double t12 = t7 * t7;
-        const double t13 = t11 + t12;
-        const double t14 = t9 * t9;
-        const double t15 = 1.0 + t14;
-        const double t16 = t15 * 1.262177448353619e-29;
-        if (!(t13 > t16)) {
+    if (!(t8 > t9)) {
+        const double t10 = t5 * t5;
+        const double t11 = t7 * t7;
+        const double t12 = t10 + t11;
+        const double t13 = L * L;
+        const double t14 = 1.0 + t13;
+        const double t15 = t14 * 1.262177448353619e-29;
+        if (!(t12 > t15)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
     const double m_1 = p->m_1;
     const double m_2 = p->m_2;
-    const double t17 = m_1 + m_2;
+    const double t16 = m_1 + m_2;
     const double x_ddot = qdd[0];
     const double t4 = cosine[0];
-    const double t18 = x_ddot * t4;
+    const double t17 = x_ddot * t4;
     const double y_ddot = qdd[1];
     const double t3 = sine[0];
-    const double t19 = y_ddot * t3;
-    const double t20 = t18 + t19;
-    const double t21 = t17 * t20;
-    const double t22 = L * m_2;
+    const double t18 = y_ddot * t3;
+    const double t19 = t17 + t18;
+    const double t20 = t16 * t19;
+    const double t21 = L * m_2;
     const double theta_dot = qd[2];
-    const double t23 = theta_dot * theta_dot;
-    const double t24 = t22 * t23;
-    const double t25 = t21 - t24;
-    const double t26 = L * L;
-    const double t27 = m_2 * t26;
+    const double t22 = theta_dot * theta_dot;
+    const double t23 = t21 * t22;
+    const double t24 = t20 - t23;
+    const double t25 = y_ddot * t4;
+    const double t26 = x_ddot * t3;
+    const double t27 = t25 - t26;
+    const double t28 = t21 * t27;
+    const double t29 = L * t21;
     const double Theta_1 = p->Theta_1;
-    const double t28 = Theta_1 + t27;
+    const double t30 = Theta_1 + t29;
     const double theta_ddot = qdd[2];
-    const double t29 = theta_ddot * t28;
-    const double t30 = t4 * t22;
-    const double t31 = y_ddot * t30;
-    const double t32 = t3 * t22;
-    const double t33 = x_ddot * t32;
-    const double t34 = t31 - t33;
-    const double t35 = t29 + t34;
-    const double t36 = t35 / t7;
-    const double t37 = t5 * t36;
-    const double t38 = t25 + t37;
+    const double t31 = theta_ddot * t30;
+    const double t32 = t28 + t31;
+    const double t33 = t32 / t7;
+    const double t34 = t5 * t33;
+    const double t35 = t24 + t34;
     const double phi_ddot = qdd[3];
     const double Theta_2 = p->Theta_2;
-    const double t39 = phi_ddot * Theta_2;
-    double rest = t38 - t38;
-    rest += t39 - t39;
-    if (!(rest >= 0.0)) {
+    const double t36 = phi_ddot * Theta_2;
+    double rest = t35 - t35;
+    rest += t36 - t36;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    u[0] = t38;
-    u[1] = t39;
+    u[0] = t35;
+    u[1] = t36;
     return REAR_CAR_OK;
 }
 
@@ -2366,7 +2337,7 @@ rear_car_status rear_car_actuator_velocity(const double q[4], const double qd[4]
     const double phi_dot = qd[3];
     double rest = t6 - t6;
     rest += phi_dot - phi_dot;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     nu[0] = t6;
@@ -2423,7 +2394,7 @@ rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_
     const double Theta_2 = p->Theta_2;
     double rest = t25 - t25;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     G_nu[0] = t25;
@@ -2490,7 +2461,7 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
     const double t27 = t25 * t26;
     const double t28 = t22 * t27;
     double rest = t28 - t28;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     bias_nu[0] = t28;
@@ -2499,31 +2470,31 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
 }
 
 rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4], const double u[2], const rear_car_params *p, double qdd[4]) {
-    const double phi = q[3];
-    const double t1 = fabs(phi);
     const double theta = q[2];
-    const double t2 = fabs(theta);
+    const double t1 = fabs(theta);
+    const double phi = q[3];
+    const double t2 = fabs(phi);
     if (!(100000.0 >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
     if (!(100000.0 >= t2)) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    const double angle[2] = {phi, theta};
+    const double angle[2] = {theta, phi};
     double sine[2];
     double cosine[2];
     rear_car_sincos_group(2, angle, sine, cosine);
-    const double t3 = sine[0];
-    const double t7 = t3 * t3;
-    const double L = p->L;
-    const double t4 = cosine[0];
-    const double t8 = L * t4;
     const double t5 = sine[1];
-    const double t9 = t5 * t8;
+    const double t7 = t5 * t5;
+    const double L = p->L;
+    const double t6 = cosine[1];
+    const double t8 = L * t6;
+    const double t3 = sine[0];
+    const double t9 = t3 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
-    const double t6 = cosine[1];
-    const double t12 = t6 * t8;
+    const double t4 = cosine[0];
+    const double t12 = t4 * t8;
     const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
@@ -2532,16 +2503,16 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = t4 * t4;
-    const double m_1 = p->m_1;
-    const double t19 = m_1 * t18;
-    const double m_2 = p->m_2;
-    const double t20 = m_2 + t19;
-    const double t21 = L * t20;
-    const double t22 = L * t21;
     const double Theta_1 = p->Theta_1;
-    const double t23 = Theta_1 * t7;
-    const double t24 = t22 + t23;
+    const double t18 = Theta_1 * t7;
+    const double t19 = L * L;
+    const double t20 = t6 * t6;
+    const double m_1 = p->m_1;
+    const double t21 = m_1 * t20;
+    const double m_2 = p->m_2;
+    const double t22 = m_2 + t21;
+    const double t23 = t19 * t22;
+    const double t24 = t18 + t23;
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
@@ -2565,119 +2536,118 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     if (!(t26 > t43)) {
         return REAR_CAR_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * m_2;
+    const double t44 = L * m_2;
     const double theta_dot = qd[2];
-    const double t46 = theta_dot * t45;
-    const double t47 = theta_dot * t6;
-    const double t48 = t46 * t47;
+    const double t45 = theta_dot * t44;
+    const double t46 = theta_dot * t4;
+    const double t47 = t45 * t46;
     const double K_r = u[0];
-    const double t49 = K_r * t6;
-    const double t50 = t48 + t49;
-    const double t51 = t12 * t50;
-    const double t52 = theta_dot * t5;
-    const double t53 = t46 * t52;
-    const double t54 = K_r * t5;
-    const double t55 = t53 + t54;
-    const double t56 = t9 * t55;
-    const double t57 = t51 + t56;
-    const double t58 = Theta_2 * t57;
-    const double t59 = t12 * t58;
-    const double t60 = t44 * t59;
-    const double t61 = L * L;
-    const double t62 = m_2 * t61;
-    const double t63 = Theta_1 + t62;
-    const double t64 = t3 * t63;
-    const double t65 = Theta_2 * t64;
-    const double phi_dot = qd[3];
-    const double t66 = phi_dot * t3;
-    const double t67 = L * t66;
-    const double t68 = theta_dot * t67;
-    const double t69 = theta_dot + phi_dot;
-    const double t70 = t6 * t4;
-    const double t71 = t5 * t3;
-    const double t72 = t70 - t71;
-    const double t73 = t69 * t72;
-    const double x_dot = qd[0];
-    const double t74 = x_dot * t73;
-    const double t75 = t5 * t4;
-    const double t76 = t6 * t3;
-    const double t77 = t75 + t76;
-    const double t78 = t69 * t77;
+    const double t48 = K_r * t4;
+    const double t49 = t47 + t48;
+    const double t50 = t12 * t49;
+    const double t51 = theta_dot * t3;
+    const double t52 = t45 * t51;
+    const double t53 = K_r * t3;
+    const double t54 = t52 + t53;
+    const double t55 = t9 * t54;
+    const double t56 = t50 + t55;
+    const double t57 = Theta_2 * t56;
+    const double t58 = t12 * t57;
+    const double t59 = 1.0 / t25;
+    const double t60 = t58 * t59;
     const double y_dot = qd[1];
-    const double t79 = y_dot * t78;
-    const double t80 = t74 + t79;
-    const double t81 = t68 + t80;
-    const double t82 = t6 * t81;
-    const double t83 = y_dot * t52;
-    const double t84 = x_dot * t47;
-    const double t85 = t83 + t84;
-    const double t86 = t85 * t72;
-    const double t87 = t82 - t86;
-    const double t88 = t65 * t87;
-    const double t89 = t8 * t85;
-    const double t90 = L * Theta_2;
-    const double t91 = m_1 * t75;
-    const double t92 = m_2 * t77;
-    const double t93 = t91 + t92;
-    const double t94 = t90 * t93;
-    const double t95 = t89 * t94;
-    const double t96 = t88 + t95;
-    const double t97 = t44 * t96;
-    const double t98 = t60 - t97;
-    const double t99 = t9 * t58;
-    const double t100 = t44 * t99;
-    const double t101 = t5 * t81;
-    const double t102 = t85 * t77;
-    const double t103 = t101 - t102;
-    const double t104 = t65 * t103;
-    const double t105 = m_1 * t70;
-    const double t106 = m_2 * t72;
-    const double t107 = t105 + t106;
-    const double t108 = t90 * t107;
-    const double t109 = t89 * t108;
-    const double t110 = t104 - t109;
-    const double t111 = t44 * t110;
-    const double t112 = t100 - t111;
-    const double t113 = t3 * t58;
-    const double t114 = t44 * t113;
-    const double t115 = t86 - t82;
-    const double t116 = t108 * t115;
-    const double t117 = t94 * t103;
-    const double t118 = t116 - t117;
-    const double t119 = t44 * t118;
-    const double t120 = t114 - t119;
-    const double t121 = m_1 + m_2;
+    const double t61 = y_dot * t51;
+    const double x_dot = qd[0];
+    const double t62 = x_dot * t46;
+    const double t63 = t61 + t62;
+    const double t64 = t8 * t63;
+    const double t65 = L * Theta_2;
+    const double t66 = t3 * t6;
+    const double t67 = m_1 * t66;
+    const double t68 = t4 * t5;
+    const double t69 = t66 + t68;
+    const double t70 = m_2 * t69;
+    const double t71 = t67 + t70;
+    const double t72 = t65 * t71;
+    const double t73 = t64 * t72;
+    const double phi_dot = qd[3];
+    const double t74 = phi_dot * t5;
+    const double t75 = L * t74;
+    const double t76 = theta_dot * t75;
+    const double t77 = theta_dot + phi_dot;
+    const double t78 = t4 * t6;
+    const double t79 = t3 * t5;
+    const double t80 = t78 - t79;
+    const double t81 = t77 * t80;
+    const double t82 = x_dot * t81;
+    const double t83 = t77 * t69;
+    const double t84 = y_dot * t83;
+    const double t85 = t82 + t84;
+    const double t86 = t76 + t85;
+    const double t87 = t4 * t86;
+    const double t88 = t63 * t80;
+    const double t89 = t87 - t88;
+    const double t90 = L * t44;
+    const double t91 = Theta_1 + t90;
+    const double t92 = t5 * t91;
+    const double t93 = Theta_2 * t92;
+    const double t94 = t89 * t93;
+    const double t95 = t73 + t94;
+    const double t96 = t59 * t95;
+    const double t97 = t60 - t96;
+    const double t98 = t9 * t57;
+    const double t99 = t98 * t59;
+    const double t100 = t3 * t86;
+    const double t101 = t63 * t69;
+    const double t102 = t100 - t101;
+    const double t103 = t102 * t93;
+    const double t104 = m_1 * t78;
+    const double t105 = m_2 * t80;
+    const double t106 = t104 + t105;
+    const double t107 = t65 * t106;
+    const double t108 = t64 * t107;
+    const double t109 = t103 - t108;
+    const double t110 = t59 * t109;
+    const double t111 = t99 - t110;
+    const double t112 = t5 * t57;
+    const double t113 = t112 * t59;
+    const double t114 = t88 - t87;
+    const double t115 = t107 * t114;
+    const double t116 = t72 * t102;
+    const double t117 = t115 - t116;
+    const double t118 = t117 * t59;
+    const double t119 = t113 - t118;
+    const double t120 = m_1 + m_2;
     const double T = u[1];
-    const double t122 = T * t12;
-    const double t123 = t121 * t122;
-    const double t124 = t5 * t45;
-    const double t125 = T * t3;
-    const double t126 = t124 * t125;
-    const double t127 = t123 - t126;
-    const double t128 = t12 * t127;
-    const double t129 = T * t9;
-    const double t130 = t121 * t129;
-    const double t131 = t6 * t45;
-    const double t132 = t131 * t125;
-    const double t133 = t130 + t132;
-    const double t134 = t9 * t133;
-    const double t135 = t128 + t134;
-    const double t136 = t63 * t125;
-    const double t137 = t3 * t136;
-    const double t138 = t135 + t137;
-    const double t139 = t44 * t138;
-    double rest = t98 - t98;
-    rest += t112 - t112;
-    rest += t120 - t120;
-    rest += t139 - t139;
-    if (!(rest >= 0.0)) {
+    const double t121 = T * t12;
+    const double t122 = t120 * t121;
+    const double t123 = t3 * t44;
+    const double t124 = T * t5;
+    const double t125 = t123 * t124;
+    const double t126 = t122 - t125;
+    const double t127 = t12 * t126;
+    const double t128 = T * t9;
+    const double t129 = t120 * t128;
+    const double t130 = t4 * t44;
+    const double t131 = t130 * t124;
+    const double t132 = t129 + t131;
+    const double t133 = t9 * t132;
+    const double t134 = t127 + t133;
+    const double t135 = t124 * t91;
+    const double t136 = t5 * t135;
+    const double t137 = t134 + t136;
+    const double t138 = t59 * t137;
+    double rest = t97 - t97;
+    rest += t111 - t111;
+    rest += t119 - t119;
+    rest += t138 - t138;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    qdd[0] = t98;
-    qdd[1] = t112;
-    qdd[2] = t120;
-    qdd[3] = t139;
+    qdd[0] = t97;
+    qdd[1] = t111;
+    qdd[2] = t119;
+    qdd[3] = t138;
     return REAR_CAR_OK;
 }
 
@@ -2715,16 +2685,16 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = t4 * t4;
-    const double m_1 = p->m_1;
-    const double t19 = m_1 * t18;
-    const double m_2 = p->m_2;
-    const double t20 = m_2 + t19;
-    const double t21 = L * t20;
-    const double t22 = L * t21;
     const double Theta_1 = p->Theta_1;
-    const double t23 = Theta_1 * t7;
-    const double t24 = t22 + t23;
+    const double t18 = Theta_1 * t7;
+    const double t19 = L * L;
+    const double t20 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t21 = m_1 * t20;
+    const double m_2 = p->m_2;
+    const double t22 = m_2 + t21;
+    const double t23 = t19 * t22;
+    const double t24 = t18 + t23;
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
@@ -2766,97 +2736,96 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t57 = K_r * t6;
     const double t58 = t56 + t57;
     const double t59 = m_1 + m_2;
-    const double t60 = L * L;
-    const double t61 = m_2 * t60;
-    const double t62 = Theta_1 + t61;
-    const double t63 = t3 * t62;
-    const double t64 = Theta_2 * t63;
-    const double phi_dot = qd[3];
-    const double t65 = phi_dot * t3;
-    const double t66 = L * t65;
-    const double t67 = theta_dot * t66;
-    const double t68 = theta_dot + phi_dot;
-    const double t69 = t6 * t4;
-    const double t70 = t5 * t3;
-    const double t71 = t69 - t70;
-    const double t72 = t68 * t71;
-    const double x_dot = qd[0];
-    const double t73 = x_dot * t72;
-    const double t74 = t68 * t49;
+    const double t60 = theta_dot * t5;
     const double y_dot = qd[1];
-    const double t75 = y_dot * t74;
-    const double t76 = t73 + t75;
-    const double t77 = t67 + t76;
-    const double t78 = t6 * t77;
-    const double t79 = theta_dot * t5;
-    const double t80 = y_dot * t79;
-    const double t81 = x_dot * t55;
-    const double t82 = t80 + t81;
-    const double t83 = t82 * t71;
-    const double t84 = t78 - t83;
-    const double t85 = t64 * t84;
-    const double t86 = t8 * t82;
-    const double t87 = t86 * t52;
-    const double t88 = t85 + t87;
-    const double t89 = t44 * t88;
-    const double t90 = t59 * t89;
-    const double t91 = t5 * t53;
-    const double t92 = m_1 * t69;
-    const double t93 = m_2 * t71;
-    const double t94 = t92 + t93;
-    const double t95 = t45 * t94;
-    const double t96 = t83 - t78;
-    const double t97 = t95 * t96;
-    const double t98 = t5 * t77;
-    const double t99 = t82 * t49;
-    const double t100 = t98 - t99;
-    const double t101 = t52 * t100;
-    const double t102 = t97 - t101;
-    const double t103 = t44 * t102;
-    const double t104 = t91 * t103;
-    const double t105 = t90 - t104;
-    const double t106 = t58 + t105;
-    const double t107 = t52 * t106;
-    const double t108 = t54 * t79;
-    const double t109 = K_r * t5;
-    const double t110 = t108 + t109;
-    const double t111 = t64 * t100;
-    const double t112 = t86 * t95;
-    const double t113 = t111 - t112;
-    const double t114 = t44 * t113;
-    const double t115 = t59 * t114;
-    const double t116 = t6 * t53;
-    const double t117 = t116 * t103;
-    const double t118 = t115 + t117;
-    const double t119 = t110 + t118;
-    const double t120 = t95 * t119;
-    const double t121 = t107 - t120;
-    const double t122 = t8 * t121;
-    const double t123 = t64 * t106;
-    const double t124 = t62 * t103;
-    const double t125 = t53 * t82;
-    const double t126 = t124 - t125;
-    const double t127 = t95 * t126;
-    const double t128 = t123 - t127;
-    const double t129 = t71 * t128;
-    const double t130 = t122 - t129;
-    const double t131 = t64 * t119;
-    const double t132 = t52 * t126;
-    const double t133 = t131 - t132;
-    const double t134 = t49 * t133;
-    const double t135 = t130 - t134;
-    const double t136 = t44 * t135;
-    const double t137 = t6 * t128;
-    const double t138 = t5 * t133;
-    const double t139 = t137 + t138;
-    const double t140 = t44 * t139;
-    double rest = t136 - t136;
-    rest += t140 - t140;
-    if (!(rest >= 0.0)) {
+    const double t61 = y_dot * t60;
+    const double x_dot = qd[0];
+    const double t62 = x_dot * t55;
+    const double t63 = t61 + t62;
+    const double t64 = t8 * t63;
+    const double t65 = t64 * t52;
+    const double phi_dot = qd[3];
+    const double t66 = phi_dot * t3;
+    const double t67 = L * t66;
+    const double t68 = theta_dot * t67;
+    const double t69 = theta_dot + phi_dot;
+    const double t70 = t6 * t4;
+    const double t71 = t5 * t3;
+    const double t72 = t70 - t71;
+    const double t73 = t69 * t72;
+    const double t74 = x_dot * t73;
+    const double t75 = t69 * t49;
+    const double t76 = y_dot * t75;
+    const double t77 = t74 + t76;
+    const double t78 = t68 + t77;
+    const double t79 = t6 * t78;
+    const double t80 = t63 * t72;
+    const double t81 = t79 - t80;
+    const double t82 = L * t53;
+    const double t83 = Theta_1 + t82;
+    const double t84 = t3 * t83;
+    const double t85 = Theta_2 * t84;
+    const double t86 = t81 * t85;
+    const double t87 = t65 + t86;
+    const double t88 = t44 * t87;
+    const double t89 = t59 * t88;
+    const double t90 = t5 * t53;
+    const double t91 = m_1 * t70;
+    const double t92 = m_2 * t72;
+    const double t93 = t91 + t92;
+    const double t94 = t45 * t93;
+    const double t95 = t80 - t79;
+    const double t96 = t94 * t95;
+    const double t97 = t5 * t78;
+    const double t98 = t63 * t49;
+    const double t99 = t97 - t98;
+    const double t100 = t52 * t99;
+    const double t101 = t96 - t100;
+    const double t102 = t101 * t44;
+    const double t103 = t90 * t102;
+    const double t104 = t89 - t103;
+    const double t105 = t58 + t104;
+    const double t106 = t52 * t105;
+    const double t107 = t54 * t60;
+    const double t108 = K_r * t5;
+    const double t109 = t107 + t108;
+    const double t110 = t99 * t85;
+    const double t111 = t64 * t94;
+    const double t112 = t110 - t111;
+    const double t113 = t44 * t112;
+    const double t114 = t59 * t113;
+    const double t115 = t6 * t53;
+    const double t116 = t115 * t102;
+    const double t117 = t114 + t116;
+    const double t118 = t109 + t117;
+    const double t119 = t94 * t118;
+    const double t120 = t106 - t119;
+    const double t121 = t8 * t120;
+    const double t122 = t85 * t105;
+    const double t123 = t83 * t102;
+    const double t124 = t53 * t63;
+    const double t125 = t123 - t124;
+    const double t126 = t94 * t125;
+    const double t127 = t122 - t126;
+    const double t128 = t72 * t127;
+    const double t129 = t121 - t128;
+    const double t130 = t85 * t118;
+    const double t131 = t52 * t125;
+    const double t132 = t130 - t131;
+    const double t133 = t49 * t132;
+    const double t134 = t129 - t133;
+    const double t135 = t44 * t134;
+    const double t136 = t6 * t127;
+    const double t137 = t5 * t132;
+    const double t138 = t136 + t137;
+    const double t139 = t44 * t138;
+    double rest = t135 - t135;
+    rest += t139 - t139;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t136;
-    lambda_B[1] = t140;
+    lambda_B[0] = t135;
+    lambda_B[1] = t139;
     return REAR_CAR_OK;
 }
 
@@ -2869,43 +2838,42 @@ rear_car_status rear_car_energy(const double q[4], const double qd[4], const rea
     double t2;
     double t3;
     rear_car_sincos(theta, &t2, &t3);
-    const double L = p->L;
-    const double t4 = L * L;
-    const double m_2 = p->m_2;
-    const double t5 = m_2 * t4;
-    const double Theta_1 = p->Theta_1;
-    const double t6 = Theta_1 + t5;
-    const double theta_dot = qd[2];
-    const double t7 = theta_dot * t6;
-    const double t8 = 0.5 * t7;
-    const double t9 = L * m_2;
-    const double y_dot = qd[1];
-    const double t10 = y_dot * t3;
-    const double x_dot = qd[0];
-    const double t11 = x_dot * t2;
-    const double t12 = t10 - t11;
-    const double t13 = t9 * t12;
-    const double t14 = t8 + t13;
-    const double t15 = theta_dot * t14;
     const double m_1 = p->m_1;
-    const double t16 = m_1 + m_2;
-    const double t17 = x_dot * x_dot;
-    const double t18 = y_dot * y_dot;
-    const double t19 = t17 + t18;
-    const double t20 = t16 * t19;
-    const double t21 = 0.5 * t20;
+    const double m_2 = p->m_2;
+    const double t4 = m_1 + m_2;
+    const double x_dot = qd[0];
+    const double t5 = x_dot * x_dot;
+    const double y_dot = qd[1];
+    const double t6 = y_dot * y_dot;
+    const double t7 = t5 + t6;
+    const double t8 = t4 * t7;
+    const double t9 = 0.5 * t8;
     const double phi_dot = qd[3];
-    const double t22 = phi_dot * phi_dot;
+    const double t10 = phi_dot * phi_dot;
     const double Theta_2 = p->Theta_2;
-    const double t23 = Theta_2 * t22;
-    const double t24 = 0.5 * t23;
-    const double t25 = t21 + t24;
-    const double t26 = t15 + t25;
-    double rest = t26 - t26;
-    if (!(rest >= 0.0)) {
+    const double t11 = Theta_2 * t10;
+    const double t12 = 0.5 * t11;
+    const double t13 = t9 + t12;
+    const double L = p->L;
+    const double t14 = L * m_2;
+    const double t15 = y_dot * t3;
+    const double t16 = x_dot * t2;
+    const double t17 = t15 - t16;
+    const double t18 = t14 * t17;
+    const double t19 = L * t14;
+    const double Theta_1 = p->Theta_1;
+    const double t20 = Theta_1 + t19;
+    const double theta_dot = qd[2];
+    const double t21 = theta_dot * t20;
+    const double t22 = 0.5 * t21;
+    const double t23 = t18 + t22;
+    const double t24 = theta_dot * t23;
+    const double t25 = t13 + t24;
+    double rest = t25 - t25;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    T_U[0] = t26;
+    T_U[0] = t25;
     T_U[1] = 0.0;
     return REAR_CAR_OK;
 }
@@ -2932,7 +2900,7 @@ rear_car_status rear_car_singularity(const double q[4], const rear_car_params *p
     const double t9 = t7 * t7;
     const double t10 = 1.0 + t9;
     const double t11 = sqrt(t10);
-    const double t12 = (t11 != 0.0) ? (t8 / t11) : 0.0;
+    const double t12 = ((t11 != 0.0) ? t8 : 0.0) / ((t11 != 0.0) ? t11 : 1.0);
     const double t13 = t12 * t12;
     const double t5 = sine[1];
     const double t14 = t5 * t4;
@@ -2940,7 +2908,7 @@ rear_car_status rear_car_singularity(const double q[4], const rear_car_params *p
     const double t3 = sine[0];
     const double t15 = t6 * t3;
     const double t16 = t14 + t15;
-    const double t17 = (t11 != 0.0) ? (t16 / t11) : 0.0;
+    const double t17 = ((t11 != 0.0) ? t16 : 0.0) / ((t11 != 0.0) ? t11 : 1.0);
     const double t18 = t6 * t6;
     const double t19 = t18 * t17;
     const double t20 = t17 * t19;
@@ -2949,7 +2917,7 @@ rear_car_status rear_car_singularity(const double q[4], const rear_car_params *p
     const double t23 = t5 * t3;
     const double t24 = t22 - t23;
     const double t25 = -t24;
-    const double t26 = (t11 != 0.0) ? (t25 / t11) : 0.0;
+    const double t26 = ((t11 != 0.0) ? t25 : 0.0) / ((t11 != 0.0) ? t11 : 1.0);
     const double t27 = t5 * t26;
     const double t28 = t6 * t17;
     const double t29 = 2.0 * t28;
@@ -2965,10 +2933,10 @@ rear_car_status rear_car_singularity(const double q[4], const rear_car_params *p
     const double t39 = t38 * t38;
     const double t40 = t37 + t39;
     const double t41 = t35 + t40;
-    const double t42 = (t41 != 0.0) ? (t13 / t41) : 0.0;
+    const double t42 = ((t41 != 0.0) ? t13 : 0.0) / ((t41 != 0.0) ? t41 : 1.0);
     double rest = t33 - t33;
     rest += t42 - t42;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     measure[0] = t33;

@@ -14,7 +14,7 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           2      5      0      0      1      0
+ * mass_matrix                           2      4      0      0      1      0
  * coriolis_matrix                       0      4      0      0      1      0
  * coriolis_force                        0      6      0      0      1      0
  * potential_force                       0      0      0      0      0      0
@@ -24,32 +24,32 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     49      3      0      2      0
- * weighted_nullspace_projector         14     53      4      0      2      0
+ * weighted_pseudoinverse               17     47      3      0      2      0
+ * weighted_nullspace_projector         14     52      4      0      2      0
  * control_matrix                        0      0      0      0      1      0
  * projected_control_matrix              3     11      3      0      2      0
  * projected_control_pseudoinverse       1      3      1      0      2      0
- * orthogonal_complement                 1      6      2      0      2      0
- * projected_mass_matrix                10     45      3      0      2      0
- * projected_coriolis_matrix            74    205      3      0      2      0
+ * orthogonal_complement                 1      5      2      0      2      0
+ * projected_mass_matrix                10     43      3      0      2      0
+ * projected_coriolis_matrix            73    195      3      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                   3     12      1      0      2      0
- * minimal_coriolis_matrix              13     41      1      0      2      0
+ * minimal_mass_matrix                   3     11      1      0      2      0
+ * minimal_coriolis_matrix              13     36      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      5      1      0      2      0
- * admissible_velocity                   5     21      2      0      2      0
- * admissible_acceleration              17     76      2      0      2      0
+ * admissible_velocity                   5     20      2      0      2      0
+ * admissible_acceleration              17     75      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                      7     17      1      0      2      0
+ * inverse_dynamics                      7     15      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                         5     16      1      0      2      0
- * forward_dynamics                     35     91      1      0      2      0
- * multipliers                          38     89      1      0      2      0
- * energy                                7     16      0      0      1      0
+ * forward_dynamics                     35     90      1      0      2      0
+ * multipliers                          38     88      1      0      2      0
+ * energy                                7     15      0      0      1      0
  * singularity                           9     20      4      1      2      0
  * (changes of sign are not counted)
  *
@@ -345,17 +345,16 @@ rear_car_status rear_car_mass_matrix_f(const float q[4], const rear_car_params_f
     const float t6 = t2 * t5;
     const float t7 = -t6;
     const float t8 = t3 * t5;
-    const float t9 = L * L;
-    const float t10 = m_2 * t9;
+    const float t9 = L * t5;
     const float Theta_1 = p->Theta_1;
-    const float t11 = Theta_1 + t10;
+    const float t10 = Theta_1 + t9;
     const float Theta_2 = p->Theta_2;
     float rest = t4 - t4;
     rest += t7 - t7;
     rest += t8 - t8;
-    rest += t11 - t11;
+    rest += t10 - t10;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     G[0] = t4;
@@ -368,7 +367,7 @@ rear_car_status rear_car_mass_matrix_f(const float q[4], const rear_car_params_f
     G[7] = 0.0f;
     G[8] = t7;
     G[9] = t8;
-    G[10] = t11;
+    G[10] = t10;
     G[11] = 0.0f;
     G[12] = 0.0f;
     G[13] = 0.0f;
@@ -397,7 +396,7 @@ rear_car_status rear_car_coriolis_matrix_f(const float q[4], const float qd[4], 
     const float t9 = -t8;
     float rest = t7 - t7;
     rest += t9 - t9;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     C[0] = 0.0f;
@@ -441,7 +440,7 @@ rear_car_status rear_car_coriolis_force_f(const float q[4], const float qd[4], c
     const float t11 = -t10;
     float rest = t8 - t8;
     rest += t11 - t11;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -507,7 +506,7 @@ rear_car_status rear_car_constraint_jacobian_f(const float q[4], const rear_car_
     rest += t10 - t10;
     rest += t14 - t14;
     rest += t16 - t16;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     B[0] = t3;
@@ -561,7 +560,7 @@ rear_car_status rear_car_constraint_jacobian_dot_f(const float q[4], const float
     rest += t13 - t13;
     rest += t17 - t17;
     rest += t19 - t19;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -638,7 +637,7 @@ rear_car_status rear_car_constraint_pseudoinverse_f(const float q[4], const rear
     rest += t35 - t35;
     rest += t38 - t38;
     rest += t40 - t40;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -702,7 +701,7 @@ rear_car_status rear_car_nullspace_projector_f(const float q[4], const rear_car_
     rest += t24 - t24;
     rest += t26 - t26;
     rest += t27 - t27;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -833,7 +832,7 @@ rear_car_status rear_car_nullspace_projector_dot_f(const float q[4], const float
     rest += t70 - t70;
     rest += t80 - t80;
     rest += t84 - t84;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -889,16 +888,16 @@ rear_car_status rear_car_weighted_pseudoinverse_f(const float q[4], const rear_c
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -935,48 +934,46 @@ rear_car_status rear_car_weighted_pseudoinverse_f(const float q[4], const rear_c
     const float t54 = t6 * t4;
     const float t55 = t5 * t3;
     const float t56 = t54 - t55;
-    const float t57 = L * L;
-    const float t58 = m_2 * t57;
-    const float t59 = Theta_1 + t58;
+    const float t57 = m_2 * t19;
+    const float t58 = Theta_1 + t57;
+    const float t59 = Theta_2 * t58;
     const float t60 = t3 * t59;
-    const float t61 = Theta_2 * t60;
-    const float t62 = t56 * t61;
-    const float t63 = t53 - t62;
-    const float t64 = t44 * t63;
-    const float t65 = Theta_2 * t59;
-    const float t66 = t65 / t25;
-    const float t67 = t48 * t66;
-    const float t68 = m_1 * t54;
-    const float t69 = m_2 * t56;
-    const float t70 = t68 + t69;
-    const float t71 = t45 * t70;
-    const float t72 = t8 * t71;
-    const float t73 = t49 * t61;
-    const float t74 = t72 + t73;
-    const float t75 = t44 * t74;
-    const float t76 = -t75;
-    const float t77 = t55 * t66;
-    const float t78 = t45 / t25;
-    const float t79 = t20 * t78;
-    const float t80 = m_1 + m_2;
-    const float t81 = t4 * t80;
-    const float t82 = t78 * t81;
-    const float t83 = -t82;
-    float rest = t64 - t64;
-    rest += t67 - t67;
-    rest += t76 - t76;
+    const float t61 = t56 * t60;
+    const float t62 = t53 - t61;
+    const float t63 = t44 * t62;
+    const float t64 = t59 / t25;
+    const float t65 = t48 * t64;
+    const float t66 = m_1 * t54;
+    const float t67 = m_2 * t56;
+    const float t68 = t66 + t67;
+    const float t69 = t45 * t68;
+    const float t70 = t8 * t69;
+    const float t71 = t49 * t60;
+    const float t72 = t70 + t71;
+    const float t73 = t44 * t72;
+    const float t74 = -t73;
+    const float t75 = t55 * t64;
+    const float t76 = t45 / t25;
+    const float t77 = t22 * t76;
+    const float t78 = m_1 + m_2;
+    const float t79 = t4 * t78;
+    const float t80 = t79 * t76;
+    const float t81 = -t80;
+    float rest = t63 - t63;
+    rest += t65 - t65;
+    rest += t74 - t74;
+    rest += t75 - t75;
     rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t83 - t83;
-    if (!(rest >= 0.0f)) {
+    rest += t81 - t81;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    B_G_pinv[0] = t64;
-    B_G_pinv[1] = t67;
-    B_G_pinv[2] = t76;
-    B_G_pinv[3] = t77;
-    B_G_pinv[4] = t79;
-    B_G_pinv[5] = t83;
+    B_G_pinv[0] = t63;
+    B_G_pinv[1] = t65;
+    B_G_pinv[2] = t74;
+    B_G_pinv[3] = t75;
+    B_G_pinv[4] = t77;
+    B_G_pinv[5] = t81;
     B_G_pinv[6] = 0.0f;
     B_G_pinv[7] = 0.0f;
     return REAR_CAR_OK;
@@ -1016,16 +1013,16 @@ rear_car_status rear_car_weighted_nullspace_projector_f(const float q[4], const 
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -1049,69 +1046,68 @@ rear_car_status rear_car_weighted_nullspace_projector_f(const float q[4], const 
     if (!(t26 > t43)) {
         return REAR_CAR_MASS_RANK;
     }
-    const float t44 = L * L;
-    const float t45 = Theta_2 * t44;
-    const float t46 = t45 / t25;
-    const float t47 = t6 * t4;
-    const float t48 = m_1 * t47;
-    const float t49 = t5 * t3;
-    const float t50 = t47 - t49;
-    const float t51 = m_2 * t50;
-    const float t52 = t48 + t51;
-    const float t53 = t47 * t52;
-    const float t54 = t46 * t53;
-    const float t55 = t5 * t4;
-    const float t56 = m_1 * t55;
-    const float t57 = t6 * t3;
-    const float t58 = t55 + t57;
-    const float t59 = m_2 * t58;
-    const float t60 = t56 + t59;
-    const float t61 = t47 * t60;
-    const float t62 = t46 * t61;
-    const float t63 = t3 * t47;
-    const float t64 = m_2 * t44;
-    const float t65 = Theta_1 + t64;
-    const float t66 = L * Theta_2;
-    const float t67 = t65 * t66;
-    const float t68 = t67 / t25;
-    const float t69 = t63 * t68;
-    const float t70 = t55 * t52;
-    const float t71 = t46 * t70;
-    const float t72 = t55 * t60;
-    const float t73 = t46 * t72;
-    const float t74 = t3 * t55;
-    const float t75 = t74 * t68;
-    const float t76 = t66 / t25;
-    const float t77 = t3 * t52;
-    const float t78 = t76 * t77;
-    const float t79 = t3 * t60;
-    const float t80 = t76 * t79;
-    const float t81 = Theta_2 * t65;
-    const float t82 = t81 / t25;
-    const float t83 = t7 * t82;
-    float rest = t54 - t54;
-    rest += t62 - t62;
-    rest += t69 - t69;
-    rest += t71 - t71;
-    rest += t73 - t73;
-    rest += t75 - t75;
-    rest += t78 - t78;
-    rest += t80 - t80;
-    rest += t83 - t83;
-    if (!(rest >= 0.0f)) {
+    const float t44 = Theta_2 * t19;
+    const float t45 = t44 / t25;
+    const float t46 = t6 * t4;
+    const float t47 = m_1 * t46;
+    const float t48 = t5 * t3;
+    const float t49 = t46 - t48;
+    const float t50 = m_2 * t49;
+    const float t51 = t47 + t50;
+    const float t52 = t46 * t51;
+    const float t53 = t45 * t52;
+    const float t54 = t5 * t4;
+    const float t55 = m_1 * t54;
+    const float t56 = t6 * t3;
+    const float t57 = t54 + t56;
+    const float t58 = m_2 * t57;
+    const float t59 = t55 + t58;
+    const float t60 = t46 * t59;
+    const float t61 = t45 * t60;
+    const float t62 = t3 * t46;
+    const float t63 = m_2 * t19;
+    const float t64 = Theta_1 + t63;
+    const float t65 = L * Theta_2;
+    const float t66 = t64 * t65;
+    const float t67 = t66 / t25;
+    const float t68 = t62 * t67;
+    const float t69 = t54 * t51;
+    const float t70 = t45 * t69;
+    const float t71 = t54 * t59;
+    const float t72 = t45 * t71;
+    const float t73 = t3 * t54;
+    const float t74 = t73 * t67;
+    const float t75 = t65 / t25;
+    const float t76 = t3 * t51;
+    const float t77 = t75 * t76;
+    const float t78 = t3 * t59;
+    const float t79 = t75 * t78;
+    const float t80 = Theta_2 * t64;
+    const float t81 = t80 / t25;
+    const float t82 = t7 * t81;
+    float rest = t53 - t53;
+    rest += t61 - t61;
+    rest += t68 - t68;
+    rest += t70 - t70;
+    rest += t72 - t72;
+    rest += t74 - t74;
+    rest += t77 - t77;
+    rest += t79 - t79;
+    rest += t82 - t82;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    N_BG[0] = t54;
-    N_BG[1] = t62;
-    N_BG[2] = t69;
+    N_BG[0] = t53;
+    N_BG[1] = t61;
+    N_BG[2] = t68;
     N_BG[3] = 0.0f;
-    N_BG[4] = t71;
-    N_BG[5] = t73;
-    N_BG[6] = t75;
+    N_BG[4] = t70;
+    N_BG[5] = t72;
+    N_BG[6] = t74;
     N_BG[7] = 0.0f;
-    N_BG[8] = t78;
-    N_BG[9] = t80;
-    N_BG[10] = t83;
+    N_BG[8] = t77;
+    N_BG[9] = t79;
+    N_BG[10] = t82;
     N_BG[11] = 0.0f;
     N_BG[12] = 0.0f;
     N_BG[13] = 0.0f;
@@ -1132,7 +1128,7 @@ rear_car_status rear_car_control_matrix_f(const float q[4], const rear_car_param
     rear_car_sincos_f(theta, &t2, &t3);
     float rest = t3 - t3;
     rest += t2 - t2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     M[0] = t3;
@@ -1189,7 +1185,7 @@ rear_car_status rear_car_projected_control_matrix_f(const float q[4], const rear
     float rest = t19 - t19;
     rest += t21 - t21;
     rest += t23 - t23;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     M_tilde[0] = t19;
@@ -1244,7 +1240,7 @@ rear_car_status rear_car_projected_control_pseudoinverse_f(const float q[4], con
     float rest = t4 - t4;
     rest += t3 - t3;
     rest += t18 - t18;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     M_tilde_pinv[0] = t4;
@@ -1295,19 +1291,18 @@ rear_car_status rear_car_orthogonal_complement_f(const float q[4], const rear_ca
         }
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = 1.0f / t4;
-    const float t19 = t3 * t18;
-    const float t20 = t5 / t8;
-    float rest = t19 - t19;
-    rest += t20 - t20;
-    if (!(rest >= 0.0f)) {
+    const float t18 = t3 / t4;
+    const float t19 = t5 / t8;
+    float rest = t18 - t18;
+    rest += t19 - t19;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0f;
     F_B[1] = 0.0f;
-    F_B[2] = t19;
+    F_B[2] = t18;
     F_B[3] = 0.0f;
-    F_B[4] = t20;
+    F_B[4] = t19;
     F_B[5] = 0.0f;
     F_B[6] = 0.0f;
     F_B[7] = 1.0f;
@@ -1354,72 +1349,70 @@ rear_car_status rear_car_projected_mass_matrix_f(const float q[4], const rear_ca
     const float t21 = t6 * t6;
     const float t22 = t4 * t21;
     const float t23 = t4 * t22;
-    const float t24 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t25 = m_1 * t24;
-    const float m_2 = p->m_2;
-    const float t26 = m_2 + t25;
-    const float t27 = L * t26;
-    const float t28 = L * t27;
     const float Theta_1 = p->Theta_1;
-    const float t29 = Theta_1 * t7;
-    const float t30 = t28 + t29;
-    const float t31 = t23 * t30;
-    const float t32 = t20 * t31;
-    const float t33 = t5 * t6;
+    const float t24 = Theta_1 * t7;
+    const float t25 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t26 = m_1 * t25;
+    const float m_2 = p->m_2;
+    const float t27 = m_2 + t26;
+    const float t28 = t18 * t27;
+    const float t29 = t24 + t28;
+    const float t30 = t23 * t29;
+    const float t31 = t20 * t30;
+    const float t32 = t5 * t6;
+    const float t33 = t4 * t32;
     const float t34 = t4 * t33;
-    const float t35 = t4 * t34;
-    const float t36 = t35 * t30;
-    const float t37 = t20 * t36;
-    const float t38 = L / t19;
-    const float t39 = t6 * t4;
-    const float t40 = t3 * t39;
-    const float t41 = t40 * t30;
-    const float t42 = t38 * t41;
-    const float t43 = t5 * t5;
+    const float t35 = t34 * t29;
+    const float t36 = t20 * t35;
+    const float t37 = L / t19;
+    const float t38 = t6 * t4;
+    const float t39 = t3 * t38;
+    const float t40 = t39 * t29;
+    const float t41 = t37 * t40;
+    const float t42 = t5 * t5;
+    const float t43 = t4 * t42;
     const float t44 = t4 * t43;
-    const float t45 = t4 * t44;
-    const float t46 = t45 * t30;
-    const float t47 = t20 * t46;
-    const float t48 = t5 * t4;
-    const float t49 = t3 * t48;
-    const float t50 = t49 * t30;
-    const float t51 = t38 * t50;
-    const float t52 = m_2 * t18;
-    const float t53 = Theta_1 + t52;
-    const float t54 = t24 + (-2.0f);
-    const float t55 = t53 * t54;
-    const float t56 = m_1 + m_2;
-    const float t57 = t56 * t18;
-    const float t58 = t7 * t57;
-    const float t59 = t55 + t58;
+    const float t45 = t44 * t29;
+    const float t46 = t20 * t45;
+    const float t47 = t5 * t4;
+    const float t48 = t3 * t47;
+    const float t49 = t48 * t29;
+    const float t50 = t37 * t49;
+    const float t51 = m_2 * t18;
+    const float t52 = Theta_1 + t51;
+    const float t53 = t25 + (-2.0f);
+    const float t54 = t52 * t53;
+    const float t55 = m_1 + m_2;
+    const float t56 = t55 * t18;
+    const float t57 = t7 * t56;
+    const float t58 = t54 + t57;
+    const float t59 = t4 * t58;
     const float t60 = t4 * t59;
-    const float t61 = t4 * t60;
-    const float t62 = t53 + t61;
-    const float t63 = 1.0f / t19;
-    const float t64 = t62 * t63;
+    const float t61 = t52 + t60;
+    const float t62 = t61 / t19;
     const float Theta_2 = p->Theta_2;
-    float rest = t32 - t32;
-    rest += t37 - t37;
-    rest += t42 - t42;
-    rest += t47 - t47;
-    rest += t51 - t51;
-    rest += t64 - t64;
+    float rest = t31 - t31;
+    rest += t36 - t36;
+    rest += t41 - t41;
+    rest += t46 - t46;
+    rest += t50 - t50;
+    rest += t62 - t62;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    G_tilde[0] = t32;
-    G_tilde[1] = t37;
-    G_tilde[2] = t42;
+    G_tilde[0] = t31;
+    G_tilde[1] = t36;
+    G_tilde[2] = t41;
     G_tilde[3] = 0.0f;
-    G_tilde[4] = t37;
-    G_tilde[5] = t47;
-    G_tilde[6] = t51;
+    G_tilde[4] = t36;
+    G_tilde[5] = t46;
+    G_tilde[6] = t50;
     G_tilde[7] = 0.0f;
-    G_tilde[8] = t42;
-    G_tilde[9] = t51;
-    G_tilde[10] = t64;
+    G_tilde[8] = t41;
+    G_tilde[9] = t50;
+    G_tilde[10] = t62;
     G_tilde[11] = 0.0f;
     G_tilde[12] = 0.0f;
     G_tilde[13] = 0.0f;
@@ -1468,301 +1461,290 @@ rear_car_status rear_car_projected_coriolis_matrix_f(const float q[4], const flo
     const float t21 = t14 * t20;
     const float t22 = t18 / t21;
     const float t23 = t6 * t4;
-    const float x_dot = qd[0];
-    const float t24 = x_dot * t6;
-    const float y_dot = qd[1];
-    const float t25 = y_dot * t5;
-    const float t26 = t24 + t25;
-    const float t27 = t4 * t26;
-    const float t28 = L * t27;
-    const float theta_dot = qd[2];
-    const float t29 = theta_dot * t3;
-    const float t30 = t28 + t29;
-    const float t31 = L * t7;
-    const float t32 = L * t31;
-    const float t33 = t4 * t4;
-    const float t34 = t33 + (-2.0f);
-    const float t35 = t14 + t34;
-    const float t36 = t32 + t35;
-    const float t37 = t6 * t36;
     const float m_2 = p->m_2;
-    const float t38 = m_2 * t37;
-    const float t39 = t5 * t4;
-    const float t40 = t3 * t39;
-    const float m_1 = p->m_1;
-    const float t41 = m_1 + m_2;
-    const float t42 = t41 * t18;
-    const float t43 = t40 * t42;
-    const float t44 = t38 - t43;
-    const float t45 = t4 * t44;
-    const float t46 = m_2 * t18;
+    const float t24 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t47 = Theta_1 + t46;
-    const float t48 = t41 + t47;
-    const float t49 = t5 * t3;
-    const float t50 = t3 * t49;
-    const float t51 = t3 * t50;
-    const float t52 = t48 * t51;
-    const float t53 = t45 - t52;
-    const float t54 = t4 * t53;
-    const float t55 = t7 + t15;
-    const float t56 = 1.0f - t55;
+    const float t25 = Theta_1 + t24;
+    const float t26 = t4 * t4;
+    const float t27 = 2.0f - t26;
+    const float x_dot = qd[0];
+    const float t28 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t29 = y_dot * t5;
+    const float t30 = t28 + t29;
+    const float t31 = t4 * t30;
+    const float t32 = L * t31;
+    const float theta_dot = qd[2];
+    const float t33 = theta_dot * t3;
+    const float t34 = t32 + t33;
+    const float t35 = t4 * t34;
+    const float t36 = t27 * t35;
+    const float t37 = t5 * t36;
+    const float phi_dot = qd[3];
+    const float t38 = phi_dot * t6;
+    const float t39 = t14 * t38;
+    const float t40 = t37 + t39;
+    const float t41 = t3 * t40;
+    const float t42 = t25 * t41;
+    const float m_1 = p->m_1;
+    const float t43 = m_1 + m_2;
+    const float t44 = 2.0f * t43;
+    const float t45 = t25 - t44;
+    const float t46 = t3 * t38;
+    const float t47 = t14 * t46;
+    const float t48 = t45 * t47;
+    const float t49 = t7 + t15;
+    const float t50 = 1.0f - t49;
+    const float t51 = t6 * t50;
+    const float t52 = m_2 * t51;
+    const float t53 = t26 + (-2.0f);
+    const float t54 = t14 + t53;
+    const float t55 = t7 * t18;
+    const float t56 = t54 + t55;
     const float t57 = t6 * t56;
     const float t58 = m_2 * t57;
-    const float t59 = t54 + t58;
-    const float t60 = t30 * t59;
-    const float t61 = 2.0f * t41;
-    const float t62 = t47 - t61;
-    const float phi_dot = qd[3];
-    const float t63 = phi_dot * t6;
-    const float t64 = t3 * t63;
-    const float t65 = t14 * t64;
-    const float t66 = t62 * t65;
-    const float t67 = t60 + t66;
-    const float t68 = L * t67;
-    const float t69 = L * t68;
-    const float t70 = 2.0f - t33;
-    const float t71 = t4 * t30;
-    const float t72 = t70 * t71;
-    const float t73 = t5 * t72;
-    const float t74 = t14 * t63;
-    const float t75 = t73 + t74;
-    const float t76 = t3 * t75;
-    const float t77 = t47 * t76;
-    const float t78 = t69 + t77;
-    const float t79 = t4 * t78;
-    const float t80 = t30 * t49;
-    const float t81 = t47 * t80;
-    const float t82 = t79 - t81;
-    const float t83 = t4 * t82;
-    const float t84 = t47 * t65;
-    const float t85 = t83 - t84;
-    const float t86 = t23 * t85;
-    const float t87 = t22 * t86;
-    const float t88 = (-1.0f) + t18;
-    const float t89 = t41 * t88;
-    const float t90 = t89 - t47;
-    const float t91 = t3 * t90;
-    const float t92 = t6 * t91;
-    const float t93 = m_2 * t39;
-    const float t94 = t92 + t93;
-    const float t95 = t4 * t94;
-    const float t96 = (-2.0f) + t32;
-    const float t97 = t5 * t96;
-    const float t98 = m_2 * t97;
-    const float t99 = t95 + t98;
-    const float t100 = t4 * t99;
-    const float t101 = t6 * t3;
-    const float t102 = t101 * t48;
-    const float t103 = t100 + t102;
-    const float t104 = t4 * t103;
-    const float t105 = t7 * t14;
-    const float t106 = 1.0f - t105;
-    const float t107 = t5 * t106;
-    const float t108 = m_2 * t107;
-    const float t109 = t104 + t108;
-    const float t110 = t30 * t109;
-    const float t111 = phi_dot * t5;
-    const float t112 = t3 * t111;
-    const float t113 = t14 * t112;
-    const float t114 = t62 * t113;
-    const float t115 = t110 + t114;
-    const float t116 = L * t115;
-    const float t117 = L * t116;
-    const float t118 = t3 * t23;
-    const float t119 = t30 * t118;
-    const float t120 = t34 * t119;
-    const float t121 = t47 * t120;
-    const float t122 = t117 + t121;
-    const float t123 = t4 * t122;
-    const float t124 = t30 * t101;
-    const float t125 = t47 * t124;
-    const float t126 = t123 + t125;
-    const float t127 = t4 * t126;
-    const float t128 = t3 * t112;
-    const float t129 = t3 * t128;
-    const float t130 = t14 * t129;
-    const float t131 = t47 * t130;
-    const float t132 = t127 - t131;
-    const float t133 = t23 * t132;
-    const float t134 = t22 * t133;
-    const float t135 = L * t18;
-    const float t136 = t135 / t21;
-    const float t137 = t4 * t23;
-    const float t138 = 2.0f * t47;
-    const float t139 = t138 - t41;
-    const float t140 = phi_dot * t3;
-    const float t141 = t14 * t140;
-    const float t142 = t139 * t141;
-    const float t143 = t3 * t142;
-    const float t144 = phi_dot * t4;
-    const float t145 = t4 * t144;
-    const float t146 = t14 * t145;
-    const float t147 = t42 * t146;
-    const float t148 = t143 + t147;
-    const float t149 = t137 * t148;
-    const float t150 = t136 * t149;
-    const float t151 = 1.0f - t18;
-    const float t152 = t41 * t151;
-    const float t153 = t47 + t152;
-    const float t154 = t3 * t153;
-    const float t155 = t5 * t154;
-    const float t156 = m_2 * t23;
-    const float t157 = t155 + t156;
-    const float t158 = t4 * t157;
-    const float t159 = t6 * t96;
-    const float t160 = m_2 * t159;
-    const float t161 = t158 + t160;
-    const float t162 = t4 * t161;
-    const float t163 = t49 * t48;
-    const float t164 = t162 - t163;
-    const float t165 = t4 * t164;
-    const float t166 = t6 * t106;
-    const float t167 = m_2 * t166;
-    const float t168 = t165 + t167;
-    const float t169 = t30 * t168;
-    const float t170 = t66 + t169;
-    const float t171 = L * t170;
-    const float t172 = L * t171;
-    const float t173 = t30 * t40;
-    const float t174 = t70 * t173;
-    const float t175 = t47 * t174;
-    const float t176 = t172 + t175;
-    const float t177 = t4 * t176;
-    const float t178 = t177 - t81;
-    const float t179 = t4 * t178;
-    const float t180 = t3 * t64;
-    const float t181 = t3 * t180;
-    const float t182 = t14 * t181;
-    const float t183 = t47 * t182;
-    const float t184 = t179 - t183;
-    const float t185 = t39 * t184;
-    const float t186 = t22 * t185;
-    const float t187 = t39 * t132;
-    const float t188 = t22 * t187;
-    const float t189 = t4 * t39;
-    const float t190 = t189 * t148;
-    const float t191 = t136 * t190;
-    const float t192 = 2.0f - t32;
-    const float t193 = t192 - t33;
-    const float t194 = t41 * t193;
-    const float t195 = t47 * t70;
-    const float t196 = t194 + t195;
-    const float t197 = t5 * t196;
-    const float t198 = m_2 * t118;
-    const float t199 = t197 + t198;
-    const float t200 = t4 * t199;
-    const float t201 = t101 * t96;
+    const float t59 = t5 * t4;
+    const float t60 = t3 * t59;
+    const float t61 = t43 * t18;
+    const float t62 = t60 * t61;
+    const float t63 = t58 - t62;
+    const float t64 = t4 * t63;
+    const float t65 = t43 + t25;
+    const float t66 = t5 * t3;
+    const float t67 = t3 * t66;
+    const float t68 = t3 * t67;
+    const float t69 = t65 * t68;
+    const float t70 = t64 - t69;
+    const float t71 = t4 * t70;
+    const float t72 = t52 + t71;
+    const float t73 = t34 * t72;
+    const float t74 = t48 + t73;
+    const float t75 = t18 * t74;
+    const float t76 = t42 + t75;
+    const float t77 = t4 * t76;
+    const float t78 = t34 * t66;
+    const float t79 = t25 * t78;
+    const float t80 = t77 - t79;
+    const float t81 = t4 * t80;
+    const float t82 = t25 * t47;
+    const float t83 = t81 - t82;
+    const float t84 = t23 * t83;
+    const float t85 = t22 * t84;
+    const float t86 = t6 * t3;
+    const float t87 = t34 * t86;
+    const float t88 = t25 * t87;
+    const float t89 = t3 * t23;
+    const float t90 = t34 * t89;
+    const float t91 = t53 * t90;
+    const float t92 = t25 * t91;
+    const float t93 = phi_dot * t5;
+    const float t94 = t3 * t93;
+    const float t95 = t14 * t94;
+    const float t96 = t45 * t95;
+    const float t97 = t7 * t14;
+    const float t98 = 1.0f - t97;
+    const float t99 = t5 * t98;
+    const float t100 = m_2 * t99;
+    const float t101 = t86 * t65;
+    const float t102 = (-1.0f) + t18;
+    const float t103 = t43 * t102;
+    const float t104 = t103 - t25;
+    const float t105 = t3 * t104;
+    const float t106 = t6 * t105;
+    const float t107 = m_2 * t59;
+    const float t108 = t106 + t107;
+    const float t109 = t4 * t108;
+    const float t110 = (-2.0f) + t55;
+    const float t111 = t5 * t110;
+    const float t112 = m_2 * t111;
+    const float t113 = t109 + t112;
+    const float t114 = t4 * t113;
+    const float t115 = t101 + t114;
+    const float t116 = t4 * t115;
+    const float t117 = t100 + t116;
+    const float t118 = t34 * t117;
+    const float t119 = t96 + t118;
+    const float t120 = t18 * t119;
+    const float t121 = t92 + t120;
+    const float t122 = t4 * t121;
+    const float t123 = t88 + t122;
+    const float t124 = t4 * t123;
+    const float t125 = t3 * t94;
+    const float t126 = t3 * t125;
+    const float t127 = t14 * t126;
+    const float t128 = t25 * t127;
+    const float t129 = t124 - t128;
+    const float t130 = t23 * t129;
+    const float t131 = t22 * t130;
+    const float t132 = L * t18;
+    const float t133 = t132 / t21;
+    const float t134 = t4 * t23;
+    const float t135 = t26 * t61;
+    const float t136 = 2.0f * t25;
+    const float t137 = t136 - t43;
+    const float t138 = t3 * t137;
+    const float t139 = t3 * t138;
+    const float t140 = t135 + t139;
+    const float t141 = phi_dot * t14;
+    const float t142 = t140 * t141;
+    const float t143 = t134 * t142;
+    const float t144 = t133 * t143;
+    const float t145 = t34 * t60;
+    const float t146 = t27 * t145;
+    const float t147 = t25 * t146;
+    const float t148 = t6 * t98;
+    const float t149 = m_2 * t148;
+    const float t150 = 1.0f - t18;
+    const float t151 = t43 * t150;
+    const float t152 = t25 + t151;
+    const float t153 = t3 * t152;
+    const float t154 = t5 * t153;
+    const float t155 = m_2 * t23;
+    const float t156 = t154 + t155;
+    const float t157 = t4 * t156;
+    const float t158 = t6 * t110;
+    const float t159 = m_2 * t158;
+    const float t160 = t157 + t159;
+    const float t161 = t4 * t160;
+    const float t162 = t66 * t65;
+    const float t163 = t161 - t162;
+    const float t164 = t4 * t163;
+    const float t165 = t149 + t164;
+    const float t166 = t34 * t165;
+    const float t167 = t48 + t166;
+    const float t168 = t18 * t167;
+    const float t169 = t147 + t168;
+    const float t170 = t4 * t169;
+    const float t171 = t170 - t79;
+    const float t172 = t4 * t171;
+    const float t173 = t3 * t46;
+    const float t174 = t3 * t173;
+    const float t175 = t14 * t174;
+    const float t176 = t25 * t175;
+    const float t177 = t172 - t176;
+    const float t178 = t59 * t177;
+    const float t179 = t22 * t178;
+    const float t180 = t59 * t129;
+    const float t181 = t22 * t180;
+    const float t182 = t4 * t59;
+    const float t183 = t182 * t142;
+    const float t184 = t133 * t183;
+    const float t185 = L / t21;
+    const float t186 = t4 * t26;
+    const float t187 = t4 * t186;
+    const float t188 = 3.0f * t7;
+    const float t189 = t187 + t188;
+    const float t190 = t34 * t189;
+    const float t191 = t5 * t190;
+    const float t192 = t4 * t38;
+    const float t193 = t14 * t192;
+    const float t194 = t191 - t193;
+    const float t195 = t4 * t194;
+    const float t196 = 2.0f * t39;
+    const float t197 = t195 + t196;
+    const float t198 = t25 * t197;
+    const float t199 = t14 * t173;
+    const float t200 = t45 * t199;
+    const float t201 = t86 * t98;
     const float t202 = m_2 * t201;
-    const float t203 = t200 + t202;
-    const float t204 = t4 * t203;
-    const float t205 = t5 * t48;
-    const float t206 = t204 - t205;
-    const float t207 = t4 * t206;
-    const float t208 = t101 * t106;
-    const float t209 = m_2 * t208;
-    const float t210 = t207 + t209;
-    const float t211 = t30 * t210;
-    const float t212 = t14 * t180;
-    const float t213 = t62 * t212;
+    const float t203 = m_2 * t89;
+    const float t204 = t25 * t27;
+    const float t205 = 2.0f - t55;
+    const float t206 = t205 - t26;
+    const float t207 = t43 * t206;
+    const float t208 = t204 + t207;
+    const float t209 = t5 * t208;
+    const float t210 = t203 + t209;
+    const float t211 = t4 * t210;
+    const float t212 = t86 * t110;
+    const float t213 = m_2 * t212;
     const float t214 = t211 + t213;
-    const float t215 = L * t214;
-    const float t216 = L * t215;
-    const float t217 = t4 * t33;
+    const float t215 = t4 * t214;
+    const float t216 = t5 * t65;
+    const float t217 = t215 - t216;
     const float t218 = t4 * t217;
-    const float t219 = 3.0f * t7;
-    const float t220 = t218 + t219;
-    const float t221 = t30 * t220;
-    const float t222 = t5 * t221;
-    const float t223 = t4 * t63;
-    const float t224 = t14 * t223;
-    const float t225 = t222 - t224;
-    const float t226 = t4 * t225;
-    const float t227 = 2.0f * t74;
-    const float t228 = t226 + t227;
-    const float t229 = t47 * t228;
-    const float t230 = t216 + t229;
-    const float t231 = t4 * t230;
-    const float t232 = t5 * t30;
-    const float t233 = t47 * t232;
-    const float t234 = t231 - t233;
-    const float t235 = t4 * t234;
-    const float t236 = t47 * t74;
-    const float t237 = t235 - t236;
-    const float t238 = L / t21;
-    const float t239 = t237 * t238;
-    const float t240 = t47 * t34;
-    const float t241 = t33 + t96;
-    const float t242 = t41 * t241;
-    const float t243 = t240 + t242;
-    const float t244 = t6 * t243;
-    const float t245 = m_2 * t40;
-    const float t246 = t244 + t245;
-    const float t247 = t4 * t246;
-    const float t248 = t49 * t96;
-    const float t249 = m_2 * t248;
-    const float t250 = t247 + t249;
-    const float t251 = t4 * t250;
-    const float t252 = t6 * t48;
-    const float t253 = t251 + t252;
-    const float t254 = t4 * t253;
-    const float t255 = t49 * t106;
-    const float t256 = m_2 * t255;
-    const float t257 = t254 + t256;
-    const float t258 = t30 * t257;
-    const float t259 = t14 * t128;
-    const float t260 = t62 * t259;
-    const float t261 = t258 + t260;
-    const float t262 = L * t261;
-    const float t263 = L * t262;
-    const float t264 = t14 * t111;
-    const float t265 = 2.0f * t264;
-    const float t266 = t6 * t221;
-    const float t267 = t4 * t111;
-    const float t268 = t14 * t267;
-    const float t269 = t266 + t268;
-    const float t270 = t4 * t269;
-    const float t271 = t265 - t270;
-    const float t272 = t47 * t271;
-    const float t273 = t263 + t272;
-    const float t274 = t4 * t273;
-    const float t275 = t6 * t30;
-    const float t276 = t47 * t275;
-    const float t277 = t274 + t276;
-    const float t278 = t4 * t277;
-    const float t279 = t47 * t264;
-    const float t280 = t278 - t279;
-    const float t281 = t238 * t280;
-    const float t282 = t33 * t42;
-    const float t283 = t3 * t139;
-    const float t284 = t3 * t283;
-    const float t285 = t282 + t284;
-    const float t286 = t141 * t285;
-    const float t287 = t4 * t286;
-    const float t288 = t22 * t287;
-    float rest = t87 - t87;
-    rest += t134 - t134;
-    rest += t150 - t150;
-    rest += t186 - t186;
-    rest += t188 - t188;
-    rest += t191 - t191;
-    rest += t239 - t239;
-    rest += t281 - t281;
-    rest += t288 - t288;
-    if (!(rest >= 0.0f)) {
+    const float t219 = t202 + t218;
+    const float t220 = t34 * t219;
+    const float t221 = t200 + t220;
+    const float t222 = t18 * t221;
+    const float t223 = t198 + t222;
+    const float t224 = t4 * t223;
+    const float t225 = t5 * t34;
+    const float t226 = t25 * t225;
+    const float t227 = t224 - t226;
+    const float t228 = t4 * t227;
+    const float t229 = t25 * t39;
+    const float t230 = t228 - t229;
+    const float t231 = t185 * t230;
+    const float t232 = t6 * t34;
+    const float t233 = t25 * t232;
+    const float t234 = t14 * t93;
+    const float t235 = 2.0f * t234;
+    const float t236 = t6 * t190;
+    const float t237 = t4 * t93;
+    const float t238 = t14 * t237;
+    const float t239 = t236 + t238;
+    const float t240 = t4 * t239;
+    const float t241 = t235 - t240;
+    const float t242 = t25 * t241;
+    const float t243 = t14 * t125;
+    const float t244 = t45 * t243;
+    const float t245 = t66 * t98;
+    const float t246 = m_2 * t245;
+    const float t247 = t6 * t65;
+    const float t248 = m_2 * t60;
+    const float t249 = t25 * t53;
+    const float t250 = t26 + t110;
+    const float t251 = t43 * t250;
+    const float t252 = t249 + t251;
+    const float t253 = t6 * t252;
+    const float t254 = t248 + t253;
+    const float t255 = t4 * t254;
+    const float t256 = t66 * t110;
+    const float t257 = m_2 * t256;
+    const float t258 = t255 + t257;
+    const float t259 = t4 * t258;
+    const float t260 = t247 + t259;
+    const float t261 = t4 * t260;
+    const float t262 = t246 + t261;
+    const float t263 = t34 * t262;
+    const float t264 = t244 + t263;
+    const float t265 = t18 * t264;
+    const float t266 = t242 + t265;
+    const float t267 = t4 * t266;
+    const float t268 = t233 + t267;
+    const float t269 = t4 * t268;
+    const float t270 = t25 * t234;
+    const float t271 = t269 - t270;
+    const float t272 = t185 * t271;
+    const float t273 = phi_dot * t3;
+    const float t274 = t14 * t273;
+    const float t275 = t274 * t140;
+    const float t276 = t4 * t275;
+    const float t277 = t22 * t276;
+    float rest = t85 - t85;
+    rest += t131 - t131;
+    rest += t144 - t144;
+    rest += t179 - t179;
+    rest += t181 - t181;
+    rest += t184 - t184;
+    rest += t231 - t231;
+    rest += t272 - t272;
+    rest += t277 - t277;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    C_tilde[0] = t87;
-    C_tilde[1] = t134;
-    C_tilde[2] = t150;
+    C_tilde[0] = t85;
+    C_tilde[1] = t131;
+    C_tilde[2] = t144;
     C_tilde[3] = 0.0f;
-    C_tilde[4] = t186;
-    C_tilde[5] = t188;
-    C_tilde[6] = t191;
+    C_tilde[4] = t179;
+    C_tilde[5] = t181;
+    C_tilde[6] = t184;
     C_tilde[7] = 0.0f;
-    C_tilde[8] = t239;
-    C_tilde[9] = t281;
-    C_tilde[10] = t288;
+    C_tilde[8] = t231;
+    C_tilde[9] = t272;
+    C_tilde[10] = t277;
     C_tilde[11] = 0.0f;
     C_tilde[12] = 0.0f;
     C_tilde[13] = 0.0f;
@@ -1840,15 +1822,14 @@ rear_car_status rear_car_minimal_mass_matrix_f(const float q[4], const rear_car_
     const float Theta_1 = p->Theta_1;
     const float t24 = Theta_1 * t23;
     const float t25 = t22 + t24;
-    const float t26 = 1.0f / t9;
-    const float t27 = t25 * t26;
+    const float t26 = t25 / t9;
     const float Theta_2 = p->Theta_2;
-    float rest = t27 - t27;
+    float rest = t26 - t26;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    G_bar[0] = t27;
+    G_bar[0] = t26;
     G_bar[1] = 0.0f;
     G_bar[2] = 0.0f;
     G_bar[3] = Theta_2;
@@ -1895,60 +1876,55 @@ rear_car_status rear_car_minimal_coriolis_matrix_f(const float q[4], const float
         }
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t5 * t4;
-    const float t19 = t3 * t18;
-    const float m_1 = p->m_1;
+    const float t18 = L * L;
     const float m_2 = p->m_2;
-    const float t20 = m_1 + m_2;
-    const float t21 = L * L;
-    const float t22 = m_2 * t21;
+    const float t19 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 + t22;
-    const float t24 = t20 + t23;
-    const float t25 = t19 * t24;
-    const float t26 = t3 * t25;
-    const float t27 = t20 * t21;
-    const float t28 = t4 * t18;
-    const float t29 = t4 * t28;
-    const float t30 = t27 * t29;
-    const float t31 = t26 + t30;
-    const float t32 = L * t31;
-    const float t33 = L * t32;
-    const float t34 = t4 * t4;
-    const float t35 = t34 + (-2.0f);
-    const float t36 = t18 * t35;
-    const float t37 = t23 * t36;
-    const float t38 = t33 + t37;
-    const float theta_dot = qd[2];
-    const float t39 = theta_dot * t38;
+    const float t20 = Theta_1 + t19;
     const float phi_dot = qd[3];
-    const float t40 = phi_dot * t6;
-    const float t41 = t3 * t40;
-    const float t42 = (-1.0f) + t21;
-    const float t43 = t41 * t42;
-    const float t44 = t23 * t43;
-    const float t45 = t39 + t44;
-    const float t46 = t4 * t45;
-    const float t47 = theta_dot * t5;
-    const float t48 = t23 * t47;
-    const float t49 = t46 + t48;
-    const float t50 = t4 * t49;
-    const float t51 = t23 * t41;
-    const float t52 = t50 + t51;
-    const float t53 = t6 * t21;
-    const float t54 = t6 * t53;
-    const float t55 = t6 * t54;
-    const float t56 = t4 * t55;
-    const float t57 = t4 * t56;
-    const float t58 = t4 * t57;
-    const float t59 = t14 * t58;
-    const float t60 = 1.0f / t59;
-    const float t61 = t52 * t60;
-    float rest = t61 - t61;
-    if (!(rest >= 0.0f)) {
+    const float t21 = phi_dot * t6;
+    const float t22 = t3 * t21;
+    const float t23 = t20 * t22;
+    const float theta_dot = qd[2];
+    const float t24 = theta_dot * t5;
+    const float t25 = t20 * t24;
+    const float t26 = (-1.0f) + t18;
+    const float t27 = t22 * t26;
+    const float t28 = t20 * t27;
+    const float t29 = t5 * t4;
+    const float t30 = t4 * t4;
+    const float t31 = t30 + (-2.0f);
+    const float t32 = t29 * t31;
+    const float t33 = t20 * t32;
+    const float m_1 = p->m_1;
+    const float t34 = m_1 + m_2;
+    const float t35 = t34 * t18;
+    const float t36 = t30 * t35;
+    const float t37 = t34 + t20;
+    const float t38 = t7 * t37;
+    const float t39 = t36 + t38;
+    const float t40 = t29 * t39;
+    const float t41 = t18 * t40;
+    const float t42 = t33 + t41;
+    const float t43 = theta_dot * t42;
+    const float t44 = t28 + t43;
+    const float t45 = t4 * t44;
+    const float t46 = t25 + t45;
+    const float t47 = t4 * t46;
+    const float t48 = t23 + t47;
+    const float t49 = t6 * t18;
+    const float t50 = t6 * t49;
+    const float t51 = t6 * t50;
+    const float t52 = t4 * t51;
+    const float t53 = t4 * t52;
+    const float t54 = t4 * t53;
+    const float t55 = t14 * t54;
+    const float t56 = t48 / t55;
+    float rest = t56 - t56;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    C_bar[0] = t61;
+    C_bar[0] = t56;
     C_bar[1] = 0.0f;
     C_bar[2] = 0.0f;
     C_bar[3] = 0.0f;
@@ -2011,7 +1987,7 @@ rear_car_status rear_car_minimal_control_matrix_f(const float q[4], const rear_c
     }
     const float t18 = 1.0f / t4;
     float rest = t18 - t18;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     M_bar[0] = t18;
@@ -2072,20 +2048,19 @@ rear_car_status rear_car_admissible_velocity_f(const float q[4], const float qd[
     const float t29 = t5 * t4;
     const float t30 = t25 * t29;
     const float t31 = t18 * t30;
-    const float t32 = 1.0f / t14;
-    const float t33 = t3 * t25;
-    const float t34 = t32 * t33;
+    const float t32 = t3 * t25;
+    const float t33 = t32 / t14;
     const float phi_dot = qd[3];
     float rest = t28 - t28;
     rest += t31 - t31;
-    rest += t34 - t34;
+    rest += t33 - t33;
     rest += phi_dot - phi_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     qd_admissible[0] = t28;
     qd_admissible[1] = t31;
-    qd_admissible[2] = t34;
+    qd_admissible[2] = t33;
     qd_admissible[3] = phi_dot;
     return REAR_CAR_OK;
 }
@@ -2202,30 +2177,29 @@ rear_car_status rear_car_admissible_acceleration_f(const float q[4], const float
     const float t86 = t27 * t85;
     const float t87 = t82 - t86;
     const float t88 = t58 * t87;
-    const float t89 = 1.0f / t56;
-    const float t90 = t14 * t61;
-    const float t91 = t3 * t90;
-    const float t92 = phi_dot * t27;
-    const float t93 = L * t92;
-    const float t94 = t91 + t93;
-    const float t95 = t4 * t94;
-    const float t96 = L * t95;
-    const float t97 = theta_ddot * t3;
-    const float t98 = t3 * t97;
-    const float t99 = t14 * t98;
-    const float t100 = t96 + t99;
-    const float t101 = t89 * t100;
+    const float t89 = t14 * t61;
+    const float t90 = t3 * t89;
+    const float t91 = phi_dot * t27;
+    const float t92 = L * t91;
+    const float t93 = t90 + t92;
+    const float t94 = t4 * t93;
+    const float t95 = L * t94;
+    const float t96 = theta_ddot * t3;
+    const float t97 = t3 * t96;
+    const float t98 = t14 * t97;
+    const float t99 = t95 + t98;
+    const float t100 = t99 / t56;
     const float phi_ddot = qdd[3];
     float rest = t59 - t59;
     rest += t88 - t88;
-    rest += t101 - t101;
+    rest += t100 - t100;
     rest += phi_ddot - phi_ddot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
     qdd_admissible[1] = t88;
-    qdd_admissible[2] = t101;
+    qdd_admissible[2] = t100;
     qdd_admissible[3] = phi_ddot;
     return REAR_CAR_OK;
 }
@@ -2240,7 +2214,7 @@ rear_car_status rear_car_projected_configuration_f(const float q[4], const rear_
     rest += y - y;
     rest += theta - theta;
     rest += phi - phi;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2269,62 +2243,59 @@ rear_car_status rear_car_inverse_dynamics_f(const float q[4], const float qd[4],
     const float t6 = cosine[1];
     const float t7 = L * t6;
     const float t8 = fabsf(t7);
-    const float t9 = fabsf(L);
-    const float t10 = t9 * 1.9073486e-06f;
+    const float t9 = L * 1.9073486e-06f;
     const float t5 = sine[1];
-    if (!(t8 > t10)) {
-        const float t11 = t5 * t5;
-        const float t12 = t7 * t7;
-        const float t13 = t11 + t12;
-        const float t14 = t9 * t9;
-        const float t15 = 1.0f + t14;
-        const float t16 = t15 * 3.637979e-12f;
-        if (!(t13 > t16)) {
+    if (!(t8 > t9)) {
+        const float t10 = t5 * t5;
+        const float t11 = t7 * t7;
+        const float t12 = t10 + t11;
+        const float t13 = L * L;
+        const float t14 = 1.0f + t13;
+        const float t15 = t14 * 3.637979e-12f;
+        if (!(t12 > t15)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
     const float m_1 = p->m_1;
     const float m_2 = p->m_2;
-    const float t17 = m_1 + m_2;
+    const float t16 = m_1 + m_2;
     const float x_ddot = qdd[0];
     const float t4 = cosine[0];
-    const float t18 = x_ddot * t4;
+    const float t17 = x_ddot * t4;
     const float y_ddot = qdd[1];
     const float t3 = sine[0];
-    const float t19 = y_ddot * t3;
-    const float t20 = t18 + t19;
-    const float t21 = t17 * t20;
-    const float t22 = L * m_2;
+    const float t18 = y_ddot * t3;
+    const float t19 = t17 + t18;
+    const float t20 = t16 * t19;
+    const float t21 = L * m_2;
     const float theta_dot = qd[2];
-    const float t23 = theta_dot * theta_dot;
-    const float t24 = t22 * t23;
-    const float t25 = t21 - t24;
-    const float t26 = L * L;
-    const float t27 = m_2 * t26;
+    const float t22 = theta_dot * theta_dot;
+    const float t23 = t21 * t22;
+    const float t24 = t20 - t23;
+    const float t25 = y_ddot * t4;
+    const float t26 = x_ddot * t3;
+    const float t27 = t25 - t26;
+    const float t28 = t21 * t27;
+    const float t29 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t28 = Theta_1 + t27;
+    const float t30 = Theta_1 + t29;
     const float theta_ddot = qdd[2];
-    const float t29 = theta_ddot * t28;
-    const float t30 = t4 * t22;
-    const float t31 = y_ddot * t30;
-    const float t32 = t3 * t22;
-    const float t33 = x_ddot * t32;
-    const float t34 = t31 - t33;
-    const float t35 = t29 + t34;
-    const float t36 = t35 / t7;
-    const float t37 = t5 * t36;
-    const float t38 = t25 + t37;
+    const float t31 = theta_ddot * t30;
+    const float t32 = t28 + t31;
+    const float t33 = t32 / t7;
+    const float t34 = t5 * t33;
+    const float t35 = t24 + t34;
     const float phi_ddot = qdd[3];
     const float Theta_2 = p->Theta_2;
-    const float t39 = phi_ddot * Theta_2;
-    float rest = t38 - t38;
-    rest += t39 - t39;
-    if (!(rest >= 0.0f)) {
+    const float t36 = phi_ddot * Theta_2;
+    float rest = t35 - t35;
+    rest += t36 - t36;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    u[0] = t38;
-    u[1] = t39;
+    u[0] = t35;
+    u[1] = t36;
     return REAR_CAR_OK;
 }
 
@@ -2358,7 +2329,7 @@ rear_car_status rear_car_actuator_velocity_f(const float q[4], const float qd[4]
     const float phi_dot = qd[3];
     float rest = t6 - t6;
     rest += phi_dot - phi_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     nu[0] = t6;
@@ -2415,7 +2386,7 @@ rear_car_status rear_car_actuator_mass_matrix_f(const float q[4], const rear_car
     const float Theta_2 = p->Theta_2;
     float rest = t25 - t25;
     rest += Theta_2 - Theta_2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     G_nu[0] = t25;
@@ -2482,7 +2453,7 @@ rear_car_status rear_car_actuator_bias_f(const float q[4], const float qd[4], co
     const float t27 = t25 * t26;
     const float t28 = t22 * t27;
     float rest = t28 - t28;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     bias_nu[0] = t28;
@@ -2491,31 +2462,31 @@ rear_car_status rear_car_actuator_bias_f(const float q[4], const float qd[4], co
 }
 
 rear_car_status rear_car_forward_dynamics_f(const float q[4], const float qd[4], const float u[2], const rear_car_params_f *p, float qdd[4]) {
-    const float phi = q[3];
-    const float t1 = fabsf(phi);
     const float theta = q[2];
-    const float t2 = fabsf(theta);
+    const float t1 = fabsf(theta);
+    const float phi = q[3];
+    const float t2 = fabsf(phi);
     if (!(100.0f >= t1)) {
         return REAR_CAR_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    const float angle[4] = {phi, theta, theta, theta};
+    const float angle[4] = {theta, phi, phi, phi};
     float sine[4];
     float cosine[4];
     rear_car_sincos_group_f(2, angle, sine, cosine);
-    const float t3 = sine[0];
-    const float t7 = t3 * t3;
-    const float L = p->L;
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
     const float t5 = sine[1];
-    const float t9 = t5 * t8;
+    const float t7 = t5 * t5;
+    const float L = p->L;
+    const float t6 = cosine[1];
+    const float t8 = L * t6;
+    const float t3 = sine[0];
+    const float t9 = t3 * t8;
     const float t10 = t9 * t9;
     const float t11 = t7 + t10;
-    const float t6 = cosine[1];
-    const float t12 = t6 * t8;
+    const float t4 = cosine[0];
+    const float t12 = t4 * t8;
     const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
@@ -2524,16 +2495,16 @@ rear_car_status rear_car_forward_dynamics_f(const float q[4], const float qd[4],
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t6 * t6;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -2557,119 +2528,118 @@ rear_car_status rear_car_forward_dynamics_f(const float q[4], const float qd[4],
     if (!(t26 > t43)) {
         return REAR_CAR_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * m_2;
+    const float t44 = L * m_2;
     const float theta_dot = qd[2];
-    const float t46 = theta_dot * t45;
-    const float t47 = theta_dot * t6;
-    const float t48 = t46 * t47;
+    const float t45 = theta_dot * t44;
+    const float t46 = theta_dot * t4;
+    const float t47 = t45 * t46;
     const float K_r = u[0];
-    const float t49 = K_r * t6;
-    const float t50 = t48 + t49;
-    const float t51 = t12 * t50;
-    const float t52 = theta_dot * t5;
-    const float t53 = t46 * t52;
-    const float t54 = K_r * t5;
-    const float t55 = t53 + t54;
-    const float t56 = t9 * t55;
-    const float t57 = t51 + t56;
-    const float t58 = Theta_2 * t57;
-    const float t59 = t12 * t58;
-    const float t60 = t44 * t59;
-    const float t61 = L * L;
-    const float t62 = m_2 * t61;
-    const float t63 = Theta_1 + t62;
-    const float t64 = t3 * t63;
-    const float t65 = Theta_2 * t64;
-    const float phi_dot = qd[3];
-    const float t66 = phi_dot * t3;
-    const float t67 = L * t66;
-    const float t68 = theta_dot * t67;
-    const float t69 = theta_dot + phi_dot;
-    const float t70 = t6 * t4;
-    const float t71 = t5 * t3;
-    const float t72 = t70 - t71;
-    const float t73 = t69 * t72;
-    const float x_dot = qd[0];
-    const float t74 = x_dot * t73;
-    const float t75 = t5 * t4;
-    const float t76 = t6 * t3;
-    const float t77 = t75 + t76;
-    const float t78 = t69 * t77;
+    const float t48 = K_r * t4;
+    const float t49 = t47 + t48;
+    const float t50 = t12 * t49;
+    const float t51 = theta_dot * t3;
+    const float t52 = t45 * t51;
+    const float t53 = K_r * t3;
+    const float t54 = t52 + t53;
+    const float t55 = t9 * t54;
+    const float t56 = t50 + t55;
+    const float t57 = Theta_2 * t56;
+    const float t58 = t12 * t57;
+    const float t59 = 1.0f / t25;
+    const float t60 = t58 * t59;
     const float y_dot = qd[1];
-    const float t79 = y_dot * t78;
-    const float t80 = t74 + t79;
-    const float t81 = t68 + t80;
-    const float t82 = t6 * t81;
-    const float t83 = y_dot * t52;
-    const float t84 = x_dot * t47;
-    const float t85 = t83 + t84;
-    const float t86 = t85 * t72;
-    const float t87 = t82 - t86;
-    const float t88 = t65 * t87;
-    const float t89 = t8 * t85;
-    const float t90 = L * Theta_2;
-    const float t91 = m_1 * t75;
-    const float t92 = m_2 * t77;
-    const float t93 = t91 + t92;
-    const float t94 = t90 * t93;
-    const float t95 = t89 * t94;
-    const float t96 = t88 + t95;
-    const float t97 = t44 * t96;
-    const float t98 = t60 - t97;
-    const float t99 = t9 * t58;
-    const float t100 = t44 * t99;
-    const float t101 = t5 * t81;
-    const float t102 = t85 * t77;
-    const float t103 = t101 - t102;
-    const float t104 = t65 * t103;
-    const float t105 = m_1 * t70;
-    const float t106 = m_2 * t72;
-    const float t107 = t105 + t106;
-    const float t108 = t90 * t107;
-    const float t109 = t89 * t108;
-    const float t110 = t104 - t109;
-    const float t111 = t44 * t110;
-    const float t112 = t100 - t111;
-    const float t113 = t3 * t58;
-    const float t114 = t44 * t113;
-    const float t115 = t86 - t82;
-    const float t116 = t108 * t115;
-    const float t117 = t94 * t103;
-    const float t118 = t116 - t117;
-    const float t119 = t44 * t118;
-    const float t120 = t114 - t119;
-    const float t121 = m_1 + m_2;
+    const float t61 = y_dot * t51;
+    const float x_dot = qd[0];
+    const float t62 = x_dot * t46;
+    const float t63 = t61 + t62;
+    const float t64 = t8 * t63;
+    const float t65 = L * Theta_2;
+    const float t66 = t3 * t6;
+    const float t67 = m_1 * t66;
+    const float t68 = t4 * t5;
+    const float t69 = t66 + t68;
+    const float t70 = m_2 * t69;
+    const float t71 = t67 + t70;
+    const float t72 = t65 * t71;
+    const float t73 = t64 * t72;
+    const float phi_dot = qd[3];
+    const float t74 = phi_dot * t5;
+    const float t75 = L * t74;
+    const float t76 = theta_dot * t75;
+    const float t77 = theta_dot + phi_dot;
+    const float t78 = t4 * t6;
+    const float t79 = t3 * t5;
+    const float t80 = t78 - t79;
+    const float t81 = t77 * t80;
+    const float t82 = x_dot * t81;
+    const float t83 = t77 * t69;
+    const float t84 = y_dot * t83;
+    const float t85 = t82 + t84;
+    const float t86 = t76 + t85;
+    const float t87 = t4 * t86;
+    const float t88 = t63 * t80;
+    const float t89 = t87 - t88;
+    const float t90 = L * t44;
+    const float t91 = Theta_1 + t90;
+    const float t92 = t5 * t91;
+    const float t93 = Theta_2 * t92;
+    const float t94 = t89 * t93;
+    const float t95 = t73 + t94;
+    const float t96 = t59 * t95;
+    const float t97 = t60 - t96;
+    const float t98 = t9 * t57;
+    const float t99 = t98 * t59;
+    const float t100 = t3 * t86;
+    const float t101 = t63 * t69;
+    const float t102 = t100 - t101;
+    const float t103 = t102 * t93;
+    const float t104 = m_1 * t78;
+    const float t105 = m_2 * t80;
+    const float t106 = t104 + t105;
+    const float t107 = t65 * t106;
+    const float t108 = t64 * t107;
+    const float t109 = t103 - t108;
+    const float t110 = t59 * t109;
+    const float t111 = t99 - t110;
+    const float t112 = t5 * t57;
+    const float t113 = t112 * t59;
+    const float t114 = t88 - t87;
+    const float t115 = t107 * t114;
+    const float t116 = t72 * t102;
+    const float t117 = t115 - t116;
+    const float t118 = t117 * t59;
+    const float t119 = t113 - t118;
+    const float t120 = m_1 + m_2;
     const float T = u[1];
-    const float t122 = T * t12;
-    const float t123 = t121 * t122;
-    const float t124 = t5 * t45;
-    const float t125 = T * t3;
-    const float t126 = t124 * t125;
-    const float t127 = t123 - t126;
-    const float t128 = t12 * t127;
-    const float t129 = T * t9;
-    const float t130 = t121 * t129;
-    const float t131 = t6 * t45;
-    const float t132 = t131 * t125;
-    const float t133 = t130 + t132;
-    const float t134 = t9 * t133;
-    const float t135 = t128 + t134;
-    const float t136 = t63 * t125;
-    const float t137 = t3 * t136;
-    const float t138 = t135 + t137;
-    const float t139 = t44 * t138;
-    float rest = t98 - t98;
-    rest += t112 - t112;
-    rest += t120 - t120;
-    rest += t139 - t139;
-    if (!(rest >= 0.0f)) {
+    const float t121 = T * t12;
+    const float t122 = t120 * t121;
+    const float t123 = t3 * t44;
+    const float t124 = T * t5;
+    const float t125 = t123 * t124;
+    const float t126 = t122 - t125;
+    const float t127 = t12 * t126;
+    const float t128 = T * t9;
+    const float t129 = t120 * t128;
+    const float t130 = t4 * t44;
+    const float t131 = t130 * t124;
+    const float t132 = t129 + t131;
+    const float t133 = t9 * t132;
+    const float t134 = t127 + t133;
+    const float t135 = t124 * t91;
+    const float t136 = t5 * t135;
+    const float t137 = t134 + t136;
+    const float t138 = t59 * t137;
+    float rest = t97 - t97;
+    rest += t111 - t111;
+    rest += t119 - t119;
+    rest += t138 - t138;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    qdd[0] = t98;
-    qdd[1] = t112;
-    qdd[2] = t120;
-    qdd[3] = t139;
+    qdd[0] = t97;
+    qdd[1] = t111;
+    qdd[2] = t119;
+    qdd[3] = t138;
     return REAR_CAR_OK;
 }
 
@@ -2707,16 +2677,16 @@ rear_car_status rear_car_multipliers_f(const float q[4], const float qd[4], cons
     if (!(t14 > t17)) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t4 * t4;
-    const float m_1 = p->m_1;
-    const float t19 = m_1 * t18;
-    const float m_2 = p->m_2;
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
@@ -2758,97 +2728,96 @@ rear_car_status rear_car_multipliers_f(const float q[4], const float qd[4], cons
     const float t57 = K_r * t6;
     const float t58 = t56 + t57;
     const float t59 = m_1 + m_2;
-    const float t60 = L * L;
-    const float t61 = m_2 * t60;
-    const float t62 = Theta_1 + t61;
-    const float t63 = t3 * t62;
-    const float t64 = Theta_2 * t63;
-    const float phi_dot = qd[3];
-    const float t65 = phi_dot * t3;
-    const float t66 = L * t65;
-    const float t67 = theta_dot * t66;
-    const float t68 = theta_dot + phi_dot;
-    const float t69 = t6 * t4;
-    const float t70 = t5 * t3;
-    const float t71 = t69 - t70;
-    const float t72 = t68 * t71;
-    const float x_dot = qd[0];
-    const float t73 = x_dot * t72;
-    const float t74 = t68 * t49;
+    const float t60 = theta_dot * t5;
     const float y_dot = qd[1];
-    const float t75 = y_dot * t74;
-    const float t76 = t73 + t75;
-    const float t77 = t67 + t76;
-    const float t78 = t6 * t77;
-    const float t79 = theta_dot * t5;
-    const float t80 = y_dot * t79;
-    const float t81 = x_dot * t55;
-    const float t82 = t80 + t81;
-    const float t83 = t82 * t71;
-    const float t84 = t78 - t83;
-    const float t85 = t64 * t84;
-    const float t86 = t8 * t82;
-    const float t87 = t86 * t52;
-    const float t88 = t85 + t87;
-    const float t89 = t44 * t88;
-    const float t90 = t59 * t89;
-    const float t91 = t5 * t53;
-    const float t92 = m_1 * t69;
-    const float t93 = m_2 * t71;
-    const float t94 = t92 + t93;
-    const float t95 = t45 * t94;
-    const float t96 = t83 - t78;
-    const float t97 = t95 * t96;
-    const float t98 = t5 * t77;
-    const float t99 = t82 * t49;
-    const float t100 = t98 - t99;
-    const float t101 = t52 * t100;
-    const float t102 = t97 - t101;
-    const float t103 = t44 * t102;
-    const float t104 = t91 * t103;
-    const float t105 = t90 - t104;
-    const float t106 = t58 + t105;
-    const float t107 = t52 * t106;
-    const float t108 = t54 * t79;
-    const float t109 = K_r * t5;
-    const float t110 = t108 + t109;
-    const float t111 = t64 * t100;
-    const float t112 = t86 * t95;
-    const float t113 = t111 - t112;
-    const float t114 = t44 * t113;
-    const float t115 = t59 * t114;
-    const float t116 = t6 * t53;
-    const float t117 = t116 * t103;
-    const float t118 = t115 + t117;
-    const float t119 = t110 + t118;
-    const float t120 = t95 * t119;
-    const float t121 = t107 - t120;
-    const float t122 = t8 * t121;
-    const float t123 = t64 * t106;
-    const float t124 = t62 * t103;
-    const float t125 = t53 * t82;
-    const float t126 = t124 - t125;
-    const float t127 = t95 * t126;
-    const float t128 = t123 - t127;
-    const float t129 = t71 * t128;
-    const float t130 = t122 - t129;
-    const float t131 = t64 * t119;
-    const float t132 = t52 * t126;
-    const float t133 = t131 - t132;
-    const float t134 = t49 * t133;
-    const float t135 = t130 - t134;
-    const float t136 = t44 * t135;
-    const float t137 = t6 * t128;
-    const float t138 = t5 * t133;
-    const float t139 = t137 + t138;
-    const float t140 = t44 * t139;
-    float rest = t136 - t136;
-    rest += t140 - t140;
-    if (!(rest >= 0.0f)) {
+    const float t61 = y_dot * t60;
+    const float x_dot = qd[0];
+    const float t62 = x_dot * t55;
+    const float t63 = t61 + t62;
+    const float t64 = t8 * t63;
+    const float t65 = t64 * t52;
+    const float phi_dot = qd[3];
+    const float t66 = phi_dot * t3;
+    const float t67 = L * t66;
+    const float t68 = theta_dot * t67;
+    const float t69 = theta_dot + phi_dot;
+    const float t70 = t6 * t4;
+    const float t71 = t5 * t3;
+    const float t72 = t70 - t71;
+    const float t73 = t69 * t72;
+    const float t74 = x_dot * t73;
+    const float t75 = t69 * t49;
+    const float t76 = y_dot * t75;
+    const float t77 = t74 + t76;
+    const float t78 = t68 + t77;
+    const float t79 = t6 * t78;
+    const float t80 = t63 * t72;
+    const float t81 = t79 - t80;
+    const float t82 = L * t53;
+    const float t83 = Theta_1 + t82;
+    const float t84 = t3 * t83;
+    const float t85 = Theta_2 * t84;
+    const float t86 = t81 * t85;
+    const float t87 = t65 + t86;
+    const float t88 = t44 * t87;
+    const float t89 = t59 * t88;
+    const float t90 = t5 * t53;
+    const float t91 = m_1 * t70;
+    const float t92 = m_2 * t72;
+    const float t93 = t91 + t92;
+    const float t94 = t45 * t93;
+    const float t95 = t80 - t79;
+    const float t96 = t94 * t95;
+    const float t97 = t5 * t78;
+    const float t98 = t63 * t49;
+    const float t99 = t97 - t98;
+    const float t100 = t52 * t99;
+    const float t101 = t96 - t100;
+    const float t102 = t101 * t44;
+    const float t103 = t90 * t102;
+    const float t104 = t89 - t103;
+    const float t105 = t58 + t104;
+    const float t106 = t52 * t105;
+    const float t107 = t54 * t60;
+    const float t108 = K_r * t5;
+    const float t109 = t107 + t108;
+    const float t110 = t99 * t85;
+    const float t111 = t64 * t94;
+    const float t112 = t110 - t111;
+    const float t113 = t44 * t112;
+    const float t114 = t59 * t113;
+    const float t115 = t6 * t53;
+    const float t116 = t115 * t102;
+    const float t117 = t114 + t116;
+    const float t118 = t109 + t117;
+    const float t119 = t94 * t118;
+    const float t120 = t106 - t119;
+    const float t121 = t8 * t120;
+    const float t122 = t85 * t105;
+    const float t123 = t83 * t102;
+    const float t124 = t53 * t63;
+    const float t125 = t123 - t124;
+    const float t126 = t94 * t125;
+    const float t127 = t122 - t126;
+    const float t128 = t72 * t127;
+    const float t129 = t121 - t128;
+    const float t130 = t85 * t118;
+    const float t131 = t52 * t125;
+    const float t132 = t130 - t131;
+    const float t133 = t49 * t132;
+    const float t134 = t129 - t133;
+    const float t135 = t44 * t134;
+    const float t136 = t6 * t127;
+    const float t137 = t5 * t132;
+    const float t138 = t136 + t137;
+    const float t139 = t44 * t138;
+    float rest = t135 - t135;
+    rest += t139 - t139;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t136;
-    lambda_B[1] = t140;
+    lambda_B[0] = t135;
+    lambda_B[1] = t139;
     return REAR_CAR_OK;
 }
 
@@ -2861,43 +2830,42 @@ rear_car_status rear_car_energy_f(const float q[4], const float qd[4], const rea
     float t2;
     float t3;
     rear_car_sincos_f(theta, &t2, &t3);
-    const float L = p->L;
-    const float t4 = L * L;
-    const float m_2 = p->m_2;
-    const float t5 = m_2 * t4;
-    const float Theta_1 = p->Theta_1;
-    const float t6 = Theta_1 + t5;
-    const float theta_dot = qd[2];
-    const float t7 = theta_dot * t6;
-    const float t8 = 0.5f * t7;
-    const float t9 = L * m_2;
-    const float y_dot = qd[1];
-    const float t10 = y_dot * t3;
-    const float x_dot = qd[0];
-    const float t11 = x_dot * t2;
-    const float t12 = t10 - t11;
-    const float t13 = t9 * t12;
-    const float t14 = t8 + t13;
-    const float t15 = theta_dot * t14;
     const float m_1 = p->m_1;
-    const float t16 = m_1 + m_2;
-    const float t17 = x_dot * x_dot;
-    const float t18 = y_dot * y_dot;
-    const float t19 = t17 + t18;
-    const float t20 = t16 * t19;
-    const float t21 = 0.5f * t20;
+    const float m_2 = p->m_2;
+    const float t4 = m_1 + m_2;
+    const float x_dot = qd[0];
+    const float t5 = x_dot * x_dot;
+    const float y_dot = qd[1];
+    const float t6 = y_dot * y_dot;
+    const float t7 = t5 + t6;
+    const float t8 = t4 * t7;
+    const float t9 = 0.5f * t8;
     const float phi_dot = qd[3];
-    const float t22 = phi_dot * phi_dot;
+    const float t10 = phi_dot * phi_dot;
     const float Theta_2 = p->Theta_2;
-    const float t23 = Theta_2 * t22;
-    const float t24 = 0.5f * t23;
-    const float t25 = t21 + t24;
-    const float t26 = t15 + t25;
-    float rest = t26 - t26;
-    if (!(rest >= 0.0f)) {
+    const float t11 = Theta_2 * t10;
+    const float t12 = 0.5f * t11;
+    const float t13 = t9 + t12;
+    const float L = p->L;
+    const float t14 = L * m_2;
+    const float t15 = y_dot * t3;
+    const float t16 = x_dot * t2;
+    const float t17 = t15 - t16;
+    const float t18 = t14 * t17;
+    const float t19 = L * t14;
+    const float Theta_1 = p->Theta_1;
+    const float t20 = Theta_1 + t19;
+    const float theta_dot = qd[2];
+    const float t21 = theta_dot * t20;
+    const float t22 = 0.5f * t21;
+    const float t23 = t18 + t22;
+    const float t24 = theta_dot * t23;
+    const float t25 = t13 + t24;
+    float rest = t25 - t25;
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
-    T_U[0] = t26;
+    T_U[0] = t25;
     T_U[1] = 0.0f;
     return REAR_CAR_OK;
 }
@@ -2924,7 +2892,7 @@ rear_car_status rear_car_singularity_f(const float q[4], const rear_car_params_f
     const float t9 = t7 * t7;
     const float t10 = 1.0f + t9;
     const float t11 = sqrtf(t10);
-    const float t12 = (t11 != 0.0f) ? (t8 / t11) : 0.0f;
+    const float t12 = ((t11 != 0.0f) ? t8 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t13 = t12 * t12;
     const float t5 = sine[1];
     const float t14 = t5 * t4;
@@ -2932,7 +2900,7 @@ rear_car_status rear_car_singularity_f(const float q[4], const rear_car_params_f
     const float t3 = sine[0];
     const float t15 = t6 * t3;
     const float t16 = t14 + t15;
-    const float t17 = (t11 != 0.0f) ? (t16 / t11) : 0.0f;
+    const float t17 = ((t11 != 0.0f) ? t16 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t18 = t6 * t6;
     const float t19 = t18 * t17;
     const float t20 = t17 * t19;
@@ -2941,7 +2909,7 @@ rear_car_status rear_car_singularity_f(const float q[4], const rear_car_params_f
     const float t23 = t5 * t3;
     const float t24 = t22 - t23;
     const float t25 = -t24;
-    const float t26 = (t11 != 0.0f) ? (t25 / t11) : 0.0f;
+    const float t26 = ((t11 != 0.0f) ? t25 : 0.0f) / ((t11 != 0.0f) ? t11 : 1.0f);
     const float t27 = t5 * t26;
     const float t28 = t6 * t17;
     const float t29 = 2.0f * t28;
@@ -2957,10 +2925,10 @@ rear_car_status rear_car_singularity_f(const float q[4], const rear_car_params_f
     const float t39 = t38 * t38;
     const float t40 = t37 + t39;
     const float t41 = t35 + t40;
-    const float t42 = (t41 != 0.0f) ? (t13 / t41) : 0.0f;
+    const float t42 = ((t41 != 0.0f) ? t13 : 0.0f) / ((t41 != 0.0f) ? t41 : 1.0f);
     float rest = t33 - t33;
     rest += t42 - t42;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return REAR_CAR_NOT_FINITE;
     }
     measure[0] = t33;

@@ -47,7 +47,7 @@
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  0      0      0      0      0      0
  * actuator_bias                         0      0      0      0      0      0
- * forward_dynamics                      3     15      2      0      1      0
+ * forward_dynamics                      3     14      2      0      1      0
  * multipliers                           1      7      0      0      1      0
  * energy                                2      7      0      0      0      0
  * singularity                           0      0      0      0      0      0
@@ -291,7 +291,7 @@ skate_status skate_mass_matrix_f(const float q[3], const skate_params_f *p, floa
     const float m_s = p->m_s;
     float rest = Theta_s - Theta_s;
     rest += m_s - m_s;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     G[0] = Theta_s;
@@ -364,7 +364,7 @@ skate_status skate_constraint_jacobian_f(const float q[3], const skate_params_f 
     const float t4 = -t3;
     float rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     B[0] = 0.0f;
@@ -388,7 +388,7 @@ skate_status skate_constraint_jacobian_dot_f(const float q[3], const float qd[3]
     const float t5 = phi_dot * t2;
     float rest = t4 - t4;
     rest += t5 - t5;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     B_dot[0] = 0.0f;
@@ -410,7 +410,7 @@ skate_status skate_constraint_pseudoinverse_f(const float q[3], const skate_para
     const float t4 = -t3;
     float rest = t2 - t2;
     rest += t4 - t4;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     B_pinv[0] = 0.0f;
@@ -435,7 +435,7 @@ skate_status skate_nullspace_projector_f(const float q[3], const skate_params_f 
     float rest = t4 - t4;
     rest += t5 - t5;
     rest += t6 - t6;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     N_B[0] = 1.0f;
@@ -472,7 +472,7 @@ skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3]
     float rest = t7 - t7;
     rest += t11 - t11;
     rest += t6 - t6;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     N_B_dot[0] = 0.0f;
@@ -510,7 +510,7 @@ skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params
     const float t10 = -t3;
     float rest = t2 - t2;
     rest += t10 - t10;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     B_G_pinv[0] = 0.0f;
@@ -545,7 +545,7 @@ skate_status skate_weighted_nullspace_projector_f(const float q[3], const skate_
     float rest = t10 - t10;
     rest += t11 - t11;
     rest += t12 - t12;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     N_BG[0] = 1.0f;
@@ -572,7 +572,7 @@ skate_status skate_control_matrix_f(const float q[3], const skate_params_f *p, f
     skate_sincos_f(phi, &t2, &t3);
     float rest = t3 - t3;
     rest += t2 - t2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     M[0] = 1.0f;
@@ -596,7 +596,7 @@ skate_status skate_projected_control_matrix_f(const float q[3], const skate_para
     skate_sincos_f(phi, &t2, &t3);
     float rest = t3 - t3;
     rest += t2 - t2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     M_tilde[0] = 1.0f;
@@ -620,7 +620,7 @@ skate_status skate_projected_control_pseudoinverse_f(const float q[3], const ska
     skate_sincos_f(phi, &t2, &t3);
     float rest = t3 - t3;
     rest += t2 - t2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     M_tilde_pinv[0] = 1.0f;
@@ -651,7 +651,7 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
     }
     const float t5 = t2 / t3;
     float rest = t5 - t5;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     F_B[0] = 1.0f;
@@ -684,7 +684,7 @@ skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_
     rest += t5 - t5;
     rest += t7 - t7;
     rest += t9 - t9;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     G_tilde[0] = Theta_s;
@@ -724,7 +724,7 @@ skate_status skate_projected_coriolis_matrix_f(const float q[3], const float qd[
     rest += t9 - t9;
     rest += t13 - t13;
     rest += t6 - t6;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     C_tilde[0] = 0.0f;
@@ -779,7 +779,7 @@ skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f 
     const float Theta_s = p->Theta_s;
     float rest = Theta_s - Theta_s;
     rest += t5 - t5;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     G_bar[0] = Theta_s;
@@ -812,7 +812,7 @@ skate_status skate_minimal_coriolis_matrix_f(const float q[3], const float qd[3]
     const float t7 = m_s / t6;
     const float t8 = t5 * t7;
     float rest = t8 - t8;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     C_bar[0] = 0.0f;
@@ -858,7 +858,7 @@ skate_status skate_minimal_control_matrix_f(const float q[3], const skate_params
     }
     const float t5 = 1.0f / t3;
     float rest = t5 - t5;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     M_bar[0] = 1.0f;
@@ -889,7 +889,7 @@ skate_status skate_admissible_velocity_f(const float q[3], const float qd[3], co
     float rest = phi_dot - phi_dot;
     rest += t7 - t7;
     rest += t8 - t8;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     qd_admissible[0] = phi_dot;
@@ -933,7 +933,7 @@ skate_status skate_admissible_acceleration_f(const float q[3], const float qd[3]
     float rest = phi_ddot - phi_ddot;
     rest += t13 - t13;
     rest += t19 - t19;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     qdd_admissible[0] = phi_ddot;
@@ -950,7 +950,7 @@ skate_status skate_projected_configuration_f(const float q[3], const skate_param
     float rest = phi - phi;
     rest += x - x;
     rest += y - y;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     q_projected[0] = phi;
@@ -981,7 +981,7 @@ skate_status skate_inverse_dynamics_f(const float q[3], const float qd[3], const
     const float t8 = m_s * t7;
     float rest = t4 - t4;
     rest += t8 - t8;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -1018,7 +1018,7 @@ skate_status skate_actuator_velocity_f(const float q[3], const float qd[3], cons
     const float phi_dot = qd[0];
     float rest = phi_dot - phi_dot;
     rest += t6 - t6;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     nu[0] = phi_dot;
@@ -1032,7 +1032,7 @@ skate_status skate_actuator_mass_matrix_f(const float q[3], const skate_params_f
     const float m_s = p->m_s;
     float rest = Theta_s - Theta_s;
     rest += m_s - m_s;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     G_nu[0] = Theta_s;
@@ -1071,37 +1071,36 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
-    const float t10 = 1.0f / Theta_s;
     const float T = u[0];
-    const float t11 = T * t10;
-    const float t12 = 1.0f / m_s;
+    const float t10 = T / Theta_s;
+    const float t11 = 1.0f / m_s;
     const float K = u[1];
-    const float t13 = K * t3;
+    const float t12 = K * t3;
     const float x_dot = qd[1];
-    const float t14 = x_dot * t3;
+    const float t13 = x_dot * t3;
     const float y_dot = qd[2];
-    const float t15 = y_dot * t2;
-    const float t16 = t14 + t15;
+    const float t14 = y_dot * t2;
+    const float t15 = t13 + t14;
     const float phi_dot = qd[0];
-    const float t17 = phi_dot * t16;
-    const float t18 = t2 * t17;
-    const float t19 = m_s * t18;
-    const float t20 = t13 - t19;
-    const float t21 = t12 * t20;
-    const float t22 = K * t2;
-    const float t23 = t3 * t17;
-    const float t24 = m_s * t23;
-    const float t25 = t22 + t24;
-    const float t26 = t12 * t25;
-    float rest = t11 - t11;
-    rest += t21 - t21;
-    rest += t26 - t26;
-    if (!(rest >= 0.0f)) {
+    const float t16 = phi_dot * t15;
+    const float t17 = t2 * t16;
+    const float t18 = m_s * t17;
+    const float t19 = t12 - t18;
+    const float t20 = t11 * t19;
+    const float t21 = K * t2;
+    const float t22 = t3 * t16;
+    const float t23 = m_s * t22;
+    const float t24 = t21 + t23;
+    const float t25 = t11 * t24;
+    float rest = t10 - t10;
+    rest += t20 - t20;
+    rest += t25 - t25;
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
-    qdd[0] = t11;
-    qdd[1] = t21;
-    qdd[2] = t26;
+    qdd[0] = t10;
+    qdd[1] = t20;
+    qdd[2] = t25;
     return SKATE_OK;
 }
 
@@ -1135,7 +1134,7 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
     const float t13 = phi_dot * m_s;
     const float t14 = t12 * t13;
     float rest = t14 - t14;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;
@@ -1159,7 +1158,7 @@ skate_status skate_energy_f(const float q[3], const float qd[3], const skate_par
     const float t8 = 0.5f * t7;
     const float t9 = t3 + t8;
     float rest = t9 - t9;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     T_U[0] = t9;

@@ -19,7 +19,7 @@ typedef struct {
 
 skate_prepared skate_prepare(const skate_params *p);
 
-/* q̈: accelerations under the inputs, (15); 17 operations instead of 25 */
+/* q̈: accelerations under the inputs, (15); 17 operations instead of 24 */
 skate_status skate_forward_dynamics_prepared(const double q[3], const double qd[3], const double u[2], const skate_prepared *p, double qdd[3]);
 
 /* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 7 operations instead of 13 */
@@ -127,14 +127,13 @@ skate_prepared skate_prepare(const skate_params *p) {
     const double v4 = fabs(m_s);
     const double v5 = v3 * v4;
     const double v6 = v5 * 2.6645352591003757e-15;
-    const double v7 = 1.0 / Theta_s;
-    const double v8 = 1.0 / m_s;
+    const double v7 = 1.0 / m_s;
     skate_prepared prepared;
     prepared.value[0] = m_s;
-    prepared.value[1] = v2;
-    prepared.value[2] = v6;
-    prepared.value[3] = v7;
-    prepared.value[4] = v8;
+    prepared.value[1] = Theta_s;
+    prepared.value[2] = v2;
+    prepared.value[3] = v6;
+    prepared.value[4] = v7;
     return prepared;
 }
 
@@ -147,43 +146,43 @@ skate_status skate_forward_dynamics_prepared(const double q[3], const double qd[
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    const double t5 = p->value[1];
-    const double t9 = p->value[2];
+    const double t5 = p->value[2];
+    const double t9 = p->value[3];
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
     const double T = u[0];
-    const double t10 = p->value[3];
-    const double t11 = T * t10;
+    const double Theta_s = p->value[1];
+    const double t10 = T / Theta_s;
     const double K = u[1];
-    const double t13 = K * t3;
+    const double t12 = K * t3;
     const double x_dot = qd[1];
-    const double t14 = x_dot * t3;
+    const double t13 = x_dot * t3;
     const double y_dot = qd[2];
-    const double t15 = y_dot * t2;
-    const double t16 = t14 + t15;
+    const double t14 = y_dot * t2;
+    const double t15 = t13 + t14;
     const double phi_dot = qd[0];
-    const double t17 = phi_dot * t16;
-    const double t18 = t2 * t17;
+    const double t16 = phi_dot * t15;
+    const double t17 = t2 * t16;
     const double m_s = p->value[0];
-    const double t19 = m_s * t18;
-    const double t20 = t13 - t19;
-    const double t12 = p->value[4];
-    const double t21 = t12 * t20;
-    const double t22 = K * t2;
-    const double t23 = t3 * t17;
-    const double t24 = m_s * t23;
-    const double t25 = t22 + t24;
-    const double t26 = t12 * t25;
-    double rest = t11 - t11;
-    rest += t21 - t21;
-    rest += t26 - t26;
-    if (!(rest >= 0.0)) {
+    const double t18 = m_s * t17;
+    const double t19 = t12 - t18;
+    const double t11 = p->value[4];
+    const double t20 = t11 * t19;
+    const double t21 = K * t2;
+    const double t22 = t3 * t16;
+    const double t23 = m_s * t22;
+    const double t24 = t21 + t23;
+    const double t25 = t11 * t24;
+    double rest = t10 - t10;
+    rest += t20 - t20;
+    rest += t25 - t25;
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
-    qdd[0] = t11;
-    qdd[1] = t21;
-    qdd[2] = t26;
+    qdd[0] = t10;
+    qdd[1] = t20;
+    qdd[2] = t25;
     return SKATE_OK;
 }
 
@@ -197,8 +196,8 @@ skate_status skate_multipliers_prepared(const double q[3], const double qd[3], c
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    const double t5 = p->value[1];
-    const double t9 = p->value[2];
+    const double t5 = p->value[2];
+    const double t9 = p->value[3];
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
@@ -212,7 +211,7 @@ skate_status skate_multipliers_prepared(const double q[3], const double qd[3], c
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
     double rest = t14 - t14;
-    if (!(rest >= 0.0)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;

@@ -70,7 +70,7 @@ skate_status skate_inverse_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     const float t8 = m_s * t7;
     float rest = t4 - t4;
     rest += t8 - t8;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -91,39 +91,38 @@ skate_status skate_forward_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     if (!(t5 > t9)) {
         return SKATE_MASS_RANK;
     }
-    const float t10 = 1.0f / Theta_s;
     const float T = u[0];
-    const float t11 = T * t10;
-    const float t12 = 1.0f / m_s;
+    const float t10 = T / Theta_s;
+    const float t11 = 1.0f / m_s;
     const float K = u[1];
     const float cos_phi = sc->cos_phi;
-    const float t13 = K * cos_phi;
+    const float t12 = K * cos_phi;
     const float x_dot = qd[1];
-    const float t14 = x_dot * cos_phi;
+    const float t13 = x_dot * cos_phi;
     const float y_dot = qd[2];
     const float sin_phi = sc->sin_phi;
-    const float t15 = y_dot * sin_phi;
-    const float t16 = t14 + t15;
+    const float t14 = y_dot * sin_phi;
+    const float t15 = t13 + t14;
     const float phi_dot = qd[0];
-    const float t17 = phi_dot * t16;
-    const float t18 = sin_phi * t17;
-    const float t19 = m_s * t18;
-    const float t20 = t13 - t19;
-    const float t21 = t12 * t20;
-    const float t22 = K * sin_phi;
-    const float t23 = cos_phi * t17;
-    const float t24 = m_s * t23;
-    const float t25 = t22 + t24;
-    const float t26 = t12 * t25;
-    float rest = t11 - t11;
-    rest += t21 - t21;
-    rest += t26 - t26;
-    if (!(rest >= 0.0f)) {
+    const float t16 = phi_dot * t15;
+    const float t17 = sin_phi * t16;
+    const float t18 = m_s * t17;
+    const float t19 = t12 - t18;
+    const float t20 = t11 * t19;
+    const float t21 = K * sin_phi;
+    const float t22 = cos_phi * t16;
+    const float t23 = m_s * t22;
+    const float t24 = t21 + t23;
+    const float t25 = t11 * t24;
+    float rest = t10 - t10;
+    rest += t20 - t20;
+    rest += t25 - t25;
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
-    qdd[0] = t11;
-    qdd[1] = t21;
-    qdd[2] = t26;
+    qdd[0] = t10;
+    qdd[1] = t20;
+    qdd[2] = t25;
     return SKATE_OK;
 }
 
@@ -152,7 +151,7 @@ skate_status skate_multipliers_sc_f(const skate_trig_f *sc, const float q[3], co
     const float t13 = phi_dot * m_s;
     const float t14 = t12 * t13;
     float rest = t14 - t14;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;

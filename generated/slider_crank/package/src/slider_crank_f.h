@@ -15,7 +15,7 @@
  * mass_matrix                           3     14      0      0      1      0
  * coriolis_matrix                       1      6      0      0      1      0
  * coriolis_force                        1      8      0      0      1      0
- * potential_force                       2     10      0      0      2      0
+ * potential_force                       2      9      0      0      2      0
  * applied_force                         0      1      0      0      0      0
  * constraint_residual                   4      4      0      0      2      0
  * constraint_jacobian                   0      4      0      0      2      0
@@ -23,8 +23,8 @@
  * constraint_pseudoinverse              9     27      1      0      2      0
  * nullspace_projector                   6     24      1      0      2      0
  * nullspace_projector_dot              27     71      1      0      2      0
- * weighted_pseudoinverse               30    103      4      0      2      0
- * weighted_nullspace_projector         23     88      1      0      2      0
+ * weighted_pseudoinverse               30     98      4      0      2      0
+ * weighted_nullspace_projector         23     86      1      0      2      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix              6     20      1      0      2      0
  * projected_control_pseudoinverse       4     11      2      0      2      0
@@ -33,22 +33,22 @@
  * projected_coriolis_matrix            64    152      1      0      2      0
  * projected_potential_force            14     45      1      0      2      0
  * projected_applied_force               8     27      1      0      2      0
- * minimal_mass_matrix                  11     37      1      0      2      0
+ * minimal_mass_matrix                  11     33      1      0      2      0
  * minimal_coriolis_matrix              24     68      3      0      2      0
- * minimal_potential_force               8     24      1      0      2      0
+ * minimal_potential_force               8     21      1      0      2      0
  * minimal_applied_force                 4     13      1      0      2      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                  16     43      3      0      2      0
  * admissible_acceleration              27     63      1      0      2      0
  * projected_configuration              47     79      3      0      7      0
- * inverse_dynamics                     16     49      1      0      2      0
+ * inverse_dynamics                     16     48      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                 11     37      1      0      2      0
- * actuator_bias                        26     91      1      0      2      0
- * forward_dynamics                     41    121      1      0      2      0
- * multipliers                          48    137      1      0      2      0
- * energy                               11     32      0      0      2      0
+ * actuator_mass_matrix                 11     33      1      0      2      0
+ * actuator_bias                        26     90      1      0      2      0
+ * forward_dynamics                     42    122      1      0      2      0
+ * multipliers                          48    135      1      0      2      0
+ * energy                               11     31      0      0      2      0
  * singularity                          10     23      6      2      2      0
  * (changes of sign are not counted)
  *
@@ -380,7 +380,7 @@ slider_crank_status slider_crank_mass_matrix_f(const float q[3], const slider_cr
     rest += t15 - t15;
     rest += t21 - t21;
     rest += m_s - m_s;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G[0] = t10;
@@ -419,7 +419,7 @@ slider_crank_status slider_crank_coriolis_matrix_f(const float q[3], const float
     const float t10 = alpha_dot * t8;
     float rest = t9 - t9;
     rest += t10 - t10;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     C[0] = 0.0f;
@@ -460,7 +460,7 @@ slider_crank_status slider_crank_coriolis_force_f(const float q[3], const float 
     const float t12 = t11 * t9;
     float rest = t10 - t10;
     rest += t12 - t12;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     C_qd[0] = t10;
@@ -484,37 +484,36 @@ slider_crank_status slider_crank_potential_force_f(const float q[3], const slide
     float sine[4];
     float cosine[4];
     slider_crank_sincos_group_f(2, angle, sine, cosine);
-    const float m_rod = p->m_rod;
-    const float g = p->g;
-    const float t7 = m_rod * g;
-    const float r = p->r;
-    const float t8 = r * t7;
     const float m_crank = p->m_crank;
-    const float t9 = r * m_crank;
-    const float t10 = g * t9;
-    const float t11 = 0.5f * t10;
-    const float t12 = t8 + t11;
+    const float t7 = 0.5f * m_crank;
+    const float m_rod = p->m_rod;
+    const float t8 = m_rod + t7;
+    const float r = p->r;
+    const float g = p->g;
+    const float t9 = r * g;
+    const float t10 = t8 * t9;
     const float t4 = cosine[0];
-    const float t13 = t4 * t12;
+    const float t11 = t4 * t10;
+    const float t12 = m_rod * g;
     const float l = p->l;
-    const float t14 = l * t7;
+    const float t13 = l * t12;
     const float t6 = cosine[1];
-    const float t15 = t6 * t14;
-    const float t16 = 0.5f * t15;
-    const float t17 = -t16;
+    const float t14 = t6 * t13;
+    const float t15 = 0.5f * t14;
+    const float t16 = -t15;
     const float s = q[2];
-    const float t18 = s - l;
+    const float t17 = s - l;
     const float k = p->k;
-    const float t19 = k * t18;
-    float rest = t13 - t13;
-    rest += t17 - t17;
-    rest += t19 - t19;
-    if (!(rest >= 0.0f)) {
+    const float t18 = k * t17;
+    float rest = t11 - t11;
+    rest += t16 - t16;
+    rest += t18 - t18;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    Q[0] = t13;
-    Q[1] = t17;
-    Q[2] = t19;
+    Q[0] = t11;
+    Q[1] = t16;
+    Q[2] = t18;
     return SLIDER_CRANK_OK;
 }
 
@@ -525,7 +524,7 @@ slider_crank_status slider_crank_applied_force_f(const float q[3], const float q
     const float t1 = s_dot * d;
     const float t2 = -t1;
     float rest = t2 - t2;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a[0] = 0.0f;
@@ -567,7 +566,7 @@ slider_crank_status slider_crank_constraint_residual_f(const float q[3], const s
     const float t14 = t13 - e;
     float rest = t10 - t10;
     rest += t14 - t14;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     g_out[0] = t10;
@@ -607,7 +606,7 @@ slider_crank_status slider_crank_constraint_jacobian_f(const float q[3], const s
     rest += t10 - t10;
     rest += t11 - t11;
     rest += t13 - t13;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B[0] = t8;
@@ -657,7 +656,7 @@ slider_crank_status slider_crank_constraint_jacobian_dot_f(const float q[3], con
     rest += t12 - t12;
     rest += t15 - t15;
     rest += t17 - t17;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B_dot[0] = t9;
@@ -740,7 +739,7 @@ slider_crank_status slider_crank_constraint_pseudoinverse_f(const float q[3], co
     rest += t41 - t41;
     rest += t43 - t43;
     rest += t47 - t47;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B_pinv[0] = t31;
@@ -815,7 +814,7 @@ slider_crank_status slider_crank_nullspace_projector_f(const float q[3], const s
     rest += t35 - t35;
     rest += t38 - t38;
     rest += t39 - t39;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     N_B[0] = t29;
@@ -966,7 +965,7 @@ slider_crank_status slider_crank_nullspace_projector_dot_f(const float q[3], con
     rest += t98 - t98;
     rest += t105 - t105;
     rest += t110 - t110;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     N_B_dot[0] = t55;
@@ -982,41 +981,41 @@ slider_crank_status slider_crank_nullspace_projector_dot_f(const float q[3], con
 }
 
 slider_crank_status slider_crank_weighted_pseudoinverse_f(const float q[3], const slider_crank_params_f *p, float B_G_pinv[6]) {
-    const float alpha = q[0];
-    const float t1 = fabsf(alpha);
     const float beta = q[1];
-    const float t2 = fabsf(beta);
+    const float t1 = fabsf(beta);
+    const float alpha = q[0];
+    const float t2 = fabsf(alpha);
     if (!(100.0f >= t1)) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const float angle[4] = {alpha, beta, beta, beta};
+    const float angle[4] = {beta, alpha, alpha, alpha};
     float sine[4];
     float cosine[4];
     slider_crank_sincos_group_f(2, angle, sine, cosine);
     const float l = p->l;
-    const float t6 = cosine[1];
-    const float t7 = l * t6;
+    const float t4 = cosine[0];
+    const float t7 = l * t4;
     const float t8 = t7 * t7;
     const float r = p->r;
-    const float t4 = cosine[0];
-    const float t9 = r * t4;
+    const float t6 = cosine[1];
+    const float t9 = r * t6;
     const float t10 = t9 * t9;
     const float t11 = r * l;
-    const float t5 = sine[1];
-    const float t12 = t4 * t5;
     const float t3 = sine[0];
-    const float t13 = t6 * t3;
+    const float t12 = t6 * t3;
+    const float t5 = sine[1];
+    const float t13 = t4 * t5;
     const float t14 = t12 + t13;
     const float t15 = t11 * t14;
     const float t16 = t15 * t15;
     const float t17 = t10 + t16;
     const float t18 = t8 + t17;
-    const float t19 = r * t3;
+    const float t19 = r * t5;
     const float t20 = t19 * t19;
-    const float t21 = l * t5;
+    const float t21 = l * t3;
     const float t22 = t21 * t21;
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
@@ -1026,154 +1025,149 @@ slider_crank_status slider_crank_weighted_pseudoinverse_f(const float q[3], cons
     if (!(t18 > t27)) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float t28 = t6 * t6;
-    const float t29 = 2.0f * t28;
-    const float t30 = 1.0f - t29;
-    const float t31 = t4 * t30;
-    const float t32 = t5 * t13;
-    const float t33 = 2.0f * t32;
-    const float t34 = t31 + t33;
-    const float m_s = p->m_s;
-    const float t35 = m_s * t34;
-    const float t36 = 0.25f * t4;
-    const float t37 = t32 + t36;
-    const float m_rod = p->m_rod;
-    const float t38 = m_rod * t37;
-    const float t39 = t35 + t38;
-    const float t40 = t4 * t39;
-    const float t41 = t3 * t3;
-    const float t42 = m_rod * t41;
-    const float t43 = m_s + t42;
-    const float t44 = t28 * t43;
-    const float t45 = t40 + t44;
-    const float t46 = l * t45;
-    const float t47 = l * t46;
-    const float t48 = t4 * t4;
-    const float J_rod = p->J_rod;
-    const float t49 = J_rod * t48;
-    const float t50 = t47 + t49;
-    const float t51 = r * t50;
-    const float t52 = r * t51;
-    const float t53 = l * l;
+    const float t28 = t4 * t4;
+    const float t29 = l * l;
     const float J_crank = p->J_crank;
-    const float t54 = J_crank * t53;
-    const float t55 = t28 * t54;
-    const float t56 = t52 + t55;
-    const float t57 = fabsf(t56);
-    const float t58 = fabsf(J_crank);
-    const float t59 = 0.5f * t58;
-    const float t60 = fabsf(m_rod);
-    const float t61 = fabsf(r);
-    const float t62 = t61 * t61;
-    const float t63 = t60 * t62;
-    const float t64 = 0.5f * t63;
-    const float t65 = t59 + t64;
-    const float t66 = t8 * t65;
-    const float t67 = 2.0f * t66;
-    const float t68 = fabsf(J_rod);
-    const float t69 = 0.5f * t68;
-    const float t70 = fabsf(l);
-    const float t71 = t70 * t70;
-    const float t72 = t60 * t71;
-    const float t73 = 0.125f * t72;
-    const float t74 = t69 + t73;
-    const float t75 = t10 * t74;
-    const float t76 = 2.0f * t75;
-    const float t77 = fabsf(m_s);
-    const float t78 = t16 * t77;
-    const float t79 = t76 + t78;
-    const float t80 = t67 + t79;
-    const float t81 = 1.4305115e-06f * t80;
-    if (!(t57 > t81)) {
+    const float t30 = J_crank * t29;
+    const float t31 = t28 * t30;
+    const float t32 = r * r;
+    const float t33 = t6 * t6;
+    const float J_rod = p->J_rod;
+    const float t34 = J_rod * t33;
+    const float t35 = 2.0f * t28;
+    const float t36 = 1.0f - t35;
+    const float t37 = t6 * t36;
+    const float t38 = t3 * t13;
+    const float t39 = 2.0f * t38;
+    const float t40 = t37 + t39;
+    const float m_s = p->m_s;
+    const float t41 = m_s * t40;
+    const float t42 = 0.25f * t6;
+    const float t43 = t38 + t42;
+    const float m_rod = p->m_rod;
+    const float t44 = m_rod * t43;
+    const float t45 = t41 + t44;
+    const float t46 = t6 * t45;
+    const float t47 = t5 * t5;
+    const float t48 = m_rod * t47;
+    const float t49 = m_s + t48;
+    const float t50 = t28 * t49;
+    const float t51 = t46 + t50;
+    const float t52 = t29 * t51;
+    const float t53 = t34 + t52;
+    const float t54 = t32 * t53;
+    const float t55 = t31 + t54;
+    const float t56 = fabsf(t55);
+    const float t57 = fabsf(J_crank);
+    const float t58 = 0.5f * t57;
+    const float t59 = fabsf(m_rod);
+    const float t60 = fabsf(r);
+    const float t61 = t60 * t60;
+    const float t62 = t59 * t61;
+    const float t63 = 0.5f * t62;
+    const float t64 = t58 + t63;
+    const float t65 = t8 * t64;
+    const float t66 = 2.0f * t65;
+    const float t67 = fabsf(J_rod);
+    const float t68 = 0.5f * t67;
+    const float t69 = fabsf(l);
+    const float t70 = t69 * t69;
+    const float t71 = t59 * t70;
+    const float t72 = 0.125f * t71;
+    const float t73 = t68 + t72;
+    const float t74 = t10 * t73;
+    const float t75 = 2.0f * t74;
+    const float t76 = fabsf(m_s);
+    const float t77 = t16 * t76;
+    const float t78 = t75 + t77;
+    const float t79 = t66 + t78;
+    const float t80 = 1.4305115e-06f * t79;
+    if (!(t56 > t80)) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t82 = l * t11;
-    const float t83 = m_s * t82;
-    const float t84 = t83 / t56;
-    const float t85 = t6 * t14;
-    const float t86 = t84 * t85;
-    const float t87 = -t86;
-    const float t88 = 1.0f / t56;
-    const float t89 = 0.5f * J_rod;
-    const float t90 = m_rod * t53;
-    const float t91 = 0.125f * t90;
-    const float t92 = t89 + t91;
-    const float t93 = t9 * t92;
-    const float t94 = 2.0f * t93;
-    const float t95 = t4 * t6;
-    const float t96 = t3 * t5;
-    const float t97 = t95 - t96;
-    const float t98 = t11 * t97;
-    const float t99 = m_rod * t98;
-    const float t100 = t7 * t99;
-    const float t101 = 0.5f * t100;
-    const float t102 = t94 - t101;
-    const float t103 = m_s * t15;
-    const float t104 = t21 * t103;
-    const float t105 = t102 + t104;
-    const float t106 = t88 * t105;
-    const float t107 = r * r;
-    const float t108 = l * t107;
-    const float t109 = m_s * t108;
-    const float t110 = t109 / t56;
-    const float t111 = t4 * t14;
-    const float t112 = t110 * t111;
-    const float t113 = -t112;
-    const float t114 = l / t56;
-    const float t115 = t4 * t97;
-    const float t116 = 0.5f * t115;
-    const float t117 = t116 - t6;
-    const float t118 = m_rod * t117;
-    const float t119 = t3 * t14;
-    const float t120 = m_s * t119;
-    const float t121 = t118 - t120;
-    const float t122 = r * t121;
-    const float t123 = r * t122;
-    const float t124 = J_crank * t6;
-    const float t125 = t123 - t124;
-    const float t126 = t114 * t125;
-    const float t127 = t92 * t48;
-    const float t128 = 2.0f * t127;
-    const float t129 = l * m_rod;
-    const float t130 = t13 * t14;
-    const float t131 = t129 * t130;
-    const float t132 = l * t131;
-    const float t133 = t128 + t132;
-    const float t134 = r * t133;
-    const float t135 = r * t134;
-    const float t136 = t55 + t135;
-    const float t137 = t88 * t136;
-    const float t138 = -t137;
-    const float t139 = t4 * t3;
-    const float t140 = 0.5f * t139;
-    const float t141 = t6 * t5;
-    const float t142 = 0.5f * t141;
-    const float t143 = t140 + t142;
-    const float t144 = t129 * t143;
-    const float t145 = l * t144;
-    const float t146 = t92 * t139;
-    const float t147 = 2.0f * t146;
-    const float t148 = t145 - t147;
-    const float t149 = r * t148;
-    const float t150 = r * t149;
-    const float t151 = t141 * t54;
-    const float t152 = t150 + t151;
-    const float t153 = t88 * t152;
-    float rest = t87 - t87;
-    rest += t106 - t106;
-    rest += t113 - t113;
-    rest += t126 - t126;
-    rest += t138 - t138;
-    rest += t153 - t153;
-    if (!(rest >= 0.0f)) {
+    const float t81 = l * t11;
+    const float t82 = m_s * t81;
+    const float t83 = t82 / t55;
+    const float t84 = t4 * t14;
+    const float t85 = t83 * t84;
+    const float t86 = -t85;
+    const float t87 = 0.5f * J_rod;
+    const float t88 = m_rod * t29;
+    const float t89 = 0.125f * t88;
+    const float t90 = t87 + t89;
+    const float t91 = t9 * t90;
+    const float t92 = 2.0f * t91;
+    const float t93 = t6 * t4;
+    const float t94 = t5 * t3;
+    const float t95 = t93 - t94;
+    const float t96 = t11 * t95;
+    const float t97 = m_rod * t96;
+    const float t98 = t7 * t97;
+    const float t99 = 0.5f * t98;
+    const float t100 = t92 - t99;
+    const float t101 = m_s * t15;
+    const float t102 = t21 * t101;
+    const float t103 = t100 + t102;
+    const float t104 = 1.0f / t55;
+    const float t105 = t103 * t104;
+    const float t106 = r * t11;
+    const float t107 = m_s * t106;
+    const float t108 = t107 / t55;
+    const float t109 = t6 * t14;
+    const float t110 = t108 * t109;
+    const float t111 = -t110;
+    const float t112 = l / t55;
+    const float t113 = t6 * t95;
+    const float t114 = 0.5f * t113;
+    const float t115 = t114 - t4;
+    const float t116 = m_rod * t115;
+    const float t117 = t5 * t14;
+    const float t118 = m_s * t117;
+    const float t119 = t116 - t118;
+    const float t120 = t32 * t119;
+    const float t121 = J_crank * t4;
+    const float t122 = t120 - t121;
+    const float t123 = t112 * t122;
+    const float t124 = t90 * t33;
+    const float t125 = 2.0f * t124;
+    const float t126 = l * m_rod;
+    const float t127 = t13 * t14;
+    const float t128 = t126 * t127;
+    const float t129 = l * t128;
+    const float t130 = t125 + t129;
+    const float t131 = t32 * t130;
+    const float t132 = t31 + t131;
+    const float t133 = t104 * t132;
+    const float t134 = -t133;
+    const float t135 = t4 * t3;
+    const float t136 = t135 * t30;
+    const float t137 = t6 * t5;
+    const float t138 = 0.5f * t137;
+    const float t139 = 0.5f * t135;
+    const float t140 = t138 + t139;
+    const float t141 = t126 * t140;
+    const float t142 = l * t141;
+    const float t143 = t90 * t137;
+    const float t144 = 2.0f * t143;
+    const float t145 = t142 - t144;
+    const float t146 = t32 * t145;
+    const float t147 = t136 + t146;
+    const float t148 = t104 * t147;
+    float rest = t86 - t86;
+    rest += t105 - t105;
+    rest += t111 - t111;
+    rest += t123 - t123;
+    rest += t134 - t134;
+    rest += t148 - t148;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    B_G_pinv[0] = t87;
-    B_G_pinv[1] = t106;
-    B_G_pinv[2] = t113;
-    B_G_pinv[3] = t126;
-    B_G_pinv[4] = t138;
-    B_G_pinv[5] = t153;
+    B_G_pinv[0] = t86;
+    B_G_pinv[1] = t105;
+    B_G_pinv[2] = t111;
+    B_G_pinv[3] = t123;
+    B_G_pinv[4] = t134;
+    B_G_pinv[5] = t148;
     return SLIDER_CRANK_OK;
 }
 
@@ -1223,137 +1217,135 @@ slider_crank_status slider_crank_weighted_nullspace_projector_f(const float q[3]
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = t4 * t4;
-    const float t29 = 2.0f * t28;
-    const float t30 = 1.0f - t29;
-    const float t31 = t6 * t30;
-    const float t32 = t3 * t13;
-    const float t33 = 2.0f * t32;
-    const float t34 = t31 + t33;
-    const float m_s = p->m_s;
-    const float t35 = m_s * t34;
-    const float t36 = 0.25f * t6;
-    const float t37 = t32 + t36;
-    const float m_rod = p->m_rod;
-    const float t38 = m_rod * t37;
-    const float t39 = t35 + t38;
-    const float t40 = t6 * t39;
-    const float t41 = t5 * t5;
-    const float t42 = m_rod * t41;
-    const float t43 = m_s + t42;
-    const float t44 = t28 * t43;
-    const float t45 = t40 + t44;
-    const float t46 = l * t45;
-    const float t47 = l * t46;
-    const float t48 = t6 * t6;
-    const float J_rod = p->J_rod;
-    const float t49 = J_rod * t48;
-    const float t50 = t47 + t49;
-    const float t51 = r * t50;
-    const float t52 = r * t51;
-    const float t53 = l * l;
+    const float t29 = l * l;
     const float J_crank = p->J_crank;
-    const float t54 = J_crank * t53;
-    const float t55 = t28 * t54;
-    const float t56 = t52 + t55;
-    const float t57 = fabsf(t56);
-    const float t58 = fabsf(J_crank);
-    const float t59 = 0.5f * t58;
-    const float t60 = fabsf(m_rod);
-    const float t61 = fabsf(r);
-    const float t62 = t61 * t61;
-    const float t63 = t60 * t62;
-    const float t64 = 0.5f * t63;
-    const float t65 = t59 + t64;
-    const float t66 = t8 * t65;
-    const float t67 = 2.0f * t66;
-    const float t68 = fabsf(J_rod);
-    const float t69 = 0.5f * t68;
-    const float t70 = fabsf(l);
-    const float t71 = t70 * t70;
-    const float t72 = t60 * t71;
-    const float t73 = 0.125f * t72;
-    const float t74 = t69 + t73;
-    const float t75 = t10 * t74;
-    const float t76 = 2.0f * t75;
-    const float t77 = fabsf(m_s);
-    const float t78 = t16 * t77;
-    const float t79 = t76 + t78;
-    const float t80 = t67 + t79;
-    const float t81 = 1.4305115e-06f * t80;
-    if (!(t57 > t81)) {
+    const float t30 = J_crank * t29;
+    const float t31 = t28 * t30;
+    const float t32 = r * r;
+    const float t33 = t6 * t6;
+    const float J_rod = p->J_rod;
+    const float t34 = J_rod * t33;
+    const float t35 = 2.0f * t28;
+    const float t36 = 1.0f - t35;
+    const float t37 = t6 * t36;
+    const float t38 = t3 * t13;
+    const float t39 = 2.0f * t38;
+    const float t40 = t37 + t39;
+    const float m_s = p->m_s;
+    const float t41 = m_s * t40;
+    const float t42 = 0.25f * t6;
+    const float t43 = t38 + t42;
+    const float m_rod = p->m_rod;
+    const float t44 = m_rod * t43;
+    const float t45 = t41 + t44;
+    const float t46 = t6 * t45;
+    const float t47 = t5 * t5;
+    const float t48 = m_rod * t47;
+    const float t49 = m_s + t48;
+    const float t50 = t28 * t49;
+    const float t51 = t46 + t50;
+    const float t52 = t29 * t51;
+    const float t53 = t34 + t52;
+    const float t54 = t32 * t53;
+    const float t55 = t31 + t54;
+    const float t56 = fabsf(t55);
+    const float t57 = fabsf(J_crank);
+    const float t58 = 0.5f * t57;
+    const float t59 = fabsf(m_rod);
+    const float t60 = fabsf(r);
+    const float t61 = t60 * t60;
+    const float t62 = t59 * t61;
+    const float t63 = 0.5f * t62;
+    const float t64 = t58 + t63;
+    const float t65 = t8 * t64;
+    const float t66 = 2.0f * t65;
+    const float t67 = fabsf(J_rod);
+    const float t68 = 0.5f * t67;
+    const float t69 = fabsf(l);
+    const float t70 = t69 * t69;
+    const float t71 = t59 * t70;
+    const float t72 = 0.125f * t71;
+    const float t73 = t68 + t72;
+    const float t74 = t10 * t73;
+    const float t75 = 2.0f * t74;
+    const float t76 = fabsf(m_s);
+    const float t77 = t16 * t76;
+    const float t78 = t75 + t77;
+    const float t79 = t66 + t78;
+    const float t80 = 1.4305115e-06f * t79;
+    if (!(t56 > t80)) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t82 = t6 * t4;
-    const float t83 = t5 * t3;
-    const float t84 = t82 - t83;
-    const float t85 = t11 * t84;
-    const float t86 = m_rod * t85;
-    const float t87 = t9 * t86;
-    const float t88 = 0.5f * t87;
-    const float t89 = 0.5f * J_crank;
-    const float t90 = r * r;
-    const float t91 = m_rod * t90;
-    const float t92 = 0.5f * t91;
-    const float t93 = t89 + t92;
-    const float t94 = t7 * t93;
-    const float t95 = 2.0f * t94;
-    const float t96 = t88 - t95;
-    const float t97 = t7 * t96;
-    const float t98 = 1.0f / t56;
-    const float t99 = t97 * t98;
-    const float t100 = -t99;
-    const float t101 = t7 * t86;
-    const float t102 = 0.5f * t101;
-    const float t103 = 0.5f * J_rod;
-    const float t104 = m_rod * t53;
-    const float t105 = 0.125f * t104;
-    const float t106 = t103 + t105;
-    const float t107 = t9 * t106;
-    const float t108 = 2.0f * t107;
-    const float t109 = t102 - t108;
-    const float t110 = t7 * t109;
-    const float t111 = t98 * t110;
-    const float t112 = -t111;
-    const float t113 = m_s * t15;
-    const float t114 = t7 * t113;
-    const float t115 = t98 * t114;
-    const float t116 = -t115;
-    const float t117 = t9 * t96;
-    const float t118 = t98 * t117;
-    const float t119 = -t118;
-    const float t120 = t9 * t109;
-    const float t121 = t120 * t98;
-    const float t122 = -t121;
-    const float t123 = t9 * t113;
-    const float t124 = t98 * t123;
-    const float t125 = -t124;
-    const float t126 = t15 * t96;
-    const float t127 = t98 * t126;
-    const float t128 = t15 * t109;
-    const float t129 = t98 * t128;
-    const float t130 = t15 * t113;
-    const float t131 = t130 * t98;
-    float rest = t100 - t100;
-    rest += t112 - t112;
-    rest += t116 - t116;
-    rest += t119 - t119;
-    rest += t122 - t122;
+    const float t81 = t6 * t4;
+    const float t82 = t5 * t3;
+    const float t83 = t81 - t82;
+    const float t84 = t11 * t83;
+    const float t85 = m_rod * t84;
+    const float t86 = t9 * t85;
+    const float t87 = 0.5f * t86;
+    const float t88 = 0.5f * J_crank;
+    const float t89 = m_rod * t32;
+    const float t90 = 0.5f * t89;
+    const float t91 = t88 + t90;
+    const float t92 = t7 * t91;
+    const float t93 = 2.0f * t92;
+    const float t94 = t87 - t93;
+    const float t95 = t7 * t94;
+    const float t96 = 1.0f / t55;
+    const float t97 = t95 * t96;
+    const float t98 = -t97;
+    const float t99 = t7 * t85;
+    const float t100 = 0.5f * t99;
+    const float t101 = 0.5f * J_rod;
+    const float t102 = m_rod * t29;
+    const float t103 = 0.125f * t102;
+    const float t104 = t101 + t103;
+    const float t105 = t9 * t104;
+    const float t106 = 2.0f * t105;
+    const float t107 = t100 - t106;
+    const float t108 = t7 * t107;
+    const float t109 = t108 * t96;
+    const float t110 = -t109;
+    const float t111 = m_s * t15;
+    const float t112 = t7 * t111;
+    const float t113 = t112 * t96;
+    const float t114 = -t113;
+    const float t115 = t9 * t94;
+    const float t116 = t115 * t96;
+    const float t117 = -t116;
+    const float t118 = t9 * t107;
+    const float t119 = t118 * t96;
+    const float t120 = -t119;
+    const float t121 = t9 * t111;
+    const float t122 = t121 * t96;
+    const float t123 = -t122;
+    const float t124 = t15 * t94;
+    const float t125 = t124 * t96;
+    const float t126 = t15 * t107;
+    const float t127 = t126 * t96;
+    const float t128 = t15 * t111;
+    const float t129 = t128 * t96;
+    float rest = t98 - t98;
+    rest += t110 - t110;
+    rest += t114 - t114;
+    rest += t117 - t117;
+    rest += t120 - t120;
+    rest += t123 - t123;
     rest += t125 - t125;
     rest += t127 - t127;
     rest += t129 - t129;
-    rest += t131 - t131;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    N_BG[0] = t100;
-    N_BG[1] = t112;
-    N_BG[2] = t116;
-    N_BG[3] = t119;
-    N_BG[4] = t122;
-    N_BG[5] = t125;
-    N_BG[6] = t127;
-    N_BG[7] = t129;
-    N_BG[8] = t131;
+    N_BG[0] = t98;
+    N_BG[1] = t110;
+    N_BG[2] = t114;
+    N_BG[3] = t117;
+    N_BG[4] = t120;
+    N_BG[5] = t123;
+    N_BG[6] = t125;
+    N_BG[7] = t127;
+    N_BG[8] = t129;
     return SLIDER_CRANK_OK;
 }
 
@@ -1421,7 +1413,7 @@ slider_crank_status slider_crank_projected_control_matrix_f(const float q[3], co
     float rest = t29 - t29;
     rest += t31 - t31;
     rest += t34 - t34;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     M_tilde[0] = t29;
@@ -1495,7 +1487,7 @@ slider_crank_status slider_crank_projected_control_pseudoinverse_f(const float q
     const float t42 = -t41;
     float rest = t36 - t36;
     rest += t42 - t42;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     M_tilde_pinv[0] = 1.0f;
@@ -1569,7 +1561,7 @@ slider_crank_status slider_crank_orthogonal_complement_f(const float q[3], const
     const float t42 = -t41;
     float rest = t36 - t36;
     rest += t42 - t42;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     F_B[0] = 1.0f;
@@ -1713,7 +1705,7 @@ slider_crank_status slider_crank_projected_mass_matrix_f(const float q[3], const
     rest += t89 - t89;
     rest += t95 - t95;
     rest += t107 - t107;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G_tilde[0] = t63;
@@ -1986,7 +1978,7 @@ slider_crank_status slider_crank_projected_coriolis_matrix_f(const float q[3], c
     rest += t213 - t213;
     rest += t218 - t218;
     rest += t224 - t224;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     C_tilde[0] = t135;
@@ -2093,7 +2085,7 @@ slider_crank_status slider_crank_projected_potential_force_f(const float q[3], c
     float rest = t50 - t50;
     rest += t59 - t59;
     rest += t66 - t66;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_tilde[0] = t50;
@@ -2170,7 +2162,7 @@ slider_crank_status slider_crank_projected_applied_force_f(const float q[3], con
     float rest = t40 - t40;
     rest += t41 - t41;
     rest += t43 - t43;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a_tilde[0] = t40;
@@ -2235,53 +2227,49 @@ slider_crank_status slider_crank_minimal_mass_matrix_f(const float q[3], const s
         }
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float t36 = 1.0f / t8;
-    const float t37 = t4 * t4;
-    const float t38 = l * l;
+    const float t36 = t4 * t4;
+    const float t37 = l * l;
     const float J_crank = p->J_crank;
-    const float t39 = 0.5f * J_crank;
-    const float t40 = r * r;
+    const float t38 = 0.5f * J_crank;
+    const float t39 = r * r;
     const float m_rod = p->m_rod;
-    const float t41 = m_rod * t40;
-    const float t42 = 0.5f * t41;
-    const float t43 = t39 + t42;
-    const float t44 = t38 * t43;
-    const float t45 = t37 * t44;
-    const float t46 = 2.0f * t45;
+    const float t40 = m_rod * t39;
+    const float t41 = 0.5f * t40;
+    const float t42 = t38 + t41;
+    const float t43 = t37 * t42;
+    const float t44 = t36 * t43;
+    const float t45 = 2.0f * t44;
     const float J_rod = p->J_rod;
-    const float t47 = 0.5f * J_rod;
-    const float t48 = m_rod * t38;
-    const float t49 = 0.125f * t48;
-    const float t50 = t47 + t49;
-    const float t51 = t6 * t6;
-    const float t52 = t50 * t51;
-    const float t53 = 2.0f * t52;
+    const float t46 = 0.5f * J_rod;
+    const float t47 = m_rod * t37;
+    const float t48 = 0.125f * t47;
+    const float t49 = t46 + t48;
+    const float t50 = t6 * t6;
+    const float t51 = t49 * t50;
+    const float t52 = 2.0f * t51;
     const float m_s = p->m_s;
-    const float t54 = m_s * t37;
-    const float t55 = m_s * t6;
-    const float t56 = t6 * t4;
-    const float t57 = t5 * t3;
-    const float t58 = t56 - t57;
-    const float t59 = m_rod * t58;
-    const float t60 = m_s * t58;
-    const float t61 = 2.0f * t60;
-    const float t62 = t59 + t61;
-    const float t63 = t4 * t62;
-    const float t64 = t55 - t63;
-    const float t65 = t6 * t64;
-    const float t66 = t54 + t65;
-    const float t67 = l * t66;
-    const float t68 = l * t67;
-    const float t69 = t53 + t68;
-    const float t70 = r * t69;
-    const float t71 = r * t70;
-    const float t72 = t46 + t71;
-    const float t73 = t36 * t72;
-    float rest = t73 - t73;
-    if (!(rest >= 0.0f)) {
+    const float t53 = m_s * t36;
+    const float t54 = m_s * t6;
+    const float t55 = t6 * t4;
+    const float t56 = t5 * t3;
+    const float t57 = t55 - t56;
+    const float t58 = 2.0f * m_s;
+    const float t59 = m_rod + t58;
+    const float t60 = t57 * t59;
+    const float t61 = t4 * t60;
+    const float t62 = t54 - t61;
+    const float t63 = t6 * t62;
+    const float t64 = t53 + t63;
+    const float t65 = t37 * t64;
+    const float t66 = t52 + t65;
+    const float t67 = t39 * t66;
+    const float t68 = t45 + t67;
+    const float t69 = t68 / t8;
+    float rest = t69 - t69;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    G_bar[0] = t73;
+    G_bar[0] = t69;
     return SLIDER_CRANK_OK;
 }
 
@@ -2418,7 +2406,7 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
     const float t102 = t91 + t101;
     const float t103 = t70 + t102;
     float rest = t103 - t103;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     C_bar[0] = t103;
@@ -2426,27 +2414,27 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
 }
 
 slider_crank_status slider_crank_minimal_potential_force_f(const float q[3], const slider_crank_params_f *p, float Q_bar[1]) {
-    const float beta = q[1];
-    const float t1 = fabsf(beta);
     const float alpha = q[0];
-    const float t2 = fabsf(alpha);
+    const float t1 = fabsf(alpha);
+    const float beta = q[1];
+    const float t2 = fabsf(beta);
     if (!(100.0f >= t1)) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const float angle[4] = {beta, alpha, alpha, alpha};
+    const float angle[4] = {alpha, beta, beta, beta};
     float sine[4];
     float cosine[4];
     slider_crank_sincos_group_f(2, angle, sine, cosine);
     const float l = p->l;
-    const float t4 = cosine[0];
-    const float t7 = l * t4;
+    const float t6 = cosine[1];
+    const float t7 = l * t6;
     const float t8 = t7 * t7;
     const float r = p->r;
-    const float t6 = cosine[1];
-    const float t9 = r * t6;
+    const float t4 = cosine[0];
+    const float t9 = r * t4;
     const float t10 = t9 * t9;
     const float t11 = t10 + t8;
     const float t12 = fabsf(r);
@@ -2457,20 +2445,20 @@ slider_crank_status slider_crank_minimal_potential_force_f(const float q[3], con
     const float t17 = 1.0f + t16;
     const float t18 = t11 * t17;
     const float t19 = t18 * 2.046363e-12f;
-    const float t3 = sine[0];
     const float t5 = sine[1];
+    const float t3 = sine[0];
     if (!(t8 > t19)) {
         const float t20 = r * l;
-        const float t21 = t6 * t3;
-        const float t22 = t4 * t5;
+        const float t21 = t4 * t5;
+        const float t22 = t6 * t3;
         const float t23 = t21 + t22;
         const float t24 = t20 * t23;
         const float t25 = t24 * t24;
         const float t26 = t10 + t25;
         const float t27 = t8 + t26;
-        const float t28 = r * t5;
+        const float t28 = r * t3;
         const float t29 = t28 * t28;
-        const float t30 = l * t3;
+        const float t30 = l * t5;
         const float t31 = t30 * t30;
         const float t32 = t29 + t31;
         const float t33 = 1.0f + t32;
@@ -2481,38 +2469,35 @@ slider_crank_status slider_crank_minimal_potential_force_f(const float q[3], con
         }
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float t36 = 1.0f / t4;
-    const float m_rod = p->m_rod;
-    const float g = p->g;
-    const float t37 = m_rod * g;
-    const float t38 = r * t37;
+    const float t36 = t4 * t6;
     const float m_crank = p->m_crank;
-    const float t39 = r * m_crank;
-    const float t40 = g * t39;
-    const float t41 = 0.5f * t40;
-    const float t42 = t38 + t41;
-    const float t43 = t6 * t4;
-    const float t44 = t42 * t43;
-    const float t45 = t6 * t3;
-    const float t46 = t4 * t5;
-    const float t47 = t45 + t46;
-    const float t48 = l * t47;
+    const float t37 = 0.5f * m_crank;
+    const float m_rod = p->m_rod;
+    const float t38 = m_rod + t37;
+    const float g = p->g;
+    const float t39 = r * g;
+    const float t40 = t38 * t39;
+    const float t41 = t36 * t40;
+    const float t42 = t4 * t5;
+    const float t43 = t6 * t3;
+    const float t44 = t42 + t43;
     const float s = q[2];
-    const float t49 = s * t47;
-    const float t50 = t48 - t49;
+    const float t45 = l - s;
+    const float t46 = t44 * t45;
     const float k = p->k;
-    const float t51 = k * t50;
-    const float t52 = t37 * t43;
-    const float t53 = 0.5f * t52;
-    const float t54 = t51 - t53;
-    const float t55 = r * t54;
-    const float t56 = t44 + t55;
-    const float t57 = t36 * t56;
-    float rest = t57 - t57;
-    if (!(rest >= 0.0f)) {
+    const float t47 = k * t46;
+    const float t48 = m_rod * g;
+    const float t49 = t48 * t36;
+    const float t50 = 0.5f * t49;
+    const float t51 = t47 - t50;
+    const float t52 = r * t51;
+    const float t53 = t41 + t52;
+    const float t54 = t53 / t6;
+    float rest = t54 - t54;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    Q_bar[0] = t57;
+    Q_bar[0] = t54;
     return SLIDER_CRANK_OK;
 }
 
@@ -2582,7 +2567,7 @@ slider_crank_status slider_crank_minimal_applied_force_f(const float q[3], const
     const float t41 = s_dot * t40;
     const float t42 = t37 * t41;
     float rest = t42 - t42;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a_bar[0] = t42;
@@ -2688,7 +2673,7 @@ slider_crank_status slider_crank_admissible_velocity_f(const float q[3], const f
     float rest = t43 - t43;
     rest += t46 - t46;
     rest += t68 - t68;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     qd_admissible[0] = t43;
@@ -2821,7 +2806,7 @@ slider_crank_status slider_crank_admissible_acceleration_f(const float q[3], con
     float rest = t70 - t70;
     rest += t82 - t82;
     rest += t97 - t97;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     qdd_admissible[0] = t70;
@@ -3024,7 +3009,7 @@ slider_crank_status slider_crank_projected_configuration_f(const float q[3], con
     float rest = t132 - t132;
     rest += t141 - t141;
     rest += t150 - t150;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     q_projected[0] = t132;
@@ -3034,30 +3019,30 @@ slider_crank_status slider_crank_projected_configuration_f(const float q[3], con
 }
 
 slider_crank_status slider_crank_inverse_dynamics_f(const float q[3], const float qd[3], const float qdd[3], const slider_crank_params_f *p, float u[1]) {
-    const float beta = q[1];
-    const float t1 = fabsf(beta);
     const float alpha = q[0];
-    const float t2 = fabsf(alpha);
+    const float t1 = fabsf(alpha);
+    const float beta = q[1];
+    const float t2 = fabsf(beta);
     if (!(100.0f >= t1)) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const float angle[4] = {beta, alpha, alpha, alpha};
+    const float angle[4] = {alpha, beta, beta, beta};
     float sine[4];
     float cosine[4];
     slider_crank_sincos_group_f(2, angle, sine, cosine);
     const float l = p->l;
-    const float t4 = cosine[0];
-    const float t7 = l * t4;
+    const float t6 = cosine[1];
+    const float t7 = l * t6;
     const float t8 = fabsf(t7);
     const float t9 = fabsf(l);
     const float t10 = t9 * 1.4305115e-06f;
     const float r = p->r;
-    const float t6 = cosine[1];
+    const float t4 = cosine[0];
     if (!(t8 > t10)) {
-        const float t11 = r * t6;
+        const float t11 = r * t4;
         const float t12 = t11 * t11;
         const float t13 = t7 * t7;
         const float t14 = t12 + t13;
@@ -3066,92 +3051,91 @@ slider_crank_status slider_crank_inverse_dynamics_f(const float q[3], const floa
         }
         return SLIDER_CRANK_ACTUATION_RANK;
     }
+    const float t15 = r * t4;
+    const float alpha_dot = qd[0];
+    const float t16 = alpha_dot * alpha_dot;
     const float m_rod = p->m_rod;
-    const float g = p->g;
-    const float t15 = m_rod * g;
-    const float t16 = r * t15;
-    const float m_crank = p->m_crank;
-    const float t17 = r * m_crank;
-    const float t18 = g * t17;
-    const float t19 = 0.5f * t18;
-    const float t20 = t16 + t19;
-    const float t21 = t6 * t20;
-    const float beta_dot = qd[1];
-    const float t22 = beta_dot * beta_dot;
-    const float t23 = 0.5f * m_rod;
-    const float t24 = r * l;
-    const float t3 = sine[0];
-    const float t25 = t6 * t3;
+    const float t17 = 0.5f * m_rod;
+    const float t18 = r * l;
     const float t5 = sine[1];
-    const float t26 = t4 * t5;
-    const float t27 = t25 + t26;
-    const float t28 = t24 * t27;
-    const float t29 = t23 * t28;
-    const float t30 = t22 * t29;
-    const float J_crank = p->J_crank;
-    const float t31 = 0.5f * J_crank;
-    const float t32 = r * r;
-    const float t33 = m_rod * t32;
-    const float t34 = 0.5f * t33;
-    const float t35 = t31 + t34;
-    const float t36 = 2.0f * t35;
+    const float t19 = t4 * t5;
+    const float t3 = sine[0];
+    const float t20 = t6 * t3;
+    const float t21 = t19 + t20;
+    const float t22 = t18 * t21;
+    const float t23 = t17 * t22;
+    const float t24 = t16 * t23;
+    const float J_rod = p->J_rod;
+    const float t25 = 0.5f * J_rod;
+    const float t26 = l * l;
+    const float t27 = m_rod * t26;
+    const float t28 = 0.125f * t27;
+    const float t29 = t25 + t28;
+    const float t30 = 2.0f * t29;
+    const float beta_ddot = qdd[1];
+    const float t31 = beta_ddot * t30;
+    const float t32 = t4 * t6;
+    const float t33 = t3 * t5;
+    const float t34 = t32 - t33;
+    const float t35 = t18 * t34;
+    const float t36 = t17 * t35;
     const float alpha_ddot = qdd[0];
     const float t37 = alpha_ddot * t36;
-    const float beta_ddot = qdd[1];
-    const float t38 = beta_ddot * m_rod;
-    const float t39 = t6 * t4;
-    const float t40 = t5 * t3;
-    const float t41 = t39 - t40;
-    const float t42 = 0.5f * t24;
-    const float t43 = t41 * t42;
-    const float t44 = t38 * t43;
-    const float t45 = t37 - t44;
-    const float t46 = t30 + t45;
-    const float t47 = t21 + t46;
-    const float t48 = t7 * t47;
-    const float t49 = r * t6;
-    const float alpha_dot = qd[0];
-    const float t50 = alpha_dot * alpha_dot;
-    const float t51 = t50 * t29;
-    const float J_rod = p->J_rod;
-    const float t52 = 0.5f * J_rod;
-    const float t53 = l * l;
-    const float t54 = m_rod * t53;
-    const float t55 = 0.125f * t54;
-    const float t56 = t52 + t55;
-    const float t57 = 2.0f * t56;
-    const float t58 = beta_ddot * t57;
-    const float t59 = t24 * t41;
-    const float t60 = t23 * t59;
-    const float t61 = alpha_ddot * t60;
-    const float t62 = t58 - t61;
-    const float t63 = t51 + t62;
-    const float t64 = l * t15;
-    const float t65 = 0.5f * t64;
-    const float t66 = t4 * t65;
-    const float t67 = t63 - t66;
-    const float t68 = t49 * t67;
-    const float t69 = t48 + t68;
+    const float t38 = t31 - t37;
+    const float t39 = t24 + t38;
+    const float g = p->g;
+    const float t40 = m_rod * g;
+    const float t41 = l * t40;
+    const float t42 = 0.5f * t41;
+    const float t43 = t6 * t42;
+    const float t44 = t39 - t43;
+    const float t45 = t15 * t44;
+    const float m_crank = p->m_crank;
+    const float t46 = 0.5f * m_crank;
+    const float t47 = m_rod + t46;
+    const float t48 = r * g;
+    const float t49 = t47 * t48;
+    const float t50 = t4 * t49;
+    const float beta_dot = qd[1];
+    const float t51 = beta_dot * beta_dot;
+    const float t52 = t51 * t23;
+    const float J_crank = p->J_crank;
+    const float t53 = 0.5f * J_crank;
+    const float t54 = r * r;
+    const float t55 = m_rod * t54;
+    const float t56 = 0.5f * t55;
+    const float t57 = t53 + t56;
+    const float t58 = 2.0f * t57;
+    const float t59 = alpha_ddot * t58;
+    const float t60 = beta_ddot * m_rod;
+    const float t61 = 0.5f * t18;
+    const float t62 = t34 * t61;
+    const float t63 = t60 * t62;
+    const float t64 = t59 - t63;
+    const float t65 = t52 + t64;
+    const float t66 = t50 + t65;
+    const float t67 = t7 * t66;
+    const float t68 = t45 + t67;
     const float s_dot = qd[2];
     const float d = p->d;
-    const float t70 = s_dot * d;
+    const float t69 = s_dot * d;
     const float s = q[2];
-    const float t71 = s - l;
+    const float t70 = s - l;
     const float k = p->k;
-    const float t72 = k * t71;
+    const float t71 = k * t70;
     const float s_ddot = qdd[2];
     const float m_s = p->m_s;
-    const float t73 = s_ddot * m_s;
-    const float t74 = t72 + t73;
-    const float t75 = t70 + t74;
-    const float t76 = t28 * t75;
-    const float t77 = t69 - t76;
-    const float t78 = t77 / t7;
-    float rest = t78 - t78;
-    if (!(rest >= 0.0f)) {
+    const float t72 = s_ddot * m_s;
+    const float t73 = t71 + t72;
+    const float t74 = t69 + t73;
+    const float t75 = t22 * t74;
+    const float t76 = t68 - t75;
+    const float t77 = t76 / t7;
+    float rest = t77 - t77;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    u[0] = t78;
+    u[0] = t77;
     return SLIDER_CRANK_OK;
 }
 
@@ -3171,7 +3155,7 @@ slider_crank_status slider_crank_actuator_velocity_f(const float q[3], const flo
     (void)p;
     const float alpha_dot = qd[0];
     float rest = alpha_dot - alpha_dot;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     nu[0] = alpha_dot;
@@ -3234,57 +3218,223 @@ slider_crank_status slider_crank_actuator_mass_matrix_f(const float q[3], const 
         }
         return SLIDER_CRANK_ACTUATION_RANK;
     }
-    const float t36 = 1.0f / t8;
-    const float t37 = t4 * t4;
-    const float t38 = l * l;
+    const float t36 = t4 * t4;
+    const float t37 = l * l;
     const float J_crank = p->J_crank;
-    const float t39 = 0.5f * J_crank;
-    const float t40 = r * r;
+    const float t38 = 0.5f * J_crank;
+    const float t39 = r * r;
     const float m_rod = p->m_rod;
-    const float t41 = m_rod * t40;
-    const float t42 = 0.5f * t41;
-    const float t43 = t39 + t42;
-    const float t44 = t38 * t43;
-    const float t45 = t37 * t44;
-    const float t46 = 2.0f * t45;
+    const float t40 = m_rod * t39;
+    const float t41 = 0.5f * t40;
+    const float t42 = t38 + t41;
+    const float t43 = t37 * t42;
+    const float t44 = t36 * t43;
+    const float t45 = 2.0f * t44;
     const float J_rod = p->J_rod;
-    const float t47 = 0.5f * J_rod;
-    const float t48 = m_rod * t38;
-    const float t49 = 0.125f * t48;
-    const float t50 = t47 + t49;
-    const float t51 = t6 * t6;
-    const float t52 = t50 * t51;
-    const float t53 = 2.0f * t52;
+    const float t46 = 0.5f * J_rod;
+    const float t47 = m_rod * t37;
+    const float t48 = 0.125f * t47;
+    const float t49 = t46 + t48;
+    const float t50 = t6 * t6;
+    const float t51 = t49 * t50;
+    const float t52 = 2.0f * t51;
     const float m_s = p->m_s;
-    const float t54 = m_s * t37;
-    const float t55 = m_s * t6;
-    const float t56 = t6 * t4;
-    const float t57 = t5 * t3;
-    const float t58 = t56 - t57;
-    const float t59 = m_rod * t58;
-    const float t60 = m_s * t58;
-    const float t61 = 2.0f * t60;
-    const float t62 = t59 + t61;
-    const float t63 = t4 * t62;
-    const float t64 = t55 - t63;
-    const float t65 = t6 * t64;
-    const float t66 = t54 + t65;
-    const float t67 = l * t66;
-    const float t68 = l * t67;
-    const float t69 = t53 + t68;
-    const float t70 = r * t69;
-    const float t71 = r * t70;
-    const float t72 = t46 + t71;
-    const float t73 = t36 * t72;
-    float rest = t73 - t73;
-    if (!(rest >= 0.0f)) {
+    const float t53 = m_s * t36;
+    const float t54 = m_s * t6;
+    const float t55 = t6 * t4;
+    const float t56 = t5 * t3;
+    const float t57 = t55 - t56;
+    const float t58 = 2.0f * m_s;
+    const float t59 = m_rod + t58;
+    const float t60 = t57 * t59;
+    const float t61 = t4 * t60;
+    const float t62 = t54 - t61;
+    const float t63 = t6 * t62;
+    const float t64 = t53 + t63;
+    const float t65 = t37 * t64;
+    const float t66 = t52 + t65;
+    const float t67 = t39 * t66;
+    const float t68 = t45 + t67;
+    const float t69 = t68 / t8;
+    float rest = t69 - t69;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    G_nu[0] = t73;
+    G_nu[0] = t69;
     return SLIDER_CRANK_OK;
 }
 
 slider_crank_status slider_crank_actuator_bias_f(const float q[3], const float qd[3], const slider_crank_params_f *p, float bias_nu[1]) {
+    const float beta = q[1];
+    const float t1 = fabsf(beta);
+    const float alpha = q[0];
+    const float t2 = fabsf(alpha);
+    if (!(100.0f >= t1)) {
+        return SLIDER_CRANK_ANGLE_RANGE;
+    }
+    if (!(100.0f >= t2)) {
+        return SLIDER_CRANK_ANGLE_RANGE;
+    }
+    const float angle[4] = {beta, alpha, alpha, alpha};
+    float sine[4];
+    float cosine[4];
+    slider_crank_sincos_group_f(2, angle, sine, cosine);
+    const float l = p->l;
+    const float t4 = cosine[0];
+    const float t7 = l * t4;
+    const float t8 = t7 * t7;
+    const float r = p->r;
+    const float t6 = cosine[1];
+    const float t9 = r * t6;
+    const float t10 = t6 * t9;
+    const float t3 = sine[0];
+    const float t11 = t6 * t3;
+    const float t5 = sine[1];
+    const float t12 = t4 * t5;
+    const float t13 = t11 + t12;
+    const float t14 = r * l;
+    const float t15 = l * t14;
+    const float t16 = t13 * t15;
+    const float t17 = t13 * t16;
+    const float t18 = t10 + t17;
+    const float t19 = r * t18;
+    const float t20 = t8 + t19;
+    const float t21 = r * t5;
+    const float t22 = t21 * t21;
+    const float t23 = l * t3;
+    const float t24 = t23 * t23;
+    const float t25 = t22 + t24;
+    const float t26 = 1.0f + t25;
+    const float t27 = t9 * t9;
+    const float t28 = t27 + t8;
+    const float t29 = t26 * t28;
+    const float t30 = t29 * 2.046363e-12f;
+    if (!(t20 > t30)) {
+        return SLIDER_CRANK_CONSTRAINT_RANK;
+    }
+    const float t31 = fabsf(r);
+    const float t32 = t31 * t31;
+    const float t33 = fabsf(l);
+    const float t34 = t33 * t33;
+    const float t35 = t32 + t34;
+    const float t36 = 1.0f + t35;
+    const float t37 = t28 * t36;
+    const float t38 = t37 * 2.046363e-12f;
+    if (!(t8 > t38)) {
+        const float t39 = t14 * t13;
+        const float t40 = t39 * t39;
+        const float t41 = t27 + t40;
+        const float t42 = t8 + t41;
+        if (!(t42 > t30)) {
+            return SLIDER_CRANK_CONSTRAINT_RANK;
+        }
+        return SLIDER_CRANK_ACTUATION_RANK;
+    }
+    const float t43 = t6 * t4;
+    const float t44 = t4 * t43;
+    const float t45 = t4 * t44;
+    const float t46 = t4 * t45;
+    const float t47 = l * l;
+    const float t48 = l * t47;
+    const float m_crank = p->m_crank;
+    const float t49 = 0.5f * m_crank;
+    const float m_rod = p->m_rod;
+    const float t50 = m_rod + t49;
+    const float g = p->g;
+    const float t51 = r * g;
+    const float t52 = t50 * t51;
+    const float t53 = t48 * t52;
+    const float t54 = t46 * t53;
+    const float t55 = r * r;
+    const float J_rod = p->J_rod;
+    const float t56 = 0.5f * J_rod;
+    const float t57 = m_rod * t47;
+    const float t58 = 0.125f * t57;
+    const float t59 = t56 + t58;
+    const float t60 = t55 * t59;
+    const float alpha_dot = qd[0];
+    const float t61 = alpha_dot * alpha_dot;
+    const float t62 = t6 * t61;
+    const float t63 = t6 * t62;
+    const float t64 = t6 * t63;
+    const float t65 = t3 * t64;
+    const float t66 = t60 * t65;
+    const float t67 = 2.0f * t66;
+    const float m_s = p->m_s;
+    const float t68 = m_s * t55;
+    const float t69 = t68 * t65;
+    const float t70 = 0.5f * m_rod;
+    const float t71 = m_s + t70;
+    const float t72 = t5 * t63;
+    const float t73 = t71 * t72;
+    const float t74 = t55 * t73;
+    const float t75 = alpha_dot * t6;
+    const float d = p->d;
+    const float t76 = d * t6;
+    const float t77 = alpha_dot * t5;
+    const float t78 = m_s * t77;
+    const float t79 = t76 - t78;
+    const float t80 = t75 * t79;
+    const float t81 = r * t80;
+    const float s = q[2];
+    const float t82 = l - s;
+    const float t83 = t13 * t82;
+    const float k = p->k;
+    const float t84 = k * t83;
+    const float t85 = m_rod * g;
+    const float t86 = t85 * t43;
+    const float t87 = 0.5f * t86;
+    const float t88 = t84 - t87;
+    const float t89 = t5 * t3;
+    const float t90 = t43 - t89;
+    const float t91 = t6 * t90;
+    const float t92 = 2.0f * t91;
+    const float t93 = t4 - t92;
+    const float t94 = d * t93;
+    const float t95 = 2.0f * m_s;
+    const float t96 = m_rod + t95;
+    const float t97 = t13 * t96;
+    const float t98 = t6 * t97;
+    const float t99 = t3 * t71;
+    const float t100 = t98 - t99;
+    const float t101 = alpha_dot * t100;
+    const float t102 = t94 + t101;
+    const float t103 = r * t102;
+    const float t104 = alpha_dot * t103;
+    const float t105 = t88 + t104;
+    const float t106 = t4 * t105;
+    const float t107 = t81 + t106;
+    const float t108 = t4 * t107;
+    const float t109 = l * t108;
+    const float t110 = t74 + t109;
+    const float t111 = t4 * t110;
+    const float t112 = t69 + t111;
+    const float t113 = l * t112;
+    const float t114 = r * t59;
+    const float t115 = t4 * t62;
+    const float t116 = t4 * t115;
+    const float t117 = t5 * t116;
+    const float t118 = t114 * t117;
+    const float t119 = 2.0f * t118;
+    const float t120 = t113 - t119;
+    const float t121 = l * t120;
+    const float t122 = t67 + t121;
+    const float t123 = r * t122;
+    const float t124 = t54 + t123;
+    const float t125 = t4 * t48;
+    const float t126 = t4 * t125;
+    const float t127 = t4 * t126;
+    const float t128 = t4 * t127;
+    const float t129 = t124 / t128;
+    float rest = t129 - t129;
+    if (isnan(rest) != 0) {
+        return SLIDER_CRANK_NOT_FINITE;
+    }
+    bias_nu[0] = t129;
+    return SLIDER_CRANK_OK;
+}
+
+slider_crank_status slider_crank_forward_dynamics_f(const float q[3], const float qd[3], const float u[1], const slider_crank_params_f *p, float qdd[3]) {
     const float beta = q[1];
     const float t1 = fabsf(beta);
     const float alpha = q[0];
@@ -3329,386 +3479,221 @@ slider_crank_status slider_crank_actuator_bias_f(const float q[3], const float q
     if (!(t18 > t27)) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float t28 = fabsf(r);
-    const float t29 = t28 * t28;
-    const float t30 = fabsf(l);
-    const float t31 = t30 * t30;
-    const float t32 = t29 + t31;
-    const float t33 = 1.0f + t32;
-    const float t34 = t25 * t33;
-    const float t35 = t34 * 2.046363e-12f;
-    if (!(t8 > t35)) {
-        if (!(t18 > t27)) {
-            return SLIDER_CRANK_CONSTRAINT_RANK;
-        }
-        return SLIDER_CRANK_ACTUATION_RANK;
-    }
-    const float t36 = l * l;
-    const float t37 = l * t36;
-    const float t38 = t4 * t37;
-    const float t39 = t4 * t38;
-    const float t40 = t4 * t39;
-    const float t41 = t4 * t40;
-    const float t42 = 1.0f / t41;
-    const float m_rod = p->m_rod;
-    const float g = p->g;
-    const float t43 = m_rod * g;
-    const float t44 = r * t43;
-    const float m_crank = p->m_crank;
-    const float t45 = r * m_crank;
-    const float t46 = g * t45;
-    const float t47 = 0.5f * t46;
-    const float t48 = t44 + t47;
-    const float t49 = t48 * t37;
-    const float t50 = t6 * t4;
-    const float t51 = t4 * t50;
-    const float t52 = t4 * t51;
-    const float t53 = t4 * t52;
-    const float t54 = t49 * t53;
-    const float t55 = r * r;
-    const float J_rod = p->J_rod;
-    const float t56 = 0.5f * J_rod;
-    const float t57 = m_rod * t36;
-    const float t58 = 0.125f * t57;
-    const float t59 = t56 + t58;
-    const float t60 = t55 * t59;
-    const float alpha_dot = qd[0];
-    const float t61 = alpha_dot * alpha_dot;
-    const float t62 = t6 * t61;
-    const float t63 = t6 * t62;
-    const float t64 = t6 * t63;
-    const float t65 = t3 * t64;
-    const float t66 = t60 * t65;
-    const float t67 = 2.0f * t66;
-    const float m_s = p->m_s;
-    const float t68 = m_s * t55;
-    const float t69 = t68 * t65;
-    const float t70 = 0.5f * m_rod;
-    const float t71 = m_s + t70;
-    const float t72 = t5 * t63;
-    const float t73 = t71 * t72;
-    const float t74 = t55 * t73;
-    const float t75 = alpha_dot * t6;
-    const float d = p->d;
-    const float t76 = d * t6;
-    const float t77 = alpha_dot * t5;
-    const float t78 = m_s * t77;
-    const float t79 = t76 - t78;
-    const float t80 = t75 * t79;
-    const float t81 = r * t80;
-    const float t82 = l * t14;
-    const float s = q[2];
-    const float t83 = s * t14;
-    const float t84 = t82 - t83;
-    const float k = p->k;
-    const float t85 = k * t84;
-    const float t86 = t43 * t50;
-    const float t87 = 0.5f * t86;
-    const float t88 = t85 - t87;
-    const float t89 = m_rod * t14;
-    const float t90 = m_s * t14;
-    const float t91 = 2.0f * t90;
-    const float t92 = t89 + t91;
-    const float t93 = t6 * t92;
-    const float t94 = t3 * t71;
-    const float t95 = t93 - t94;
-    const float t96 = alpha_dot * t95;
-    const float t97 = t5 * t3;
-    const float t98 = t50 - t97;
-    const float t99 = t6 * t98;
-    const float t100 = 2.0f * t99;
-    const float t101 = t4 - t100;
-    const float t102 = d * t101;
-    const float t103 = t96 + t102;
-    const float t104 = r * t103;
-    const float t105 = alpha_dot * t104;
-    const float t106 = t88 + t105;
-    const float t107 = t4 * t106;
-    const float t108 = t81 + t107;
-    const float t109 = t4 * t108;
-    const float t110 = l * t109;
-    const float t111 = t74 + t110;
-    const float t112 = t4 * t111;
-    const float t113 = t69 + t112;
-    const float t114 = l * t113;
-    const float t115 = r * t59;
-    const float t116 = t4 * t62;
-    const float t117 = t4 * t116;
-    const float t118 = t5 * t117;
-    const float t119 = t115 * t118;
-    const float t120 = 2.0f * t119;
-    const float t121 = t114 - t120;
-    const float t122 = l * t121;
-    const float t123 = t67 + t122;
-    const float t124 = r * t123;
-    const float t125 = t54 + t124;
-    const float t126 = t42 * t125;
-    float rest = t126 - t126;
-    if (!(rest >= 0.0f)) {
-        return SLIDER_CRANK_NOT_FINITE;
-    }
-    bias_nu[0] = t126;
-    return SLIDER_CRANK_OK;
-}
-
-slider_crank_status slider_crank_forward_dynamics_f(const float q[3], const float qd[3], const float u[1], const slider_crank_params_f *p, float qdd[3]) {
-    const float alpha = q[0];
-    const float t1 = fabsf(alpha);
-    const float beta = q[1];
-    const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
-        return SLIDER_CRANK_ANGLE_RANGE;
-    }
-    if (!(100.0f >= t2)) {
-        return SLIDER_CRANK_ANGLE_RANGE;
-    }
-    const float angle[4] = {alpha, beta, beta, beta};
-    float sine[4];
-    float cosine[4];
-    slider_crank_sincos_group_f(2, angle, sine, cosine);
-    const float l = p->l;
-    const float t6 = cosine[1];
-    const float t7 = l * t6;
-    const float t8 = t7 * t7;
-    const float r = p->r;
-    const float t4 = cosine[0];
-    const float t9 = r * t4;
-    const float t10 = t9 * t9;
-    const float t11 = r * l;
-    const float t5 = sine[1];
-    const float t12 = t4 * t5;
-    const float t3 = sine[0];
-    const float t13 = t6 * t3;
-    const float t14 = t12 + t13;
-    const float t15 = t11 * t14;
-    const float t16 = t15 * t15;
-    const float t17 = t10 + t16;
-    const float t18 = t8 + t17;
-    const float t19 = r * t3;
-    const float t20 = t19 * t19;
-    const float t21 = l * t5;
-    const float t22 = t21 * t21;
-    const float t23 = t20 + t22;
-    const float t24 = 1.0f + t23;
-    const float t25 = t10 + t8;
-    const float t26 = t24 * t25;
-    const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
-        return SLIDER_CRANK_CONSTRAINT_RANK;
-    }
-    const float t28 = t6 * t6;
-    const float t29 = 2.0f * t28;
-    const float t30 = 1.0f - t29;
-    const float t31 = t4 * t30;
-    const float t32 = t5 * t13;
-    const float t33 = 2.0f * t32;
-    const float t34 = t31 + t33;
-    const float m_s = p->m_s;
-    const float t35 = m_s * t34;
-    const float t36 = 0.25f * t4;
-    const float t37 = t32 + t36;
-    const float m_rod = p->m_rod;
-    const float t38 = m_rod * t37;
-    const float t39 = t35 + t38;
-    const float t40 = t4 * t39;
-    const float t41 = t3 * t3;
-    const float t42 = m_rod * t41;
-    const float t43 = m_s + t42;
-    const float t44 = t28 * t43;
-    const float t45 = t40 + t44;
-    const float t46 = l * t45;
-    const float t47 = l * t46;
-    const float t48 = t4 * t4;
-    const float J_rod = p->J_rod;
-    const float t49 = J_rod * t48;
-    const float t50 = t47 + t49;
-    const float t51 = r * t50;
-    const float t52 = r * t51;
-    const float t53 = l * l;
+    const float t28 = t4 * t4;
+    const float t29 = l * l;
     const float J_crank = p->J_crank;
-    const float t54 = J_crank * t53;
-    const float t55 = t28 * t54;
-    const float t56 = t52 + t55;
-    const float t57 = fabsf(t56);
-    const float t58 = fabsf(J_crank);
-    const float t59 = 0.5f * t58;
-    const float t60 = fabsf(m_rod);
-    const float t61 = fabsf(r);
-    const float t62 = t61 * t61;
-    const float t63 = t60 * t62;
-    const float t64 = 0.5f * t63;
-    const float t65 = t59 + t64;
-    const float t66 = t8 * t65;
-    const float t67 = 2.0f * t66;
-    const float t68 = fabsf(J_rod);
-    const float t69 = 0.5f * t68;
-    const float t70 = fabsf(l);
-    const float t71 = t70 * t70;
-    const float t72 = t60 * t71;
-    const float t73 = 0.125f * t72;
-    const float t74 = t69 + t73;
-    const float t75 = t10 * t74;
-    const float t76 = 2.0f * t75;
-    const float t77 = fabsf(m_s);
-    const float t78 = t16 * t77;
-    const float t79 = t76 + t78;
-    const float t80 = t67 + t79;
-    const float t81 = 1.4305115e-06f * t80;
-    if (!(t57 > t81)) {
+    const float t30 = J_crank * t29;
+    const float t31 = t28 * t30;
+    const float t32 = r * r;
+    const float t33 = t6 * t6;
+    const float J_rod = p->J_rod;
+    const float t34 = J_rod * t33;
+    const float t35 = 2.0f * t28;
+    const float t36 = 1.0f - t35;
+    const float t37 = t6 * t36;
+    const float t38 = t3 * t13;
+    const float t39 = 2.0f * t38;
+    const float t40 = t37 + t39;
+    const float m_s = p->m_s;
+    const float t41 = m_s * t40;
+    const float t42 = 0.25f * t6;
+    const float t43 = t38 + t42;
+    const float m_rod = p->m_rod;
+    const float t44 = m_rod * t43;
+    const float t45 = t41 + t44;
+    const float t46 = t6 * t45;
+    const float t47 = t5 * t5;
+    const float t48 = m_rod * t47;
+    const float t49 = m_s + t48;
+    const float t50 = t28 * t49;
+    const float t51 = t46 + t50;
+    const float t52 = t29 * t51;
+    const float t53 = t34 + t52;
+    const float t54 = t32 * t53;
+    const float t55 = t31 + t54;
+    const float t56 = fabsf(t55);
+    const float t57 = fabsf(J_crank);
+    const float t58 = 0.5f * t57;
+    const float t59 = fabsf(m_rod);
+    const float t60 = fabsf(r);
+    const float t61 = t60 * t60;
+    const float t62 = t59 * t61;
+    const float t63 = 0.5f * t62;
+    const float t64 = t58 + t63;
+    const float t65 = t8 * t64;
+    const float t66 = 2.0f * t65;
+    const float t67 = fabsf(J_rod);
+    const float t68 = 0.5f * t67;
+    const float t69 = fabsf(l);
+    const float t70 = t69 * t69;
+    const float t71 = t59 * t70;
+    const float t72 = 0.125f * t71;
+    const float t73 = t68 + t72;
+    const float t74 = t10 * t73;
+    const float t75 = 2.0f * t74;
+    const float t76 = fabsf(m_s);
+    const float t77 = t16 * t76;
+    const float t78 = t75 + t77;
+    const float t79 = t66 + t78;
+    const float t80 = 1.4305115e-06f * t79;
+    if (!(t56 > t80)) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t82 = 1.0f / t56;
     const float g = p->g;
-    const float t83 = m_rod * g;
-    const float t84 = r * t83;
+    const float t81 = m_rod * g;
+    const float t82 = r * t81;
     const float m_crank = p->m_crank;
-    const float t85 = r * m_crank;
-    const float t86 = g * t85;
-    const float t87 = 0.5f * t86;
-    const float t88 = t84 + t87;
-    const float t89 = t4 * t88;
+    const float t83 = r * m_crank;
+    const float t84 = g * t83;
+    const float t85 = 0.5f * t84;
+    const float t86 = t82 + t85;
+    const float t87 = t6 * t86;
     const float beta_dot = qd[1];
-    const float t90 = beta_dot * beta_dot;
-    const float t91 = m_rod * t15;
-    const float t92 = t90 * t91;
-    const float t93 = 0.5f * t92;
-    const float t94 = t89 + t93;
+    const float t88 = beta_dot * beta_dot;
+    const float t89 = m_rod * t15;
+    const float t90 = t88 * t89;
+    const float t91 = 0.5f * t90;
+    const float t92 = t87 + t91;
     const float crank = u[0];
-    const float t95 = crank - t94;
-    const float t96 = t7 * t95;
-    const float t97 = l * t83;
-    const float t98 = t6 * t97;
-    const float t99 = 0.5f * t98;
+    const float t93 = crank - t92;
+    const float t94 = t7 * t93;
+    const float t95 = l * t81;
+    const float t96 = t4 * t95;
+    const float t97 = 0.5f * t96;
     const float alpha_dot = qd[0];
-    const float t100 = alpha_dot * alpha_dot;
-    const float t101 = t100 * t91;
-    const float t102 = 0.5f * t101;
-    const float t103 = t99 - t102;
-    const float t104 = t9 * t103;
-    const float t105 = t96 + t104;
+    const float t98 = alpha_dot * alpha_dot;
+    const float t99 = t98 * t89;
+    const float t100 = 0.5f * t99;
+    const float t101 = t97 - t100;
+    const float t102 = t9 * t101;
+    const float t103 = t94 + t102;
     const float s = q[2];
-    const float t106 = s - l;
+    const float t104 = s - l;
     const float k = p->k;
-    const float t107 = k * t106;
+    const float t105 = k * t104;
     const float s_dot = qd[2];
     const float d = p->d;
-    const float t108 = s_dot * d;
-    const float t109 = t107 + t108;
-    const float t110 = t15 * t109;
-    const float t111 = t105 + t110;
-    const float t112 = t7 * t111;
-    const float t113 = t82 * t112;
-    const float t114 = m_s * t15;
-    const float t115 = alpha_dot * t4;
-    const float t116 = r * t115;
-    const float t117 = alpha_dot * t116;
-    const float t118 = beta_dot * t6;
-    const float t119 = l * t118;
-    const float t120 = beta_dot * t119;
-    const float t121 = t117 + t120;
-    const float t122 = t7 * t121;
-    const float t123 = beta_dot * t5;
-    const float t124 = l * t123;
-    const float t125 = beta_dot * t124;
-    const float t126 = alpha_dot * t3;
-    const float t127 = r * t126;
-    const float t128 = alpha_dot * t127;
-    const float t129 = t125 - t128;
-    const float t130 = t21 * t129;
-    const float t131 = t122 + t130;
-    const float t132 = t114 * t131;
-    const float t133 = t4 * t6;
-    const float t134 = t3 * t5;
-    const float t135 = t133 - t134;
-    const float t136 = t11 * t135;
-    const float t137 = m_rod * t136;
-    const float t138 = t7 * t137;
-    const float t139 = 0.5f * t138;
-    const float t140 = 0.5f * J_rod;
-    const float t141 = m_rod * t53;
-    const float t142 = 0.125f * t141;
-    const float t143 = t140 + t142;
-    const float t144 = t9 * t143;
-    const float t145 = 2.0f * t144;
-    const float t146 = t139 - t145;
-    const float t147 = t146 * t129;
-    const float t148 = t132 - t147;
-    const float t149 = t82 * t148;
-    const float t150 = t113 - t149;
-    const float t151 = t9 * t111;
-    const float t152 = t82 * t151;
-    const float t153 = t9 * t121;
-    const float t154 = t19 * t129;
-    const float t155 = t153 - t154;
-    const float t156 = t114 * t155;
-    const float t157 = r * m_rod;
-    const float t158 = t4 * t135;
-    const float t159 = 0.5f * t158;
-    const float t160 = t159 - t6;
-    const float t161 = t157 * t160;
-    const float t162 = r * t161;
-    const float t163 = J_crank * t6;
-    const float t164 = t162 - t163;
-    const float t165 = l * t164;
-    const float t166 = t129 * t165;
-    const float t167 = t156 + t166;
-    const float t168 = t82 * t167;
-    const float t169 = t152 - t168;
-    const float t170 = t146 * t155;
-    const float t171 = t131 * t165;
-    const float t172 = t170 + t171;
-    const float t173 = t82 * t172;
-    const float t174 = t15 * t111;
-    const float t175 = t82 * t174;
-    const float t176 = t173 - t175;
-    float rest = t150 - t150;
-    rest += t169 - t169;
-    rest += t176 - t176;
-    if (!(rest >= 0.0f)) {
+    const float t106 = s_dot * d;
+    const float t107 = t105 + t106;
+    const float t108 = t15 * t107;
+    const float t109 = t103 + t108;
+    const float t110 = t7 * t109;
+    const float t111 = r * t53;
+    const float t112 = r * t111;
+    const float t113 = t31 + t112;
+    const float t114 = 1.0f / t113;
+    const float t115 = t110 * t114;
+    const float t116 = m_s * t15;
+    const float t117 = alpha_dot * t6;
+    const float t118 = r * t117;
+    const float t119 = alpha_dot * t118;
+    const float t120 = beta_dot * t4;
+    const float t121 = l * t120;
+    const float t122 = beta_dot * t121;
+    const float t123 = t119 + t122;
+    const float t124 = t7 * t123;
+    const float t125 = beta_dot * t3;
+    const float t126 = l * t125;
+    const float t127 = beta_dot * t126;
+    const float t128 = alpha_dot * t5;
+    const float t129 = r * t128;
+    const float t130 = alpha_dot * t129;
+    const float t131 = t127 - t130;
+    const float t132 = t21 * t131;
+    const float t133 = t124 + t132;
+    const float t134 = t116 * t133;
+    const float t135 = t6 * t4;
+    const float t136 = t5 * t3;
+    const float t137 = t135 - t136;
+    const float t138 = t11 * t137;
+    const float t139 = m_rod * t138;
+    const float t140 = t7 * t139;
+    const float t141 = 0.5f * t140;
+    const float t142 = 0.5f * J_rod;
+    const float t143 = m_rod * t29;
+    const float t144 = 0.125f * t143;
+    const float t145 = t142 + t144;
+    const float t146 = t9 * t145;
+    const float t147 = 2.0f * t146;
+    const float t148 = t141 - t147;
+    const float t149 = t148 * t131;
+    const float t150 = t134 - t149;
+    const float t151 = t150 * t114;
+    const float t152 = t115 - t151;
+    const float t153 = t9 * t109;
+    const float t154 = t153 * t114;
+    const float t155 = t9 * t123;
+    const float t156 = t19 * t131;
+    const float t157 = t155 - t156;
+    const float t158 = t116 * t157;
+    const float t159 = r * m_rod;
+    const float t160 = t6 * t137;
+    const float t161 = 0.5f * t160;
+    const float t162 = t161 - t4;
+    const float t163 = t159 * t162;
+    const float t164 = r * t163;
+    const float t165 = J_crank * t4;
+    const float t166 = t164 - t165;
+    const float t167 = l * t166;
+    const float t168 = t131 * t167;
+    const float t169 = t158 + t168;
+    const float t170 = t169 * t114;
+    const float t171 = t154 - t170;
+    const float t172 = t148 * t157;
+    const float t173 = t133 * t167;
+    const float t174 = t172 + t173;
+    const float t175 = t174 * t114;
+    const float t176 = t15 * t109;
+    const float t177 = t176 * t114;
+    const float t178 = t175 - t177;
+    float rest = t152 - t152;
+    rest += t171 - t171;
+    rest += t178 - t178;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd[0] = t150;
-    qdd[1] = t169;
-    qdd[2] = t176;
+    qdd[0] = t152;
+    qdd[1] = t171;
+    qdd[2] = t178;
     return SLIDER_CRANK_OK;
 }
 
 slider_crank_status slider_crank_multipliers_f(const float q[3], const float qd[3], const float u[1], const slider_crank_params_f *p, float lambda_B[2]) {
-    const float alpha = q[0];
-    const float t1 = fabsf(alpha);
     const float beta = q[1];
-    const float t2 = fabsf(beta);
+    const float t1 = fabsf(beta);
+    const float alpha = q[0];
+    const float t2 = fabsf(alpha);
     if (!(100.0f >= t1)) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     if (!(100.0f >= t2)) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const float angle[4] = {alpha, beta, beta, beta};
+    const float angle[4] = {beta, alpha, alpha, alpha};
     float sine[4];
     float cosine[4];
     slider_crank_sincos_group_f(2, angle, sine, cosine);
     const float l = p->l;
-    const float t6 = cosine[1];
-    const float t7 = l * t6;
+    const float t4 = cosine[0];
+    const float t7 = l * t4;
     const float t8 = t7 * t7;
     const float r = p->r;
-    const float t4 = cosine[0];
-    const float t9 = r * t4;
+    const float t6 = cosine[1];
+    const float t9 = r * t6;
     const float t10 = t9 * t9;
     const float t11 = r * l;
-    const float t5 = sine[1];
-    const float t12 = t4 * t5;
     const float t3 = sine[0];
-    const float t13 = t6 * t3;
+    const float t12 = t6 * t3;
+    const float t5 = sine[1];
+    const float t13 = t4 * t5;
     const float t14 = t12 + t13;
     const float t15 = t11 * t14;
     const float t16 = t15 * t15;
     const float t17 = t10 + t16;
     const float t18 = t8 + t17;
-    const float t19 = r * t3;
+    const float t19 = r * t5;
     const float t20 = t19 * t19;
-    const float t21 = l * t5;
+    const float t21 = l * t3;
     const float t22 = t21 * t21;
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
@@ -3718,203 +3703,201 @@ slider_crank_status slider_crank_multipliers_f(const float q[3], const float qd[
     if (!(t18 > t27)) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float t28 = t6 * t6;
-    const float t29 = 2.0f * t28;
-    const float t30 = 1.0f - t29;
-    const float t31 = t4 * t30;
-    const float t32 = t5 * t13;
-    const float t33 = 2.0f * t32;
-    const float t34 = t31 + t33;
-    const float m_s = p->m_s;
-    const float t35 = m_s * t34;
-    const float t36 = 0.25f * t4;
-    const float t37 = t32 + t36;
-    const float m_rod = p->m_rod;
-    const float t38 = m_rod * t37;
-    const float t39 = t35 + t38;
-    const float t40 = t4 * t39;
-    const float t41 = t3 * t3;
-    const float t42 = m_rod * t41;
-    const float t43 = m_s + t42;
-    const float t44 = t28 * t43;
-    const float t45 = t40 + t44;
-    const float t46 = l * t45;
-    const float t47 = l * t46;
-    const float t48 = t4 * t4;
-    const float J_rod = p->J_rod;
-    const float t49 = J_rod * t48;
-    const float t50 = t47 + t49;
-    const float t51 = r * t50;
-    const float t52 = r * t51;
-    const float t53 = l * l;
+    const float t28 = t4 * t4;
+    const float t29 = l * l;
     const float J_crank = p->J_crank;
-    const float t54 = J_crank * t53;
-    const float t55 = t28 * t54;
-    const float t56 = t52 + t55;
-    const float t57 = fabsf(t56);
-    const float t58 = fabsf(J_crank);
-    const float t59 = 0.5f * t58;
-    const float t60 = fabsf(m_rod);
-    const float t61 = fabsf(r);
-    const float t62 = t61 * t61;
-    const float t63 = t60 * t62;
-    const float t64 = 0.5f * t63;
-    const float t65 = t59 + t64;
-    const float t66 = t8 * t65;
-    const float t67 = 2.0f * t66;
-    const float t68 = fabsf(J_rod);
-    const float t69 = 0.5f * t68;
-    const float t70 = fabsf(l);
-    const float t71 = t70 * t70;
-    const float t72 = t60 * t71;
-    const float t73 = 0.125f * t72;
-    const float t74 = t69 + t73;
-    const float t75 = t10 * t74;
-    const float t76 = 2.0f * t75;
-    const float t77 = fabsf(m_s);
-    const float t78 = t16 * t77;
-    const float t79 = t76 + t78;
-    const float t80 = t67 + t79;
-    const float t81 = 1.4305115e-06f * t80;
-    if (!(t57 > t81)) {
+    const float t30 = J_crank * t29;
+    const float t31 = t28 * t30;
+    const float t32 = r * r;
+    const float t33 = t6 * t6;
+    const float J_rod = p->J_rod;
+    const float t34 = J_rod * t33;
+    const float t35 = 2.0f * t28;
+    const float t36 = 1.0f - t35;
+    const float t37 = t6 * t36;
+    const float t38 = t3 * t13;
+    const float t39 = 2.0f * t38;
+    const float t40 = t37 + t39;
+    const float m_s = p->m_s;
+    const float t41 = m_s * t40;
+    const float t42 = 0.25f * t6;
+    const float t43 = t38 + t42;
+    const float m_rod = p->m_rod;
+    const float t44 = m_rod * t43;
+    const float t45 = t41 + t44;
+    const float t46 = t6 * t45;
+    const float t47 = t5 * t5;
+    const float t48 = m_rod * t47;
+    const float t49 = m_s + t48;
+    const float t50 = t28 * t49;
+    const float t51 = t46 + t50;
+    const float t52 = t29 * t51;
+    const float t53 = t34 + t52;
+    const float t54 = t32 * t53;
+    const float t55 = t31 + t54;
+    const float t56 = fabsf(t55);
+    const float t57 = fabsf(J_crank);
+    const float t58 = 0.5f * t57;
+    const float t59 = fabsf(m_rod);
+    const float t60 = fabsf(r);
+    const float t61 = t60 * t60;
+    const float t62 = t59 * t61;
+    const float t63 = 0.5f * t62;
+    const float t64 = t58 + t63;
+    const float t65 = t8 * t64;
+    const float t66 = 2.0f * t65;
+    const float t67 = fabsf(J_rod);
+    const float t68 = 0.5f * t67;
+    const float t69 = fabsf(l);
+    const float t70 = t69 * t69;
+    const float t71 = t59 * t70;
+    const float t72 = 0.125f * t71;
+    const float t73 = t68 + t72;
+    const float t74 = t10 * t73;
+    const float t75 = 2.0f * t74;
+    const float t76 = fabsf(m_s);
+    const float t77 = t16 * t76;
+    const float t78 = t75 + t77;
+    const float t79 = t66 + t78;
+    const float t80 = 1.4305115e-06f * t79;
+    if (!(t56 > t80)) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t82 = 1.0f / t56;
-    const float t83 = r * m_rod;
-    const float t84 = t4 * t6;
-    const float t85 = t3 * t5;
-    const float t86 = t84 - t85;
-    const float t87 = t4 * t86;
-    const float t88 = 0.5f * t87;
-    const float t89 = t88 - t6;
-    const float t90 = t83 * t89;
-    const float t91 = r * t90;
-    const float t92 = J_crank * t6;
-    const float t93 = t91 - t92;
-    const float t94 = l * t93;
+    const float t81 = 1.0f / t55;
+    const float t82 = r * m_rod;
+    const float t83 = t6 * t4;
+    const float t84 = t5 * t3;
+    const float t85 = t83 - t84;
+    const float t86 = t6 * t85;
+    const float t87 = 0.5f * t86;
+    const float t88 = t87 - t4;
+    const float t89 = t82 * t88;
+    const float t90 = r * t89;
+    const float t91 = J_crank * t4;
+    const float t92 = t90 - t91;
+    const float t93 = l * t92;
     const float s = q[2];
-    const float t95 = s - l;
+    const float t94 = s - l;
     const float k = p->k;
-    const float t96 = k * t95;
+    const float t95 = k * t94;
     const float s_dot = qd[2];
     const float d = p->d;
-    const float t97 = s_dot * d;
-    const float t98 = t96 + t97;
-    const float t99 = t11 * t86;
-    const float t100 = m_rod * t99;
-    const float t101 = t7 * t100;
-    const float t102 = 0.5f * t101;
-    const float t103 = 0.5f * J_rod;
-    const float t104 = m_rod * t53;
-    const float t105 = 0.125f * t104;
-    const float t106 = t103 + t105;
-    const float t107 = t9 * t106;
-    const float t108 = 2.0f * t107;
-    const float t109 = t102 - t108;
+    const float t96 = s_dot * d;
+    const float t97 = t95 + t96;
+    const float t98 = t11 * t85;
+    const float t99 = m_rod * t98;
+    const float t100 = t7 * t99;
+    const float t101 = 0.5f * t100;
+    const float t102 = 0.5f * J_rod;
+    const float t103 = m_rod * t29;
+    const float t104 = 0.125f * t103;
+    const float t105 = t102 + t104;
+    const float t106 = t9 * t105;
+    const float t107 = 2.0f * t106;
+    const float t108 = t101 - t107;
     const float alpha_dot = qd[0];
-    const float t110 = alpha_dot * t4;
-    const float t111 = r * t110;
-    const float t112 = alpha_dot * t111;
+    const float t109 = alpha_dot * t6;
+    const float t110 = r * t109;
+    const float t111 = alpha_dot * t110;
     const float beta_dot = qd[1];
-    const float t113 = beta_dot * t6;
-    const float t114 = l * t113;
-    const float t115 = beta_dot * t114;
-    const float t116 = t112 + t115;
-    const float t117 = t9 * t116;
-    const float t118 = beta_dot * t5;
-    const float t119 = l * t118;
-    const float t120 = beta_dot * t119;
-    const float t121 = alpha_dot * t3;
-    const float t122 = r * t121;
-    const float t123 = alpha_dot * t122;
-    const float t124 = t120 - t123;
-    const float t125 = t19 * t124;
-    const float t126 = t117 - t125;
-    const float t127 = t109 * t126;
-    const float t128 = t7 * t116;
-    const float t129 = t21 * t124;
-    const float t130 = t128 + t129;
-    const float t131 = t130 * t94;
-    const float t132 = t127 + t131;
-    const float t133 = t82 * t132;
-    const float t134 = m_s * t133;
-    const float t135 = t98 + t134;
-    const float t136 = t94 * t135;
-    const float t137 = m_s * t15;
+    const float t112 = beta_dot * t4;
+    const float t113 = l * t112;
+    const float t114 = beta_dot * t113;
+    const float t115 = t111 + t114;
+    const float t116 = t9 * t115;
+    const float t117 = beta_dot * t3;
+    const float t118 = l * t117;
+    const float t119 = beta_dot * t118;
+    const float t120 = alpha_dot * t5;
+    const float t121 = r * t120;
+    const float t122 = alpha_dot * t121;
+    const float t123 = t119 - t122;
+    const float t124 = t19 * t123;
+    const float t125 = t116 - t124;
+    const float t126 = t108 * t125;
+    const float t127 = t7 * t115;
+    const float t128 = t21 * t123;
+    const float t129 = t127 + t128;
+    const float t130 = t129 * t93;
+    const float t131 = t126 + t130;
+    const float t132 = t131 * t81;
+    const float t133 = m_s * t132;
+    const float t134 = t97 + t133;
+    const float t135 = t93 * t134;
+    const float t136 = m_s * t15;
     const float g = p->g;
-    const float t138 = m_rod * g;
-    const float t139 = r * t138;
+    const float t137 = m_rod * g;
+    const float t138 = r * t137;
     const float m_crank = p->m_crank;
-    const float t140 = r * m_crank;
-    const float t141 = g * t140;
-    const float t142 = 0.5f * t141;
-    const float t143 = t139 + t142;
-    const float t144 = t4 * t143;
-    const float t145 = beta_dot * beta_dot;
-    const float t146 = m_rod * t15;
-    const float t147 = t145 * t146;
-    const float t148 = 0.5f * t147;
-    const float t149 = t144 + t148;
+    const float t139 = r * m_crank;
+    const float t140 = g * t139;
+    const float t141 = 0.5f * t140;
+    const float t142 = t138 + t141;
+    const float t143 = t6 * t142;
+    const float t144 = beta_dot * beta_dot;
+    const float t145 = m_rod * t15;
+    const float t146 = t144 * t145;
+    const float t147 = 0.5f * t146;
+    const float t148 = t143 + t147;
     const float crank = u[0];
-    const float t150 = crank - t149;
-    const float t151 = 0.5f * J_crank;
-    const float t152 = r * r;
-    const float t153 = m_rod * t152;
-    const float t154 = 0.5f * t153;
-    const float t155 = t151 + t154;
-    const float t156 = t137 * t130;
-    const float t157 = t109 * t124;
-    const float t158 = t156 - t157;
-    const float t159 = t82 * t158;
-    const float t160 = t155 * t159;
-    const float t161 = 2.0f * t160;
-    const float t162 = t137 * t126;
-    const float t163 = t124 * t94;
-    const float t164 = t162 + t163;
-    const float t165 = t82 * t164;
-    const float t166 = t100 * t165;
-    const float t167 = 0.5f * t166;
-    const float t168 = t161 - t167;
-    const float t169 = t150 + t168;
-    const float t170 = t137 * t169;
-    const float t171 = t136 + t170;
-    const float t172 = t7 * t171;
-    const float t173 = t109 * t135;
-    const float t174 = l * t138;
-    const float t175 = t6 * t174;
-    const float t176 = 0.5f * t175;
-    const float t177 = alpha_dot * alpha_dot;
-    const float t178 = t177 * t146;
-    const float t179 = 0.5f * t178;
-    const float t180 = t176 - t179;
-    const float t181 = t106 * t165;
-    const float t182 = 2.0f * t181;
-    const float t183 = t100 * t159;
-    const float t184 = 0.5f * t183;
-    const float t185 = t182 - t184;
-    const float t186 = t180 + t185;
-    const float t187 = t137 * t186;
-    const float t188 = t173 + t187;
-    const float t189 = t9 * t188;
-    const float t190 = t172 + t189;
-    const float t191 = t82 * t190;
-    const float t192 = -t191;
-    const float t193 = t109 * t169;
-    const float t194 = t94 * t186;
+    const float t149 = crank - t148;
+    const float t150 = 0.5f * J_crank;
+    const float t151 = r * t82;
+    const float t152 = 0.5f * t151;
+    const float t153 = t150 + t152;
+    const float t154 = t136 * t129;
+    const float t155 = t108 * t123;
+    const float t156 = t154 - t155;
+    const float t157 = t156 * t81;
+    const float t158 = t153 * t157;
+    const float t159 = 2.0f * t158;
+    const float t160 = t136 * t125;
+    const float t161 = t123 * t93;
+    const float t162 = t160 + t161;
+    const float t163 = t162 * t81;
+    const float t164 = t99 * t163;
+    const float t165 = 0.5f * t164;
+    const float t166 = t159 - t165;
+    const float t167 = t149 + t166;
+    const float t168 = t136 * t167;
+    const float t169 = t135 + t168;
+    const float t170 = t7 * t169;
+    const float t171 = t108 * t134;
+    const float t172 = l * t137;
+    const float t173 = t4 * t172;
+    const float t174 = 0.5f * t173;
+    const float t175 = alpha_dot * alpha_dot;
+    const float t176 = t175 * t145;
+    const float t177 = 0.5f * t176;
+    const float t178 = t174 - t177;
+    const float t179 = t105 * t163;
+    const float t180 = 2.0f * t179;
+    const float t181 = t99 * t157;
+    const float t182 = 0.5f * t181;
+    const float t183 = t180 - t182;
+    const float t184 = t178 + t183;
+    const float t185 = t136 * t184;
+    const float t186 = t171 + t185;
+    const float t187 = t9 * t186;
+    const float t188 = t170 + t187;
+    const float t189 = t81 * t188;
+    const float t190 = -t189;
+    const float t191 = t108 * t167;
+    const float t192 = t93 * t184;
+    const float t193 = t191 - t192;
+    const float t194 = t21 * t169;
     const float t195 = t193 - t194;
-    const float t196 = t21 * t171;
-    const float t197 = t195 - t196;
-    const float t198 = t19 * t188;
-    const float t199 = t197 + t198;
-    const float t200 = t82 * t199;
-    const float t201 = -t200;
-    float rest = t192 - t192;
-    rest += t201 - t201;
-    if (!(rest >= 0.0f)) {
+    const float t196 = t19 * t186;
+    const float t197 = t195 + t196;
+    const float t198 = t81 * t197;
+    const float t199 = -t198;
+    float rest = t190 - t190;
+    rest += t199 - t199;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    lambda_B[0] = t192;
-    lambda_B[1] = t201;
+    lambda_B[0] = t190;
+    lambda_B[1] = t199;
     return SLIDER_CRANK_OK;
 }
 
@@ -3941,9 +3924,9 @@ slider_crank_status slider_crank_energy_f(const float q[3], const float qd[3], c
     const float J_rod = p->J_rod;
     const float t10 = 0.5f * J_rod;
     const float l = p->l;
-    const float t11 = l * l;
     const float m_rod = p->m_rod;
-    const float t12 = m_rod * t11;
+    const float t11 = l * m_rod;
+    const float t12 = l * t11;
     const float t13 = 0.125f * t12;
     const float t14 = t10 + t13;
     const float beta_dot = qd[1];
@@ -3986,21 +3969,20 @@ slider_crank_status slider_crank_energy_f(const float q[3], const float qd[3], c
     const float t41 = r * t40;
     const float e = p->e;
     const float t42 = e * m_s;
-    const float t43 = l * m_rod;
-    const float t44 = t5 * t43;
-    const float t45 = 0.5f * t44;
-    const float t46 = t42 - t45;
-    const float t47 = t41 + t46;
+    const float t43 = t5 * t11;
+    const float t44 = 0.5f * t43;
+    const float t45 = t42 - t44;
+    const float t46 = t41 + t45;
     const float g = p->g;
-    const float t48 = g * t47;
-    const float t49 = t37 + t48;
+    const float t47 = g * t46;
+    const float t48 = t37 + t47;
     float rest = t33 - t33;
-    rest += t49 - t49;
-    if (!(rest >= 0.0f)) {
+    rest += t48 - t48;
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     T_U[0] = t33;
-    T_U[1] = t49;
+    T_U[1] = t48;
     return SLIDER_CRANK_OK;
 }
 
@@ -4029,7 +4011,7 @@ slider_crank_status slider_crank_singularity_f(const float q[3], const slider_cr
     const float t10 = t9 * t9;
     const float t11 = t8 + t10;
     const float t12 = sqrtf(t11);
-    const float t13 = (t12 != 0.0f) ? (t7 / t12) : 0.0f;
+    const float t13 = ((t12 != 0.0f) ? t7 : 0.0f) / ((t12 != 0.0f) ? t12 : 1.0f);
     const float t5 = sine[1];
     const float t14 = l * t5;
     const float t15 = -t14;
@@ -4040,17 +4022,17 @@ slider_crank_status slider_crank_singularity_f(const float q[3], const slider_cr
     const float t19 = t17 + t18;
     const float t20 = 1.0f + t19;
     const float t21 = sqrtf(t20);
-    const float t22 = (t21 != 0.0f) ? (t15 / t21) : 0.0f;
+    const float t22 = ((t21 != 0.0f) ? t15 : 0.0f) / ((t21 != 0.0f) ? t21 : 1.0f);
     const float t23 = t22 * t13;
     const float t24 = -t16;
-    const float t25 = (t21 != 0.0f) ? (t24 / t21) : 0.0f;
+    const float t25 = ((t21 != 0.0f) ? t24 : 0.0f) / ((t21 != 0.0f) ? t21 : 1.0f);
     const float t26 = -t9;
-    const float t27 = (t12 != 0.0f) ? (t26 / t12) : 0.0f;
+    const float t27 = ((t12 != 0.0f) ? t26 : 0.0f) / ((t12 != 0.0f) ? t12 : 1.0f);
     const float t28 = t25 * t27;
     const float t29 = 2.0f * t28;
     const float t30 = t23 - t29;
     const float t31 = t22 * t30;
-    const float t32 = (t21 != 0.0f) ? ((-1.0f) / t21) : 0.0f;
+    const float t32 = ((t21 != 0.0f) ? (-1.0f) : 0.0f) / ((t21 != 0.0f) ? t21 : 1.0f);
     const float t33 = t32 * t32;
     const float t34 = t13 * t33;
     const float t35 = t31 + t34;
@@ -4068,10 +4050,10 @@ slider_crank_status slider_crank_singularity_f(const float q[3], const slider_cr
     const float t47 = t46 * t46;
     const float t48 = t45 + t47;
     const float t49 = t48 + t43;
-    const float t50 = (t49 != 0.0f) ? (t43 / t49) : 0.0f;
+    const float t50 = ((t49 != 0.0f) ? t43 : 0.0f) / ((t49 != 0.0f) ? t49 : 1.0f);
     float rest = t41 - t41;
     rest += t50 - t50;
-    if (!(rest >= 0.0f)) {
+    if (isnan(rest) != 0) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     measure[0] = t41;
