@@ -15,12 +15,12 @@ from typing import Any
 from symgen.bench.candidate import CCandidate, Task
 from symgen.bench.workload import Workload
 from symgen.emit.render import render
+from symgen.emit.scalars import C_TYPE
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 
 # Position-independent for all, as a library that is loaded needs it; see docs/bench for what that means for CasADi.
 FLAGS = ("-O2", "-std=c99", "-ffp-contract=off")
-C_TYPE: dict[Scalar, str] = {"float64": "double", "float32": "float"}
 # A tool that only knows double is given float by its own type name, type-generic functions and float constants.
 SINGLE = ("-include", "tgmath.h", "-fsingle-precision-constant")
 TIMED_STATES = 256

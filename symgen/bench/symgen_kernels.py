@@ -14,12 +14,12 @@ from symgen.emit.c import emit_c
 from symgen.emit.operations import count_operations
 from symgen.emit.pairs import pair_names
 from symgen.emit.python import emit_python
+from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
 from symgen.naming import file_stem
-from symgen.verify.compile import SUFFIXES
 from symgen.verify.python_module import PythonModule
 
 PORTABLE, LIBRARY = "portable", "libm"
@@ -83,7 +83,7 @@ def _arrays(kernel: Kernel, q: Any, qd: Any, third: Any) -> list[Any]:
 def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidate:
     kernel = program.kernels[0]
     files = emit_c(model, program)
-    suffix = SUFFIXES[program.scalar]
+    suffix = SUFFIX[program.scalar]
     stem = file_stem(model.name) + suffix
     function = f"{model.name}_{kernel.name}{suffix}"
     entry = f"symgen_{way}_{trig}_{program.scalar}".replace("-", "_").replace(" ", "_")

@@ -14,7 +14,8 @@ from symgen.emit.locals import Names, all_statements, array_arguments, check_ope
 from symgen.emit.pairs import GROUP_NAMES, PairsView, group_lines, leading_group, pair_names, pairs_view
 from symgen.emit.quantities import meaning
 from symgen.emit.render import render
-from symgen.emit.statements import CStatements, c_type
+from symgen.emit.scalars import C_TYPE, SUFFIX
+from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Kernel, Load, Local, Operand, Program, Statement, Status
 from symgen.model.model import Model
 from symgen.naming import file_stem
@@ -85,7 +86,7 @@ def c_names(model: Model, program: Program) -> Names:
 
 
 def _own_names(model: Model, program: Program) -> set[str]:
-    prefix, suffix = model.name, _suffix(program)
+    prefix, suffix = model.name, SUFFIX[program.scalar]
     stem = file_stem(model.name) + suffix
     own = {f"{prefix}_{name}{suffix}" for name in ("params", "default_params")} | pair_names(prefix, suffix)
     own |= {f"{prefix}_status", f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"}
@@ -94,12 +95,8 @@ def _own_names(model: Model, program: Program) -> set[str]:
     return own
 
 
-def _suffix(program: Program) -> str:
-    return "" if program.scalar == "float64" else "_f"
-
-
 def _view(model: Model, program: Program) -> CView:
-    prefix, suffix = model.name, _suffix(program)
+    prefix, suffix = model.name, SUFFIX[program.scalar]
     stem = file_stem(model.name) + suffix
     status_type, parameters_type = f"{prefix}_status", f"{prefix}_params{suffix}"
     default_function = f"{prefix}_default_params{suffix}"
@@ -113,7 +110,7 @@ def _view(model: Model, program: Program) -> CView:
         status_type=status_type,
         parameters_type=parameters_type,
         default_function=default_function,
-        scalar=c_type(program.scalar),
+        scalar=C_TYPE[program.scalar],
         about=_about(model, program, names),
         statuses=tuple((status_name(model, status), int(status), STATUS_MEANING[status]) for status in Status),
         members=_members(model, program, names),
@@ -155,11 +152,11 @@ def _members(model: Model, program: Program, names: Names) -> tuple[MemberView, 
 
 
 def _kernel(model: Model, program: Program, kernel: Kernel, names: Names, parameters_type: str) -> FunctionView:
-    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     size = len(kernel.outputs)
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
-    prototype = f"{model.name}_status {model.name}_{kernel.name}{_suffix(program)}({', '.join(arguments)})"
+    prototype = f"{model.name}_status {model.name}_{kernel.name}{SUFFIX[program.scalar]}({', '.join(arguments)})"
     comment = c_comment_lines(f"{meaning(kernel.name)}; {shape_text(kernel)}")
     return FunctionView(comment, prototype, kernel_body(model, program, kernel, names))
 
@@ -167,12 +164,12 @@ def _kernel(model: Model, program: Program, kernel: Kernel, names: Names, parame
 def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) -> tuple[str, ...]:
     """The lines of a function of one state; the parameters, or what stands for them, are the members of `*p`."""
     used = used_locals(kernel)
-    sincos = None if program.sincos is None else f"{model.name}_sincos{_suffix(program)}"
+    sincos = None if program.sincos is None else f"{model.name}_sincos{SUFFIX[program.scalar]}"
     group = () if sincos is None else leading_group(kernel)
     printer = CStatements(program.scalar, names.locals, used, sincos, lambda status: status_name(model, status))
     loads = [load for load in kernel.loads if load.local in used]
     loaded = {load.argument for load in loads}
-    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     lines = [f"(void){name};" for name in (*(a.name for a in array_arguments(kernel)), "p") if name not in loaded]
     waiting: dict[str, str] = {}
     for load in loads:
@@ -188,7 +185,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
                 if statement is group[0]:
                     lines += due(operand for pair in group for operand in pair.operands)
                     angles = [printer.operand(pair.operands[0]) for pair in group]
-                    lines += group_lines(program.scalar, f"{model.name}_sincos_group{_suffix(program)}", angles)
+                    lines += group_lines(program.scalar, f"{model.name}_sincos_group{SUFFIX[program.scalar]}", angles)
                     waiting |= _read_back(group, scalar, names)
                 continue
             if statement.operation == "sincos":
@@ -219,7 +216,7 @@ def _finite_test(model: Model, program: Program, kernel: Kernel, names: Names) -
     if not results:
         return []
     return [
-        f"{c_type(program.scalar)} rest = {results[0]} - {results[0]};",
+        f"{C_TYPE[program.scalar]} rest = {results[0]} - {results[0]};",
         *(f"rest += {name} - {name};" for name in results[1:]),
         "if (isnan(rest) != 0) {",
         f"    return {status_name(model, Status.NOT_FINITE)};",

@@ -14,7 +14,8 @@ from symgen.emit.locals import Names, all_statements, array_arguments, names_of
 from symgen.emit.pairs import pair_body
 from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
-from symgen.emit.statements import CStatements, c_type
+from symgen.emit.scalars import C_TYPE, SUFFIX
+from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
 from symgen.ir.split import names_in, names_of_blocks, split, without_first
 from symgen.model.model import Model
@@ -85,7 +86,7 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     kernels = tuple(kernel for kernel in program.kernels if kernel.name in BATCHED)
     if not kernels:
         return {}
-    suffix = "" if program.scalar == "float64" else "_f"
+    suffix = SUFFIX[program.scalar]
     plain = file_stem(model.name)
     stem = f"{plain}_batch{suffix}"
     pair, ratio = f"{model.name}_sincos{suffix}", f"{model.name}_ratio{suffix}"
@@ -105,7 +106,7 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
         guard=f"{stem.upper()}_H",
         plain_stem=f"{plain}{suffix}",
         model=model.name,
-        scalar=c_type(program.scalar),
+        scalar=C_TYPE[program.scalar],
         lane="int64_t" if program.scalar == "float64" else "int32_t",
         zero="0.0" if program.scalar == "float64" else "0.0f",
         one="1.0" if program.scalar == "float64" else "1.0f",
@@ -127,7 +128,7 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
 def _function(
     model: Model, program: Program, kernel: Kernel, names: Names, private: tuple[str, str], suffix: str
 ) -> BatchView:
-    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     single = f"{model.name}_{kernel.name}{suffix}"
     arguments = tuple(ArgumentView(a.name, a.length) for a in array_arguments(kernel))
     given = ["size_t count", "size_t stride", *(f"const {scalar} *{a.name}" for a in arguments)]
@@ -179,7 +180,7 @@ class _Lanes:
             return self.plain.statement(statement)
         operands = ", ".join(map(self.plain.operand, statement.operands))
         name = self.plain.names[statement.targets[0]]
-        return (f"const {c_type(self.plain.scalar)} {name} = {self.ratio}({operands});",)
+        return (f"const {C_TYPE[self.plain.scalar]} {name} = {self.ratio}({operands});",)
 
     def flag(self, checks: list[Check], outputs: tuple[Operand, ...]) -> list[str]:
         """The lines that make `flag[k]`: 0 where every check passes and every result is finite."""
@@ -188,7 +189,7 @@ class _Lanes:
         results = [plain.names[o.name] for o in dict.fromkeys(outputs) if isinstance(o, Local)]
         # x - x is 0 for finite x and NaN otherwise
         rest = " + ".join(f"({y} - {y})" for y in results) or zero
-        lines = [f"{c_type(plain.scalar)} rest = {rest};"]
+        lines = [f"{C_TYPE[plain.scalar]} rest = {rest};"]
         for check in checks:
             relation = ">=" if check.inclusive else ">"
             # a sum leaves nothing to skip, so the loop stays free of branches

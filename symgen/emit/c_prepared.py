@@ -11,7 +11,8 @@ from symgen.emit.operations import count_operations
 from symgen.emit.pairs import PairsView, pair_names, pairs_view
 from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
-from symgen.emit.statements import CStatements, c_type
+from symgen.emit.scalars import C_TYPE, SUFFIX
+from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Block, Kernel, Program, Status
 from symgen.ir.prepare import Prepared, prepare
 from symgen.model.model import Model
@@ -50,7 +51,7 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     prepared = prepare(program, BATCHED)
     if prepared is None:
         return {}
-    suffix = "" if program.scalar == "float64" else "_f"
+    suffix = SUFFIX[program.scalar]
     plain = file_stem(model.name)
     stem = f"{plain}_prepared{suffix}"
     once = Kernel("prepare", (), prepared.loads, (Block(prepared.statements, ()),), prepared.values, ())
@@ -65,7 +66,7 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
         stem=stem,
         guard=f"{stem.upper()}_H",
         plain_stem=plain + suffix,
-        scalar=c_type(program.scalar),
+        scalar=C_TYPE[program.scalar],
         struct=struct,
         size=len(prepared.values),
         prepare=f"{struct} {model.name}_prepare{suffix}(const {model.name}_params{suffix} *p)",
@@ -90,7 +91,7 @@ def _names(model: Model, program: Program, whole: Program, prepared: Prepared, s
 
 
 def _prepare_body(model: Model, program: Program, prepared: Prepared, names: Names, suffix: str) -> tuple[str, ...]:
-    scalar = c_type(program.scalar)
+    scalar = C_TYPE[program.scalar]
     sincos = None if program.sincos is None else f"{model.name}_sincos{suffix}"
     targets = {target for statement in prepared.statements for target in statement.targets}
     printer = CStatements(program.scalar, names.locals, targets, sincos)
@@ -107,7 +108,7 @@ def _prepare_body(model: Model, program: Program, prepared: Prepared, names: Nam
 def _function(
     model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str
 ) -> PreparedFunctionView:
-    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {struct} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
     name = f"{model.name}_{kernel.name}_prepared{suffix}"

@@ -10,7 +10,7 @@ from symgen.emit.locals import Names, array_arguments, names_of
 from symgen.emit.pairs import PairsView, pair_names, pairs_view
 from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
-from symgen.emit.statements import c_type
+from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.model.model import Model
@@ -47,7 +47,7 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
     given = [made for kernel in program.kernels if kernel.name in BATCHED and (made := given_trig(kernel))]
     if not given:
         return {}
-    suffix = "" if program.scalar == "float64" else "_f"
+    suffix = SUFFIX[program.scalar]
     plain = file_stem(model.name)
     stem, struct = f"{plain}_sc{suffix}", f"{model.name}_trig{suffix}"
     whole = replace(program, kernels=tuple(made.kernel for made in given))
@@ -59,7 +59,7 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
         stem=stem,
         guard=f"{stem.upper()}_H",
         plain_stem=plain + suffix,
-        scalar=c_type(program.scalar),
+        scalar=C_TYPE[program.scalar],
         struct=struct,
         members=_members(model, given),
         functions=tuple(_function(model, program, kernel, names, struct, suffix) for kernel in whole.kernels),
@@ -82,7 +82,7 @@ def _members(model: Model, given: list[GivenTrig]) -> tuple[tuple[str, str], ...
 def _function(
     model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str
 ) -> GivenFunctionView:
-    scalar, output = c_type(program.scalar), names.outputs[kernel.name]
+    scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = [f"const {struct} *sc"]
     arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {model.name}_params{suffix} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symgen.emit.statements import CStatements, c_type
+from symgen.emit.scalars import C_TYPE
+from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
 from symgen.naming import c_identifiers
 from symgen.records import dataclass
@@ -94,7 +95,7 @@ def leading_group(kernel: Kernel) -> tuple[Statement, ...]:
 
 def group_lines(scalar: Scalar, function: str, angles: Sequence[str]) -> tuple[str, ...]:
     """The call for several angles; the last angle fills the last vector, so that no new value enters."""
-    kind, lanes = c_type(scalar), LANES[scalar]
+    kind, lanes = C_TYPE[scalar], LANES[scalar]
     filled = [*angles, *[angles[-1]] * (-len(angles) % lanes)]
     values, sines, cosines = GROUP_NAMES
     return (

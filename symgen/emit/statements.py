@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 
 from symgen.emit.literals import c_literal, numpy_literal
+from symgen.emit.scalars import C_TYPE
 from symgen.ir.kernel import Block, Check, Literal, Local, Operand, Scalar, Statement, Status
 from symgen.records import dataclass
 
@@ -12,11 +13,6 @@ _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 _CHOICES = {"min": "<", "max": ">"}
 _C_FUNCTIONS = {"abs": "fabs"}
 _NUMPY_FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2", "pow": "power"}
-
-
-def c_type(scalar: Scalar) -> str:
-    """The C type of a scalar."""
-    return "double" if scalar == "float64" else "float"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +51,7 @@ class CStatements:
         return (*statements, *checks)
 
     def _declare(self, target: str, expression: str) -> str:
-        return f"const {c_type(self.scalar)} {self.names[target]} = {expression};"
+        return f"const {C_TYPE[self.scalar]} {self.names[target]} = {expression};"
 
     def _expression(self, operation: str, operands: list[str]) -> str:
         if operation in _INFIX:
@@ -78,7 +74,7 @@ class CStatements:
             return tuple(self._declare(t, f"{self.function(name)}({angle})") for t, name in pairs if t in self.used)
         sine, cosine = (self.names[target] for target in targets)
         # Taking the address is a use, so a half that nothing reads gives no warning.
-        kind = c_type(self.scalar)
+        kind = C_TYPE[self.scalar]
         return (f"{kind} {sine};", f"{kind} {cosine};", f"{self.sincos}({angle}, &{sine}, &{cosine});")
 
     def check(self, check: Check) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from symgen.emit.literals import decimal_text
 from symgen.emit.locals import array_arguments
 from symgen.emit.operations import count_operations
 from symgen.emit.quantities import meaning
-from symgen.emit.statements import c_type
+from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.sincos import ANGLE_LIMIT
 from symgen.model.model import Model, Range
@@ -64,7 +64,7 @@ def _use(model: Model, programs: Sequence[Program], stems: Sequence[str]) -> Ite
 
 def _example(model: Model, program: Program) -> Iterator[str]:
     kernel = next((k for k in program.kernels if k.name == "inverse_dynamics"), program.kernels[0])
-    suffix, kind = _suffix(program), c_type(program.scalar)
+    suffix, kind = SUFFIX[program.scalar], C_TYPE[program.scalar]
     names = c_names(model, program)
     yield f'#include "{model.name}{suffix}.h"'
     yield ""
@@ -126,7 +126,7 @@ def _statuses(model: Model, programs: Sequence[Program]) -> Iterator[str]:
     yield "|---|---|---|"
     yield from (f"| {int(s)} | `{status_name(model, s)}` | {STATUS_MEANING[s]} |" for s in Status)
     yield ""
-    limits = [(c_type(p.scalar), decimal_text("float64", ANGLE_LIMIT[p.scalar])) for p in programs if p.sincos]
+    limits = [(C_TYPE[p.scalar], decimal_text("float64", ANGLE_LIMIT[p.scalar])) for p in programs if p.sincos]
     if limits:
         spelled = ", ".join(f"{limit} ({kind})" for kind, limit in limits)
         yield f"The sine and cosine reach to angles of {spelled} rad; wrap angles that grow."
@@ -148,10 +148,6 @@ def _counts(program: Program) -> Iterator[str]:
 
 def _shape(kernel: Kernel) -> str:
     return " × ".join(map(str, kernel.shape))
-
-
-def _suffix(program: Program) -> str:
-    return "" if program.scalar == "float64" else "_f"
 
 
 def _range(pair: Range) -> str:

@@ -9,7 +9,7 @@ from symgen.emit.c import c_names, status_name
 from symgen.emit.literals import decimal_text
 from symgen.emit.locals import array_arguments
 from symgen.emit.render import render
-from symgen.emit.statements import c_type
+from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Load, Local, Program, Scalar, Status
 from symgen.model.model import Model, Range
 from symgen.naming import file_stem
@@ -68,9 +68,9 @@ class EvaView:
 
 def emit_eva(model: Model, program: Program) -> dict[str, str]:
     """`proof/<model>_eva.c` (float32: `_f_eva.c`) with one entry function for each kernel."""
-    suffix = "" if program.scalar == "float64" else "_f"
+    suffix = SUFFIX[program.scalar]
     stem = file_stem(model.name) + suffix
-    kind = c_type(program.scalar)
+    kind = C_TYPE[program.scalar]
     view = EvaView(
         stem=stem,
         model=model.name,

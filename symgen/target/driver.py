@@ -8,13 +8,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from symgen.emit.render import render
+from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Argument, Kernel, Program, Scalar
 from symgen.model.model import Model
 from symgen.naming import file_stem
-from symgen.verify.compile import SUFFIXES
 from symgen.verify.reference import State
 
-C_TYPE: dict[Scalar, str] = {"float64": "double", "float32": "float"}
 FORMAT: dict[Scalar, str] = {"float64": "d", "float32": "f"}
 SIZE: dict[Scalar, int] = {"float64": 8, "float32": 4}
 
@@ -87,7 +86,7 @@ def results_file(scalar: Scalar) -> str:
 
 def function_name(model: Model, kernel: Kernel, scalar: Scalar) -> str:
     """The C function of a kernel."""
-    return f"{model.name}_{kernel.name}{SUFFIXES[scalar]}"
+    return f"{model.name}_{kernel.name}{SUFFIX[scalar]}"
 
 
 def driver_source(model: Model, programs: Mapping[Scalar, Program]) -> str:
@@ -119,7 +118,7 @@ def unpack_results(data: bytes, program: Program, states: int) -> Results:
 
 
 def _group(model: Model, program: Program) -> GroupView:
-    suffix, kind = SUFFIXES[program.scalar], C_TYPE[program.scalar]
+    suffix, kind = SUFFIX[program.scalar], C_TYPE[program.scalar]
     arrays = (
         Argument("q", model.n), Argument("qd", model.n), Argument("qdd", model.n), Argument("u", model.m),
         ParameterArray(len(model.parameters)),

@@ -14,6 +14,7 @@ from threading import Lock
 from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.operations import count_operations
+from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
@@ -36,7 +37,6 @@ from symgen.target.footprint import footprints
 from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
 from symgen.target.tools import EMULATOR, PREFIX, ToolError, compilers, version
 from symgen.target.vectors import FEWEST, Vectors, perturbed, vectors_of
-from symgen.verify.compile import SUFFIXES
 from symgen.verify.reference import Reference, State
 
 Progress = Callable[[str], None]
@@ -105,7 +105,7 @@ class _Bench:
             shop = self.workshop(build)
             harness = shop.harness("driver.c", watched)
         stem = file_stem(self.model.name)
-        objects = [shop.compile(f"{stem}{SUFFIXES[scalar]}.c", build.level, build.compiler) for scalar in SCALARS]
+        objects = [shop.compile(f"{stem}{SUFFIX[scalar]}.c", build.level, build.compiler) for scalar in SCALARS]
         image = shop.link(f"{build.compiler}{build.level}-{watched}", [*harness, *objects])
         stage(image, self.inputs)
         return shop, image
@@ -258,7 +258,7 @@ def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Resu
     costs = []
     for scalar in programs:
         functions = {kernel: name for (s, kernel), name in names.items() if s == scalar}
-        target = shop.folder / f"{file_stem(bench.model.name)}{SUFFIXES[scalar]}_{build.compiler}{build.level}.o"
+        target = shop.folder / f"{file_stem(bench.model.name)}{SUFFIX[scalar]}_{build.compiler}{build.level}.o"
         sizes = footprints(shop, target, list(functions.values())) if build.level == SMALL else {}
         for kernel, name in functions.items():
             records = results[scalar].records[kernel]

@@ -9,8 +9,9 @@ from typing import Any
 
 from symgen.emit.locals import array_arguments
 from symgen.emit.quantities import BATCHED
+from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
-from symgen.verify.compile import C_TYPES, SUFFIXES, CFunction, Outcome, c_array
+from symgen.verify.compile import C_TYPES, CFunction, Outcome, c_array
 from symgen.verify.reference import State
 from symgen.verify.states import Sample
 
@@ -26,7 +27,7 @@ class BatchFunction:
     def __init__(
         self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar, states: Sequence[State]
     ) -> None:
-        self._function = library[f"{model}_{kernel.name}_batch{SUFFIXES[scalar]}"]
+        self._function = library[f"{model}_{kernel.name}_batch{SUFFIX[scalar]}"]
         self._function.restype = ctypes.c_size_t
         self._count = len(states) + len(HARD)
         self._stride = self._count + SPARE

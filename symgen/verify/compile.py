@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from symgen.emit.locals import array_arguments
+from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar, Status
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
 LONGEST_COMPILATION = 600.0
 C_TYPES: dict[Scalar, Any] = {"float64": ctypes.c_double, "float32": ctypes.c_float}
-SUFFIXES: dict[Scalar, str] = {"float64": "", "float32": "_f"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +103,7 @@ class CFunction:
     """One kernel of a library: arrays, then the parameter struct, then the result."""
 
     def __init__(self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar) -> None:
-        self._function = library[f"{model}_{kernel.name}{SUFFIXES[scalar]}"]
+        self._function = library[f"{model}_{kernel.name}{SUFFIX[scalar]}"]
         self._function.restype = ctypes.c_int
         self._scalar = C_TYPES[scalar]
         self._arguments = tuple(argument.name for argument in array_arguments(kernel))

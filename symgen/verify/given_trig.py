@@ -11,9 +11,10 @@ from typing import Any
 from flint import arb, ctx
 
 from symgen.emit.locals import array_arguments
+from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
-from symgen.verify.compile import C_TYPES, SUFFIXES, Outcome, c_array
+from symgen.verify.compile import C_TYPES, Outcome, c_array
 from symgen.verify.states import Sample
 
 BITS = 160
@@ -39,7 +40,7 @@ def run_given_trig(
     header: str,
 ) -> dict[str, list[Outcome]]:
     """Outcomes of the kernels that the header names."""
-    suffix = SUFFIXES[scalar]
+    suffix = SUFFIX[scalar]
     named = re.findall(rf"\b{model.name}_(\w+)_sc{suffix}\(", header)
     outcomes: dict[str, list[Outcome]] = {}
     for kernel in (kernel for kernel in kernels if kernel.name in named):

@@ -9,9 +9,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from symgen.emit.locals import array_arguments
+from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.batch import HARD
-from symgen.verify.compile import C_TYPES, SUFFIXES, CFunction, Outcome, c_array
+from symgen.verify.compile import C_TYPES, CFunction, Outcome, c_array
 from symgen.verify.states import Sample
 
 
@@ -19,7 +20,7 @@ class PreparedFunction:
     """One prepared kernel of a library, called as the plain one: the parameters are prepared at each call."""
 
     def __init__(self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar, size: int) -> None:
-        suffix = SUFFIXES[scalar]
+        suffix = SUFFIX[scalar]
         entries = C_TYPES[scalar] * size
         struct = type("Prepared", (ctypes.Structure,), {"_fields_": [("value", entries)]})
         self._prepare = library[f"{model}_prepare{suffix}"]
@@ -48,7 +49,7 @@ def run_prepared(
 ) -> tuple[dict[str, list[Outcome]], list[str]]:
     """Outcomes of the prepared kernels that the header names, and sentences where plain ones give something else."""
     (size,) = (int(text) for text in re.findall(r"value\[(\d+)\];", header))
-    named = re.findall(rf"\b{model}_(\w+)_prepared{SUFFIXES[scalar]}\(", header)
+    named = re.findall(rf"\b{model}_(\w+)_prepared{SUFFIX[scalar]}\(", header)
     outcomes: dict[str, list[Outcome]] = {}
     failures = []
     for kernel in kernels:

@@ -14,6 +14,7 @@ from typing import TypeAlias
 import flint
 
 import symgen
+from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.naming import file_stem
@@ -21,7 +22,6 @@ from symgen.verify.batch import run_batch
 from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, InvariantRecord
 from symgen.verify.comparison import Results, check_laws, compare, failures_of
 from symgen.verify.compile import (
-    SUFFIXES,
     CFunction,
     Compilation,
     CompilationError,
@@ -168,7 +168,7 @@ def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[d
                 if path.startswith(tuple(f"c/{stem}_{kind}{suffix}." for kind in ("batch", "prepared", "sc")))
             ),
         )
-        for scalar, suffix in SUFFIXES.items()
+        for scalar, suffix in SUFFIX.items()
         if f"c/{stem}{suffix}.c" in texts
     }
     return c_sources, texts.get(f"python/{stem}.py")
@@ -236,7 +236,7 @@ def _run_c(
         results[target] = (scalar, outcomes)
         companions = dict(sources[scalar].companions)
         given = library, model.name, kernels, scalar, samples[scalar], outcomes
-        stem, suffix = file_stem(model.name), SUFFIXES[scalar]
+        stem, suffix = file_stem(model.name), SUFFIX[scalar]
         others = {}
         if f"{stem}_batch{suffix}.h" in companions:
             others["batch"] = run_batch(*given)
