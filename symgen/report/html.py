@@ -6,23 +6,9 @@ import re
 from html import escape
 
 from symgen.emit.render import render
-from symgen.report.document import (
-    Block,
-    CodeLine,
-    Document,
-    Emphasis,
-    Figure,
-    Formula,
-    InlineCode,
-    InlineMath,
-    Items,
-    Paragraph,
-    Reference,
-    Section,
-    Table,
-    Text,
-)
-from symgen.report.layout import Row
+from symgen.report.document import Document, Figure, Section, Table
+from symgen.report.layout import Layout, Row
+from symgen.report.markup import Markup
 from symgen.report.mathml import mathml
 
 CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
@@ -38,58 +24,39 @@ def render_html(document: Document) -> str:
     return render("report/report.html.j2", _HtmlView(document))
 
 
-class _HtmlView:
+class _HtmlView(Markup):
     """What the template prints: prepared markup."""
 
     def __init__(self, document: Document) -> None:
-        self._numbers = document.numbers()
-        self.title = plain(document.title)
-        self.subtitle = plain(document.subtitle)
-        self.summary = self._text(document.summary)
-        self.colophon = plain(document.colophon)
+        super().__init__(document)
         numbered = list(zip(document.section_numbers(), document.sections, strict=True))
-        self.contents = [(number, self._text(section.title)) for number, section in numbered if section.level == 1]
+        self.contents = [(number, self.text(section.title)) for number, section in numbered if section.level == 1]
         self.sections = [self._section(number, section) for number, section in numbered]
 
     def _section(self, number: str, section: Section) -> str:
         head = f"h{section.level + 1}"
-        title = f'<{head} id="s{number}"><span class="section">{number}</span> {self._text(section.title)}</{head}>'
-        return "\n".join([title, *(self._block(block) for block in section.blocks)])
+        title = f'<{head} id="s{number}"><span class="section">{number}</span> {self.text(section.title)}</{head}>'
+        return "\n".join([title, *(self.block(block) for block in section.blocks)])
 
-    def _text(self, text: Text) -> str:
-        return "".join(self._inline(part) for part in text)
+    def plain(self, text: str) -> str:
+        return plain(text)
 
-    def _inline(self, part: object) -> str:
-        match part:
-            case str():
-                return plain(part)
-            case InlineMath(node=node):
-                return f"<math>{mathml(node)}</math>"
-            case InlineCode(text=text):
-                return f"<code>{plain(text)}</code>"
-            case Emphasis(text=text):
-                return f"<em>{plain(text)}</em>"
-            case Reference(label=label):
-                number = self._numbers[label]
-                return f'<a href="#e{number}">({number})</a>'
-        raise AssertionError(part)
+    def math(self, node: Layout) -> str:
+        return f"<math>{mathml(node)}</math>"
 
-    def _block(self, block: Block) -> str:
-        match block:
-            case Paragraph(text=text):
-                return f"<p>{self._text(text)}</p>"
-            case Formula(equations=equations, label=label):
-                return self._formula(equations, label)
-            case Items(items=items):
-                return "<ul>\n" + "\n".join(f"<li>{self._text(item)}</li>" for item in items) + "\n</ul>"
-            case CodeLine(text=text):
-                return f"<pre><code>{plain(text)}</code></pre>"
-            case Figure(svg=svg, caption=caption):
-                return f"<figure>\n{svg_element(svg)}\n<figcaption>{self._text(caption)}</figcaption>\n</figure>"
-            case Table():
-                return self._table(block)
+    def code(self, text: str) -> str:
+        return f"<code>{plain(text)}</code>"
 
-    def _formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
+    def emphasis(self, text: str) -> str:
+        return f"<em>{plain(text)}</em>"
+
+    def reference(self, number: str) -> str:
+        return f'<a href="#e{number}">({number})</a>'
+
+    def paragraph(self, body: str) -> str:
+        return f"<p>{body}</p>"
+
+    def formula(self, equations: tuple[tuple[Row, ...], ...], number: str | None) -> str:
         lines = []
         for rows in equations:
             for position, line in enumerate(rows):
@@ -97,14 +64,23 @@ class _HtmlView:
                 lines.append(
                     f'<div class="line{more}"><math display="inline" displaystyle="true">{mathml(line)}</math></div>'
                 )
-        number = "" if label is None else f'<span class="number">({self._numbers[label]})</span>'
-        anchor = "" if label is None else f' id="e{self._numbers[label]}"'
-        return f'<div class="formula"{anchor}><div class="lines">\n' + "\n".join(lines) + f"\n</div>{number}</div>"
+        shown = "" if number is None else f'<span class="number">({number})</span>'
+        anchor = "" if number is None else f' id="e{number}"'
+        return f'<div class="formula"{anchor}><div class="lines">\n' + "\n".join(lines) + f"\n</div>{shown}</div>"
 
-    def _table(self, table: Table) -> str:
-        head = "".join(f"<th>{self._text(heading)}</th>" for heading in table.headings)
-        rows = ["<tr>" + "".join(f"<td>{self._text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows]
-        caption = f"<caption>{self._text(table.caption)}</caption>\n" if table.caption else ""
+    def items(self, items: list[str]) -> str:
+        return "<ul>\n" + "\n".join(f"<li>{item}</li>" for item in items) + "\n</ul>"
+
+    def code_line(self, text: str) -> str:
+        return f"<pre><code>{plain(text)}</code></pre>"
+
+    def figure(self, figure: Figure) -> str:
+        return f"<figure>\n{svg_element(figure.svg)}\n<figcaption>{self.text(figure.caption)}</figcaption>\n</figure>"
+
+    def table(self, table: Table) -> str:
+        head = "".join(f"<th>{self.text(heading)}</th>" for heading in table.headings)
+        rows = ["<tr>" + "".join(f"<td>{self.text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows]
+        caption = f"<caption>{self.text(table.caption)}</caption>\n" if table.caption else ""
         body = "\n".join(rows)
         return f"<table>\n{caption}<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>"
 

@@ -3,24 +3,10 @@
 from __future__ import annotations
 
 from symgen.emit.render import render
-from symgen.report.document import (
-    Block,
-    CodeLine,
-    Document,
-    Emphasis,
-    Figure,
-    Formula,
-    InlineCode,
-    InlineMath,
-    Items,
-    Paragraph,
-    Reference,
-    Section,
-    Table,
-    Text,
-)
+from symgen.report.document import Document, Emphasis, Figure, InlineCode, InlineMath, Reference, Section, Table, Text
 from symgen.report.latex_math import GREEK, RELATIONS, latex_math
-from symgen.report.layout import Row
+from symgen.report.layout import Layout, Row
+from symgen.report.markup import Markup
 from symgen.report.measure import page_width
 
 LINE = 44.0
@@ -58,70 +44,58 @@ def render_latex(document: Document) -> str:
     return render("report/report.tex.j2", _LatexView(document))
 
 
-class _LatexView:
+class _LatexView(Markup):
     """What the template prints: prepared source."""
 
     def __init__(self, document: Document) -> None:
-        self._numbers = document.numbers()
-        self.title = latex_text(document.title)
-        self.subtitle = latex_text(document.subtitle)
-        self.summary = self._text(document.summary)
-        self.colophon = latex_text(document.colophon)
+        super().__init__(document)
         self.sections = [self._section(section) for section in document.sections]
 
     def _section(self, section: Section) -> str:
         command = "section" if section.level == 1 else "subsection"
-        return "\n\n".join([rf"\{command}{{{self._text(section.title)}}}", *map(self._block, section.blocks)])
+        return "\n\n".join([rf"\{command}{{{self.text(section.title)}}}", *map(self.block, section.blocks)])
 
-    def _text(self, text: Text) -> str:
-        return "".join(self._inline(part) for part in text)
+    def plain(self, text: str) -> str:
+        return latex_text(text)
 
-    def _inline(self, part: object) -> str:
-        match part:
-            case str():
-                return latex_text(part)
-            case InlineMath(node=node):
-                return f"${latex_math(node)}$"
-            case InlineCode(text=text):
-                return rf"\texttt{{{latex_text(text)}}}"
-            case Emphasis(text=text):
-                return rf"\emph{{{latex_text(text)}}}"
-            case Reference(label=label):
-                return f"({self._numbers[label]})"
-        raise AssertionError(part)
+    def math(self, node: Layout) -> str:
+        return f"${latex_math(node)}$"
 
-    def _block(self, block: Block) -> str:
-        match block:
-            case Paragraph(text=text):
-                return self._text(text)
-            case Formula(equations=equations, label=label):
-                return self._formula(equations, label)
-            case Items(items=items):
-                body = "\n".join(rf"\item {self._text(item)}" for item in items)
-                return f"\\begin{{itemize}}\n{body}\n\\end{{itemize}}"
-            case CodeLine(text=text):
-                return rf"\noindent\texttt{{{latex_text(text)}}}"
-            case Figure(caption=caption):
-                return rf"\emph{{Figure (drawn in the PDF and HTML versions): {self._text(caption)}}}"
-            case Table():
-                return self._table(block)
+    def code(self, text: str) -> str:
+        return rf"\texttt{{{latex_text(text)}}}"
 
-    def _formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
+    def emphasis(self, text: str) -> str:
+        return rf"\emph{{{latex_text(text)}}}"
+
+    def reference(self, number: str) -> str:
+        return f"({number})"
+
+    def formula(self, equations: tuple[tuple[Row, ...], ...], number: str | None) -> str:
         lines = []
         for rows in equations:
             for position, line in enumerate(rows):
                 indent = r"\quad " if position else ""
                 lines.append(f"& {indent}{latex_math(line).strip()}")
-        if label is not None:
-            lines[0] += rf" \tag{{{self._numbers[label]}}}"
+        if number is not None:
+            lines[0] += rf" \tag{{{number}}}"
         body = " \\\\\n".join(lines)
         return f"\\begin{{align*}}\n{body}\n\\end{{align*}}"
 
-    def _table(self, table: Table) -> str:
+    def items(self, items: list[str]) -> str:
+        body = "\n".join(rf"\item {item}" for item in items)
+        return f"\\begin{{itemize}}\n{body}\n\\end{{itemize}}"
+
+    def code_line(self, text: str) -> str:
+        return rf"\noindent\texttt{{{latex_text(text)}}}"
+
+    def figure(self, figure: Figure) -> str:
+        return rf"\emph{{Figure (drawn in the PDF and HTML versions): {self.text(figure.caption)}}}"
+
+    def table(self, table: Table) -> str:
         columns = "".join(_columns(table))
-        head = " & ".join(rf"\textbf{{{self._text(heading)}}}" for heading in table.headings)
-        rows = "\n".join(" & ".join(self._text(cell) for cell in row) + r" \\" for row in table.rows)
-        caption = f"\\noindent {self._text(table.caption)}\n\n" if table.caption else ""
+        head = " & ".join(rf"\textbf{{{self.text(heading)}}}" for heading in table.headings)
+        rows = "\n".join(" & ".join(self.text(cell) for cell in row) + r" \\" for row in table.rows)
+        caption = f"\\noindent {self.text(table.caption)}\n\n" if table.caption else ""
         return (
             f"{caption}{{\\small\n\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n\\hline\n{head} "
             f"\\\\\n\\hline\n\\endhead\n"
