@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import prod
 
-from symgen.emit.c import c_names, status_name
+from symgen.emit.c import c_members, status_name
 from symgen.emit.literals import decimal_text
 from symgen.emit.locals import array_arguments
 from symgen.emit.render import render
@@ -71,6 +71,7 @@ def emit_eva(model: Model, program: Program) -> dict[str, str]:
     suffix = SUFFIX[program.scalar]
     stem = file_stem(model.name) + suffix
     kind = C_TYPE[program.scalar]
+    members = c_members(model, program)
     view = EvaView(
         stem=stem,
         model=model.name,
@@ -80,7 +81,7 @@ def emit_eva(model: Model, program: Program) -> dict[str, str]:
         ok=status_name(model, Status.OK),
         not_finite=status_name(model, Status.NOT_FINITE),
         has_parameters=bool(model.parameters),
-        drivers=tuple(_driver(model, program, kernel) for kernel in program.kernels),
+        drivers=tuple(_driver(model, program, kernel, members) for kernel in program.kernels),
     )
     return {f"proof/{stem}_eva.c": render("proof/eva.c.jinja", view)}
 
@@ -96,9 +97,8 @@ def decisive_angles(kernel: Kernel) -> tuple[Load, ...]:
     return tuple(load for load in loaded_angles(kernel) if load.local in needed)
 
 
-def _driver(model: Model, program: Program, kernel: Kernel) -> DriverView:
+def _driver(model: Model, program: Program, kernel: Kernel, members: dict[str, str]) -> DriverView:
     ranges = box(model)
-    members = c_names(model, program).members
     cut = _slices(program, kernel, ranges)
     sliced = {view.index for view in cut}
     arrays = tuple((argument.name, argument.length) for argument in array_arguments(kernel))

@@ -11,6 +11,7 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 
 from symgen.emit.literals import round_to
 from symgen.graph.scalar import PI
@@ -30,6 +31,7 @@ class Slice:
     high: float
 
 
+@cache
 def slices(scalar: Scalar, given: Range) -> tuple[Slice, ...]:
     """The range, rounded to the scalar type, in slices of one quadrant, none much wider than `WIDEST`."""
     low, high = (round_to(scalar, bound) for bound in given)
@@ -46,10 +48,27 @@ def slices(scalar: Scalar, given: Range) -> tuple[Slice, ...]:
 
 
 def _multiple(scalar: Scalar, x: float) -> float:
-    """The multiple of pi/2 that the reduction takes from x, in the arithmetic of the scalar type."""
-    turns = round_to(scalar, Fraction(x) * Fraction(round_to(scalar, 2 / PI)))
-    shifted = round_to(scalar, Fraction(turns) + ROUNDER[scalar])
-    return round_to(scalar, Fraction(shifted) - ROUNDER[scalar])
+    """The multiple of pi/2 that the reduction takes from x, in the arithmetic of the scalar type.
+
+    A product, sum or difference of two binary32 numbers that is rounded to binary64 and then to binary32 is the one
+    rounded once: 53 bits are more than 2 * 24 + 1 (Figueroa, When is double rounding innocuous?, 1995).
+    """
+    one, rounder = _rounded(scalar), float(ROUNDER[scalar])
+    turns = one(x * _turn(scalar))
+    return one(one(turns + rounder) - rounder)
+
+
+@cache
+def _turn(scalar: Scalar) -> float:
+    return round_to(scalar, 2 / PI)
+
+
+def _rounded(scalar: Scalar) -> Callable[[float], float]:
+    return float if scalar == "float64" else _single
+
+
+def _single(x: float) -> float:
+    return float(struct.unpack("<f", struct.pack("<f", x))[0])
 
 
 def _last_with(scalar: Scalar, multiple: float, low: float, high: float) -> float:
