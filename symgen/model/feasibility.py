@@ -31,11 +31,7 @@ def check_motion(
             continue
         points.append(q)
     if not points:
-        yield Mistake(
-            "no configuration was found that satisfies all geometric constraints",
-            "check signs and lengths, or give a start near the assembled mechanism under `configuration`",
-            spans["geometric"],
-        )
+        yield _no_configuration(mechanics, start, spans["geometric"])
         return
     n = len(mechanics.coordinates)
     low, high = ([rank(jacobian, threshold) for jacobian in jacobians] for threshold in THRESHOLDS)
@@ -55,6 +51,17 @@ def check_motion(
     yield from _check_masses(mechanics, regular, spans["kinetic_energy"])
     if independent:
         yield from _check_independent(mechanics, regular, independent, n - generic, spans["independent_velocities"])
+
+
+def _no_configuration(mechanics: Mechanics, start: dict[str, float], span: Span | None) -> Mistake:
+    """The mistake at the row that stays open widest."""
+    message = "no configuration was found that satisfies all geometric constraints"
+    remedy = "check signs and lengths, or give a start near the assembled mechanism under `configuration`"
+    worst = mechanics.widest_open(start)
+    if worst is None:
+        return Mistake(message, remedy, span)
+    row, value = worst
+    return Mistake(f"{message}; `{row.name}` stays at {value:.3g} in the nearest one", remedy, row.span or span)
 
 
 def _check_masses(

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from math import isqrt
 
 from symgen.diagnostics import Span
-from symgen.model.combine import minus, plus, times
-from symgen.model.expression import Expression, Name, Number, Power
+from symgen.model.combine import divided, minus, plus, times
+from symgen.model.expression import Call, Expression, Name, Number, Power
 from symgen.model.frames import frame_name, read_axis, read_rotation, read_vector
 from symgen.model.mechanism import NO_VECTOR, WORLD, ZERO, Frame, Quaternion, Turn, Vector3
 from symgen.model.model import ConstraintRow
 from symgen.model.reading import description_of, entries, items, member, text_of
 from symgen.model.scope import FRAME, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
+from symgen.model.walk import evaluate, exact_value
 from symgen.records import dataclass
 
 ONE = Number(Fraction(1))
@@ -70,8 +73,10 @@ def declare_joints(scope: Scope, tree: MappingNode) -> tuple[JointCoordinate, ..
     return tuple(coordinates)
 
 
-def read_joints(scope: Scope, tree: MappingNode, coordinates: tuple[JointCoordinate, ...]) -> JointForms:
-    """The frames of the joints, and the rows of their quaternions."""
+def read_joints(
+    scope: Scope, tree: MappingNode, coordinates: tuple[JointCoordinate, ...], defaults: Mapping[str, float]
+) -> JointForms:
+    """The frames of the joints, and the rows of their quaternions; `defaults` are the values of the parameters."""
     frames: list[Frame] = []
     rows: list[ConstraintRow] = []
     for key, node in entries(tree.get("joints")):
@@ -80,7 +85,7 @@ def read_joints(scope: Scope, tree: MappingNode, coordinates: tuple[JointCoordin
         names: list[Expression] = [Name(item.value, item.span) for item in _coordinates(node)]
         parent = frame_name(scope, member(node, "parent"), f"`parent` of {what}") or WORLD
         at = read_vector(scope, member(node, "at"), f"the place of {what}", FRAME) or NO_VECTOR
-        axis = read_axis(scope, member(node, "axis"), f"the axis of {what}") or Z_AXIS
+        axis = _axis(scope, member(node, "axis"), what, defaults)
         fixed = read_rotation(scope, member(node, "rotation"), what)
         child = text_of(member(node, "child")) or key.value
         # both are mistakes that have been reported
@@ -126,8 +131,34 @@ def _motion(kind: str, names: list[Expression], axis: Vector3) -> tuple[Vector3,
             return (names[0], names[1], names[2]), Quaternion((names[3], names[4], names[5], names[6]))
 
 
+def _axis(scope: Scope, node: Node | None, what: str, defaults: Mapping[str, float]) -> Vector3:
+    """The axis as it is written, of any length but zero."""
+    axis = read_axis(scope, node, f"the axis of {what}") or Z_AXIS
+    try:
+        vanishes = not any(evaluate(entry, defaults) for entry in axis)
+    except (ArithmeticError, ValueError, KeyError):
+        # a mistake in an entry, which is told where it stands
+        return axis
+    if not vanishes:
+        return axis
+    remedy = "give its direction, such as z or [0, 0.6, 0.8]; its length does not matter"
+    scope.wrong(f"the axis of {what} has length zero", remedy, None if node is None else node.span)
+    return Z_AXIS
+
+
 def _along(axis: Vector3, way: Expression) -> Vector3:
-    return times(axis[0], way), times(axis[1], way), times(axis[2], way)
+    """The way along the axis, whose length does not matter."""
+    squares: Expression = ZERO
+    for entry in axis:
+        squares = plus(squares, Power(entry, Fraction(2)))
+    exact = [exact_value(entry) for entry in axis]
+    length: Expression = Call("sqrt", (squares,))
+    if None not in exact:
+        square = sum((value * value for value in exact if value is not None), Fraction(0))
+        root = Fraction(isqrt(square.numerator), isqrt(square.denominator))
+        length = Number(root) if root * root == square else Call("sqrt", (Number(square),))
+    x, y, z = (times(divided(entry, length), way) for entry in axis)
+    return x, y, z
 
 
 def _sum(left: Vector3, right: Vector3) -> Vector3:

@@ -11,7 +11,7 @@ from symgen.model.combine import divided, minus, negated, plus, times
 from symgen.model.expression import Call, Expression, Name, Number, Power
 from symgen.model.formulas import Form, Formula, Formulas
 from symgen.model.frames import frame_name
-from symgen.model.inputs import difference, point_name, squared_distance
+from symgen.model.inputs import point_name, squared_distance
 from symgen.model.kinematics import Kinematics
 from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, component, is_component
 from symgen.model.model import ConstraintRow, Coordinate, Definition
@@ -20,7 +20,17 @@ from symgen.model.scope import PARAMETERS, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 from symgen.model.walk import exact_value, names_in
 
-LOOPS = ("point", "distance", "revolute", "fixed")
+# What each full joint holds: offsets along the axis, offsets across it, tilts of the axis, the turn about it.  A point
+# or a spherical joint holds the three offsets, in the axes of the world.
+JOINED: dict[str, tuple[bool, bool, bool, bool]] = {
+    "revolute": (True, True, True, False),
+    "prismatic": (False, True, True, True),
+    "cylindrical": (False, True, True, False),
+    "planar": (True, False, True, False),
+    "fixed": (True, True, True, True),
+}
+OF_POINTS = ("point", "distance")
+LOOPS = (*OF_POINTS, "spherical", *JOINED)
 ONE = Number(Fraction(1))
 TWO = Fraction(2)
 
@@ -42,7 +52,7 @@ class Rows:
             kind = text_of(member(node, "type"))
             if kind not in LOOPS:
                 continue
-            owner_of = point_name if kind in ("point", "distance") else frame_name
+            owner_of = point_name if kind in OF_POINTS else frame_name
             owners = [owner_of(self._scope, item, f"`between` of {what}") for item in items(member(node, "between"))]
             known = [owner for owner in owners if owner is not None]
             if len(known) != 2:
@@ -69,15 +79,19 @@ class Rows:
             if length is not None:
                 yield "length", minus(squared_distance(one, other), Power(length, TWO))
             return
-        yield from ((place, difference(other, one, place)) for place in PLACES)
-        if kind == "point":
-            return
         axis = _main_axis(text_of(member(node, "axis")), 2)
-        # the axis of one, seen from the other, has no components across it
         across = [index for index in range(3) if index != axis]
-        for row in across:
+        along, beside, tilted, turned = JOINED.get(kind, (True, True, False, False))
+        # a joint that holds every offset holds them in any axes: those of the world are the cheapest
+        axes = WORLD if along and beside else other
+        for index in range(3):
+            if beside if index in across else along:
+                here, there = (Name(Component(owner, PLACES[index], axes).name) for owner in (one, other))
+                yield PLACES[index], minus(here, there)
+        # the axis of one, seen from the other, has no components across it
+        for row in across if tilted else ():
             yield f"tilt_{AXES[row]}", Name(Component(one, f"r{row + 1}{axis + 1}", other).name)
-        if kind == "fixed":
+        if turned:
             yield "turn", Name(Component(one, f"r{across[0] + 1}{across[1] + 1}", other).name)
 
     def _rolling(self, frame: str, radius: Expression, axle: int) -> Iterator[tuple[str, Expression]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 from collections.abc import Iterator
 
@@ -20,6 +21,7 @@ STEPS = 80
 POINTS = 2
 ATTEMPTS = 30
 RESIDUAL = 1e-11
+NEARBY = 8
 
 
 class Mechanics:
@@ -118,11 +120,18 @@ class Mechanics:
 
     def admissible(self, start: dict[str, float], count: int) -> Iterator[list[float]]:
         """Up to `count` configurations on the geometric constraints: from `start`, then around it or at random."""
-        generator = random.Random(SEED)
-        middle = [float(sum(c.range)) / 2 for c in self.coordinates]
-        guess = [start.get(c.name, m) for c, m in zip(self.coordinates, middle, strict=True)]
         anchor: list[float] | None = None
+        guesses = self._guesses(start)
+        around = random.Random(SEED + 2)
         for attempt in range(STARTS):
+            # Near a known point Newton is quick; without one, or now and then, the whole range is tried.
+            if anchor is not None and attempt % 4:
+                guess = [
+                    a + around.uniform(-0.15, 0.15) * float(c.range[1] - c.range[0])
+                    for a, c in zip(anchor, self.coordinates, strict=True)
+                ]
+            else:
+                guess = next(guesses)
             found = self._project(guess)
             if found is not None:
                 anchor = anchor or found
@@ -130,14 +139,21 @@ class Mechanics:
                 count -= 1
                 if count == 0:
                     return
-            # Near a known point Newton is quick; without one, or now and then, the whole range is tried.
-            if anchor is not None and attempt % 4 != 3:
-                guess = [
-                    a + generator.uniform(-0.15, 0.15) * float(c.range[1] - c.range[0])
-                    for a, c in zip(anchor, self.coordinates, strict=True)
-                ]
-            else:
-                guess = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
+
+    def widest_open(self, start: dict[str, float]) -> tuple[ConstraintRow, float] | None:
+        """Where nothing closes the mechanism: the worst geometric row at the nearest configuration found, and its
+        value; None where no row has a value."""
+        nearest: tuple[float, list[float]] | None = None
+        for guess in itertools.islice(self._guesses(start), NEARBY):
+            found = self._settle(guess)
+            if found is not None and (nearest is None or found[0] < nearest[0]):
+                nearest = found
+        if nearest is None:
+            return None
+        rows = [row for row in self.constraints if row.kind == "geometric"]
+        values = self.geometric(nearest[1])[0]
+        worst = max(range(len(rows)), key=lambda index: abs(values[index]))
+        return rows[worst], values[worst]
 
     def anywhere(self, count: int) -> Iterator[tuple[list[float], dict[str, float]]]:
         """Random configurations with random parameters, for what must hold whatever their values."""
@@ -153,8 +169,20 @@ class Mechanics:
     def _named(self, q: list[float]) -> dict[str, float]:
         return {coordinate.name: value for coordinate, value in zip(self.coordinates, q, strict=True)}
 
+    def _guesses(self, start: dict[str, float]) -> Iterator[list[float]]:
+        """The start, completed with the middles of the ranges, then random configurations."""
+        generator = random.Random(SEED)
+        yield [start.get(c.name, float(sum(c.range)) / 2) for c in self.coordinates]
+        while True:
+            yield [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
+
     def _project(self, q: list[float]) -> list[float] | None:
         """The configuration with g = 0 that Levenberg and Marquardt's method reaches from q."""
+        found = self._settle(q)
+        return found[1] if found is not None and found[0] == 0 else None
+
+    def _settle(self, q: list[float]) -> tuple[float, list[float]] | None:
+        """Where that method stops: |g|^2, 0 where g vanishes, and the configuration; None outside of g's domain."""
         n = len(q)
         damping = 1e-3
         try:
@@ -163,10 +191,10 @@ class Mechanics:
             return None
         for _ in range(STEPS):
             if _vanishes(residual, jacobian, q):
-                return q
+                return 0.0, q
             step = _damped_step(jacobian, residual, damping, n)
             if step is None:
-                return None
+                break
             trial = [a + b for a, b in zip(q, step, strict=True)]
             try:
                 trial_residual, trial_jacobian = self.geometric(trial)
@@ -179,8 +207,8 @@ class Mechanics:
             else:
                 damping *= 10
                 if damping > 1e12:
-                    return None
-        return None
+                    break
+        return sum(g * g for g in residual), q
 
 
 def _damped_step(jacobian: Rows, residual: list[float], damping: float, n: int) -> list[float] | None:

@@ -30,6 +30,7 @@ from symgen.model.expression import Call, Expression, Number
 from symgen.model.inputs import read_inputs
 from symgen.model.joint_forms import JointCoordinate, read_joints
 from symgen.model.loops import Rows
+from symgen.model.mechanics import default_values
 from symgen.model.mechanism import Mechanism, Quaternion
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean, name_mistake
@@ -50,7 +51,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     ranges = read_ranges(scope, tree)
     parameters = read_parameters(scope, tree, ranges)
     definitions = read_definitions(scope, tree)
-    joints = read_joints(scope, tree, joint_coordinates)
+    joints = read_joints(scope, tree, joint_coordinates, default_values(parameters))
     mechanism = read_mechanism(scope, tree, joints.frames)
     _check_mass(scope, tree)
     kinetic_read = scope.expression(tree.get("kinetic_energy"), "the kinetic energy", STATE)

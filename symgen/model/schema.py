@@ -113,9 +113,9 @@ _JOINT = Record(
 _LOOP = Record(
     "a loop",
     (
-        Field("type", Word(LOOPS), "point, distance, revolute or fixed", required=True),
+        Field("type", Word(LOOPS), "a joint, two points that meet, or a rod of fixed length", required=True),
         Field("between", Listing(Word(), 2, 2), "the two points (point, distance) or frames that meet", required=True),
-        Field("axis", _MAIN_AXIS, "of a revolute loop: the axis x, y or z of both frames; absent: z"),
+        Field("axis", _MAIN_AXIS, "the axis x, y or z of both frames, of the normal for planar; absent: z"),
         Field("length", Formula(), "of a distance loop: the distance of the points"),
     ),
 )

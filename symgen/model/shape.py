@@ -12,6 +12,7 @@ from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
 from symgen.records import dataclass
 
 MAXIMUM_TEXT = 2000
+MOST_LISTED = 10
 JsonSchema: TypeAlias = dict[str, object]
 
 
@@ -165,7 +166,9 @@ def _check_scalar(shape: Text | Formula | Word, node: ScalarNode, what: str) -> 
 
 
 def _choices_remedy(choices: tuple[str, ...]) -> str:
-    return f"write {' or '.join(choices)}" if len(choices) < 5 else "the command `symgen schema` lists the known words"
+    if len(choices) > MOST_LISTED:
+        return "the command `symgen schema` lists the known words"
+    return f"write {', '.join(choices[:-1])} or {choices[-1]}" if len(choices) > 1 else f"write {choices[0]}"
 
 
 def _check_text(node: ScalarNode, what: str) -> Iterator[Mistake]:

@@ -307,6 +307,11 @@ bodies:
   upper: {mass: m, com: [l/2, 0, 0], inertia: {zz: J}}
   lower: {mass: m, com: [l/2, 0, 0], inertia: {zz: J}}
 """
+JOINTS = """\
+joints:
+  upper: {type: revolute, coordinate: a}
+  lower: {type: revolute, parent: upper, at: [l, 0, 0], coordinate: b}
+"""
 POINTS = """\
 points:
   tip: {frame: lower, at: [l, 0, 0]}
@@ -346,6 +351,7 @@ BODIES = {
     "negative_mass": arm(bodies=MASSES.replace("lower: {mass: m", "lower: {mass: m - 3")),
     "mass_that_changes": arm(bodies=MASSES.replace("lower: {mass: m", "lower: {mass: m*a")),
     "triangle_inequality": heavy("xx: 1, yy: 1, zz: 2.5"),
+    "triangle_inequality_of_a_grain": heavy("xx: 1e-12, yy: 1e-12, zz: 2.5e-12"),
     "negative_moment": heavy("xx: 1, yy: 1, zz: 1, xy: 1.5"),
     "unknown_element": heavy("zy: 1"),
     "massless_motion": arm(bodies="bodies: {upper: {mass: 0}, lower: {mass: m}}\n"),
@@ -378,6 +384,9 @@ ELEMENTS = {
     "joint_axis_of_zero_length": arm(
         more="joints: {wrist: {type: revolute, parent: lower, axis: [0, 0, 0], coordinate: c}}\n"
     ),
+    "slide_of_zero_length": arm(
+        more="joints: {wrist: {type: prismatic, parent: lower, axis: [l - 0.5, 0, 0], coordinate: c}}\n"
+    ),
     "two_frames_of_one_name": arm(more="joints: {wrist: {type: revolute, child: lower, coordinate: c}}\n"),
     "joint_that_hangs_on_itself": arm(more="joints: {wrist: {type: revolute, parent: wrist, coordinate: c}}\n"),
     "quaternion_before_a_joint": arm(
@@ -387,6 +396,10 @@ ELEMENTS = {
     "loop_between_three": arm(more="loops: {cut: {type: point, between: [tip, upper, lower]}}\n"),
     "loop_to_nowhere": arm(more="loops: {cut: {type: point, between: [tip, hook]}}\n"),
     "loop_of_points_with_an_axis": arm(more="loops: {cut: {type: revolute, between: [tip, upper]}}\n"),
+    "slider_that_cannot_close": arm(
+        frames=JOINTS + "frames: {rail: {translation: [0, 3*l, 0]}}\n",
+        more="loops: {cut: {type: cylindrical, between: [lower, rail], axis: x}}\n",
+    ),
     "distance_without_length": arm(more="loops: {cut: {type: distance, between: [tip, upper]}}\n"),
     "loop_that_cannot_close": arm(more="loops: {cut: {type: distance, between: [tip, upper], length: 3*l}}\n"),
     "row_of_a_taken_name": arm(
