@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
-from symgen.results import DEFAULT_STATES, FORMS, PARTS, TRIG, Part
+from symgen.model.names import did_you_mean
+from symgen.results import AUTO, DEFAULT_STATES, FORMS, PARTS, TRIG, Part
 
 FEWEST_STATES = 8
+USUAL = "inverse_dynamics"
 
 
 def make_parser(program: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:
@@ -57,13 +60,36 @@ def add_generation(parser: argparse.ArgumentParser) -> None:
 
 
 def add_form(parser: argparse.ArgumentParser) -> None:
-    """--form."""
+    """--form, once for each quantity."""
     parser.add_argument(
         "--form",
-        choices=FORMS,
-        default="auto",
-        help="how the inverse dynamics are computed (default: auto, the cheapest valid at every regular state)",
+        metavar="[QUANTITY=]FORM",
+        type=form_of,
+        action="append",
+        default=[],
+        dest="forms",
+        help="how a quantity is computed: "
+        + "; ".join(f"{quantity}={'|'.join(forms)}" for quantity, forms in FORMS.items())
+        + f"; {AUTO}: the cheapest valid at every regular state (default); without QUANTITY: {USUAL}; repeatable",
     )
+
+
+def form_of(text: str) -> tuple[str, str]:
+    """`schur_qr` of `multipliers=schur_qr` with its quantity; a form alone is one of the inverse dynamics."""
+    quantity, given, form = text.rpartition("=")
+    quantity = quantity if given else USUAL
+    if quantity not in FORMS:
+        remedy = did_you_mean(quantity, [*FORMS], f"those that have forms are {', '.join(FORMS)}")
+        raise argparse.ArgumentTypeError(f"{quantity!r} has no forms; {remedy}")
+    if form != AUTO and form not in FORMS[quantity]:
+        choices = ", ".join((AUTO, *FORMS[quantity]))
+        raise argparse.ArgumentTypeError(f"{form!r} is no form of {quantity}: choose from {choices}")
+    return quantity, form
+
+
+def chosen_forms(given: Sequence[tuple[str, str]]) -> dict[str, str]:
+    """By quantity what was asked for last."""
+    return {quantity: form for quantity, form in dict(given).items() if form != AUTO}
 
 
 def names(text: str) -> tuple[str, ...]:

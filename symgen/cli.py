@@ -14,7 +14,7 @@ from pathlib import Path
 from types import FrameType
 
 from symgen import __version__
-from symgen.arguments import add_form, add_generation, add_models, make_parser, names, parts
+from symgen.arguments import add_form, add_generation, add_models, chosen_forms, make_parser, names, parts
 from symgen.ir.kernel import Scalar
 from symgen.measuring import bench, simulate, stress, target
 from symgen.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, guarded
@@ -42,6 +42,7 @@ examples:
   symgen models/front_car.yaml
   symgen models/*.yaml --out build/symgen --quiet
   symgen models/front_car.yaml --outputs inverse_dynamics,forward_dynamics --scalar float32 --only c
+  symgen models/front_car.yaml --form householder --form multipliers=schur_qr
   symgen models/*.yaml --check
   symgen explain models/front_car.yaml nullspace_projector
 
@@ -121,7 +122,7 @@ def _generate(arguments: list[str]) -> int:
         parts=given.only,
         verify=given.verify and not given.check,
         states=given.states,
-        form=given.form,
+        forms=chosen_forms(given.forms),
         trig=given.trig,
         measured=given.out,
     )
@@ -140,7 +141,7 @@ def _verify(arguments: list[str]) -> int:
 
     if find_compiler() is None:
         raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")
-    options = Options(parts=("c", "python"), states=given.states, form=given.form, trig=given.trig)
+    options = Options(parts=("c", "python"), states=given.states, forms=chosen_forms(given.forms), trig=given.trig)
     return _each_model(
         given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)
     )
@@ -160,7 +161,7 @@ def _explain(arguments: list[str]) -> int:
         from symgen.pipeline import explain
 
         progress = Progress(given.model.stem, quiet=not sys.stderr.isatty())
-        text = explain(given.model, given.quantity, progress, given.form)
+        text = explain(given.model, given.quantity, progress, chosen_forms(given.forms))
         progress.done()
         print(text)
         return DONE

@@ -30,6 +30,7 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
         kernels[kernel.name] = {
             "shape": list(kernel.shape),
             "way": choice.way,
+            **({"form": choice.form} if choice.form else {}),
             "counted_cost": dict(choice.costs),
             "operations": _operations(kernel),
             "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),
@@ -70,13 +71,14 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
         "absent": [{"quantity": name, "why": why} for name, why in derivations.absent],
         "sine_and_cosine": "libm" if program.sincos is None else "portable",
         "form_of_inverse_dynamics": _form(derivations.form),
+        **{f"form_of_{quantity}": _form(form) for quantity, form in derivations.named},
         "kernels": kernels,
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
 def _form(form: FormChoice | None) -> dict[str, Any] | None:
-    """The form of u: whether it is valid at every regular state, why or where not, and what is known of the others."""
+    """A quantity's form: whether it is valid at every regular state, why or where not, and what is known of others."""
     if form is None:
         return None
     return {

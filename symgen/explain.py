@@ -56,10 +56,11 @@ def quantity_text(report: ReportInput, quantity: str) -> str:
     return "\n".join(lines)
 
 
-def forms_text(form: FormChoice) -> str:
-    """The forms of u: which is taken, what each costs by count, and why it is valid or where it is not."""
+def forms_text(quantity: str, form: FormChoice) -> str:
+    """The forms of a quantity: which is taken, what each costs by count, and why it is valid or where it is not."""
     entries = [f"{name} ({weight}){', taken' * (name == form.way)}: {remark}" for name, weight, remark in form.others]
-    return "\n".join(_section("forms of inverse_dynamics (counted cost; choose one with --form)", entries))
+    option = "--form" if quantity == "inverse_dynamics" else f"--form {quantity}=NAME"
+    return "\n".join(_section(f"forms of {quantity} (counted cost; choose one with {option})", entries))
 
 
 def _singular(report: ReportInput) -> list[str]:

@@ -8,7 +8,7 @@ What a run does not need is not imported: the way from model to C uses the stand
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.dynamics.catalogue import BY_NAME
-from symgen.dynamics.inverse import InverseDynamics
+from symgen.dynamics.inverse import FormChoice, InverseDynamics
 from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities
 from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
@@ -32,7 +32,7 @@ from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean
 from symgen.records import dataclass
-from symgen.results import LargestError, Options, Result, Summary, WrongUseError
+from symgen.results import FORMS, LargestError, Options, Result, Summary, WrongUseError
 
 if TYPE_CHECKING:
     from symgen.background import Background, Receive
@@ -89,10 +89,10 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     return replace(result, files={**result.files, **report.files}, notices=(*result.notices, *report.notices))
 
 
-def explain(path: Path, quantity: str | None, progress: Progress, form: str = "auto") -> str:
+def explain(path: Path, quantity: str | None, progress: Progress, forms: Mapping[str, str] | None = None) -> str:
     """Structure and closed forms as text for the terminal; of one quantity when it is named.
 
-    `form` is the form of u whose validity is told.
+    `forms` are those whose validity is told, by quantity.
     """
     from symgen.closedform.limits import TooLargeError
     from symgen.explain import forms_text, overview, quantity_text
@@ -103,17 +103,30 @@ def explain(path: Path, quantity: str | None, progress: Progress, form: str = "a
     progress("reading the model")
     model = load_model(path)
     progress("deriving")
-    derived = _derive(model, ("all",), Options(scalars=("float64",), form=form))
+    derived = _derive(model, ("all",), Options(scalars=("float64",), forms=forms or {}))
     progress("closed forms")
     try:
         report = gather(model, _facts(derived))
     except TooLargeError as large:
         return f"closed forms are left out: {large}"
     text = overview(report) if quantity is None else quantity_text(report, quantity)
-    chosen = derived.derivations.form
-    if chosen is None or quantity not in (None, "inverse_dynamics"):
-        return text
-    return f"{text}\n{forms_text(chosen)}"
+    told = dict.fromkeys(("inverse_dynamics", *(forms or ())) if quantity is None else (quantity,))
+    compared = ((name, _compared(derived, name)) for name in told)
+    return "\n".join([text, *(forms_text(name, choice) for name, choice in compared if choice is not None)])
+
+
+def _compared(derived: _Derived, quantity: str) -> FormChoice | None:
+    """What is known of the forms of a quantity; of the one asked for alone, where one was asked for."""
+    derivations = derived.derivations
+    if quantity == "inverse_dynamics":
+        return derivations.form
+    from symgen.dynamics.by_name import forms_compared
+
+    taken = {choice.quantity: choice.form for choice in derivations.choices}
+    named = dict(derivations.named)
+    if quantity in named or quantity not in FORMS or quantity not in taken:
+        return named.get(quantity)
+    return forms_compared(derived.model, derivations.generic, quantity, taken[quantity])
 
 
 def _outputs(model: Model, options: Options) -> tuple[str, ...]:
@@ -130,9 +143,9 @@ def _unknown_quantity(name: str) -> WrongUseError:
 
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> _Derived:
     try:
-        derivations = derive_quantities(model, outputs, options.form)
+        derivations = derive_quantities(model, outputs, options.forms)
     except NoSuchFormError as reason:
-        raise WrongUseError(f"{model.name} has no form {options.form!r} of inverse_dynamics: {reason}") from reason
+        raise WrongUseError(f"{model.name} has {reason}") from reason
     structure = analyse(derivations.mechanics, derivations.generic)
     scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
     programs = schedule(derivations.mechanics, derivations.quantities, scalars)
@@ -186,14 +199,22 @@ def _facts(derived: _Derived) -> Facts:
 
 
 def _failing_forms(derived: _Derived) -> tuple[tuple[str, str], ...]:
-    """Where u is not valid if a form was asked for, and which forms are left to be asked for and where they fail."""
-    form = derived.derivations.form
-    if form is None:
-        return ()
-    if not form.verdict.admitted:
-        return _forms(derived.derivations)
-    others = InverseDynamics(derived.model, derived.derivations.generic).failing()
-    return tuple((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
+    """Where what is generated is not valid if a form was asked for, and which forms are left to be asked for and where
+    they fail."""
+    derivations = derived.derivations
+    form = derivations.form
+    told = list(_forms(derivations, ()))
+    if form is not None and form.verdict.admitted:
+        others = InverseDynamics(derived.model, derivations.generic).failing()
+        told += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
+    moving = [choice.quantity for choice in derivations.choices if choice.form]
+    if moving:
+        from symgen.dynamics.by_name import failing_motions
+
+        for name, why in failing_motions(derivations.mechanics):
+            asked = " ".join(f"--form {quantity}={name}" for quantity in moving)
+            told.append((f"form {name} of {' and '.join(moving)}", f"{why}; it is made if asked for ({asked})"))
+    return tuple(told)
 
 
 def _reporting(model: Model) -> Background[ReportFiles]:
@@ -202,14 +223,18 @@ def _reporting(model: Model) -> Background[ReportFiles]:
     return Background(lambda receive: _report(model, receive))
 
 
-def _forms(derivations: Derivations) -> tuple[tuple[str, str], ...]:
-    """Forms of u that are not chosen because they fail at regular states, and whether the one asked for does."""
+def _forms(derivations: Derivations, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+    """Whether forms that were asked for are not valid at every regular state; if not, those of u that `failed`."""
     form = derivations.form
-    if form is None:
-        return ()
-    if not form.verdict.admitted:
-        return (("validity of u at every regular state", f"form {form.way}: {form.verdict.explanation}"),)
-    return tuple((f"form {name} of u", why) for name, why in form.failed)
+    asked = ((("u", form),) if form is not None else ()) + derivations.named
+    return (
+        *(
+            (f"validity of {quantity} at every regular state", f"form {one.way}: {one.verdict.explanation}")
+            for quantity, one in asked
+            if not one.verdict.admitted
+        ),
+        *((f"form {name} of u", why) for name, why in failed if form is not None and form.verdict.admitted),
+    )
 
 
 def _targets(model: Model, files: dict[str, str | bytes], options: Options) -> tuple[TargetCore, ...]:
@@ -241,7 +266,7 @@ def _result(
 
 
 def _summary(derived: _Derived, certificate: Certificate | None) -> Summary:
-    generic = derived.derivations.generic
+    generic, form = derived.derivations.generic, derived.derivations.form
     summary = Summary(
         n=generic.n,
         r=generic.r,
@@ -249,7 +274,7 @@ def _summary(derived: _Derived, certificate: Certificate | None) -> Summary:
         m=generic.m,
         skipped=(
             *((decision.what, decision.why) for decision in derived.structure.decisions),
-            *_forms(derived.derivations),
+            *_forms(derived.derivations, () if form is None else form.failed),
         ),
         operations=tuple((k.name, count_operations(k.statements).total) for k in derived.program.kernels),
     )
@@ -266,4 +291,6 @@ def _notices(derived: _Derived, options: Options, certificate: Certificate | Non
     """Quantities asked for by name that this model does not have, and what could not be verified."""
     asked = options.outputs or derived.model.outputs
     absent = [Notice(f"{n} is not generated: {why}") for n, why in derived.derivations.absent if n in asked]
-    return (*absent, *(Notice(note) for note in (() if certificate is None else certificate.notes)))
+    kernels = {kernel.name for kernel in derived.program.kernels}
+    idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
+    return (*absent, *idle, *(Notice(note) for note in (() if certificate is None else certificate.notes)))

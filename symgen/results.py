@@ -15,7 +15,15 @@ from symgen.records import dataclass
 Part: TypeAlias = Literal["c", "python", "report", "package", "proof"]
 PARTS: tuple[Part, ...] = ("c", "python", "report", "package", "proof")
 DEFAULT_STATES = 64
-FORMS = ("auto", "minor", "nullspace", "range", "householder", "printed", "weighted", "kkt")
+AUTO = "auto"
+_MOTIONS = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt")
+# By quantity, the forms that may be asked for.
+FORMS: Mapping[str, tuple[str, ...]] = {
+    "inverse_dynamics": ("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"),
+    "forward_dynamics": _MOTIONS,
+    "multipliers": _MOTIONS,
+    "nullspace_projector": ("minor", "householder"),
+}
 Trig: TypeAlias = Literal["portable", "libm"]
 TRIG: tuple[Trig, ...] = ("portable", "libm")
 
@@ -39,7 +47,7 @@ class Options:
     trig: Trig = "portable"
     states: int = DEFAULT_STATES
     measured: Path | None = None
-    form: str = "auto"  # of the inverse dynamics, one of FORMS
+    forms: Mapping[str, str] = field(default_factory=dict)  # by quantity, of FORMS; without one the cheapest valid
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
 from symgen.dynamics.forms.motions import MOTION_NAMES, MotionName, candidates, motion
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.mechanics import Mechanics
@@ -12,6 +13,7 @@ from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace, NullSpace
 from symgen.graph.matrix import flatten
 from symgen.model.model import Model
 
+MOTIONS = ("forward_dynamics", "multipliers")
 # These work with an orthonormal basis of the null space, the others with the minors of B or its rows.
 ORTHONORMAL = ("nullspace", "householder")
 
@@ -22,14 +24,27 @@ def motions_of(model: Model) -> dict[str, tuple[Mechanics, tuple[Derived, ...]]]
     `householder` is a form of N_B only, `minor` of all three where delta is 1 or 2.
     """
     generic = genericity(Mechanics(model))
-    found: dict[str, tuple[Mechanics, tuple[Derived, ...]]] = {}
-    for name in (*MOTION_NAMES, "householder"):
-        mechanics = Mechanics(model)
-        space = _space(mechanics, generic, name)
-        quantities = () if space is None else _quantities(mechanics, generic, space, name)
-        if quantities:
-            found[name] = mechanics, quantities
-    return found
+    forms = {name: quantities_by(model, generic, name) for name in (*MOTION_NAMES, "householder")}
+    return {name: form for name, form in forms.items() if form[1]}
+
+
+def quantities_by(model: Model, generic: Genericity, name: str) -> tuple[Mechanics, tuple[Derived, ...]]:
+    """One form: the mechanics it was derived on, and those of q_ddot, lambda and N_B that it has."""
+    mechanics = Mechanics(model)
+    space = _space(mechanics, generic, name)
+    return mechanics, () if space is None else _quantities(mechanics, generic, space, name)
+
+
+def why_missing(generic: Genericity, quantity: str, name: str) -> str:
+    """The reason for which a system lacks a form of a quantity."""
+    by_minors = name == "minor"
+    if not generic.r and not (by_minors and quantity in MOTIONS):
+        return "there are no constraints"
+    if by_minors and generic.minors > MINOR_LIMIT:
+        return f"B has {generic.minors} minors"
+    if generic.rank < generic.r:
+        return "the constraint rows depend on each other"
+    return f"it is for {LARGEST_DELTA} degrees of freedom at most, of which the system has {generic.delta}"
 
 
 def _space(mechanics: Mechanics, generic: Genericity, name: str) -> NullSpace | None:

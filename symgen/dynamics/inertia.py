@@ -39,7 +39,7 @@ class Cholesky:
 
     def __init__(self, graph: Graph, a: Matrix, scales: Sequence[Scalar]) -> None:
         self.graph = graph
-        self._scales = scales
+        self.scales = scales
         self.size = len(a)
         self.lower: list[list[Scalar]] = []
         self.pivots: list[Scalar] = []
@@ -54,7 +54,7 @@ class Cholesky:
     @property
     def guards(self) -> tuple[Guard, ...]:
         """The pivots, positive where the matrix is positive definite."""
-        pairs = zip(self.pivots, self._scales, strict=True)
+        pairs = zip(self.pivots, self.scales, strict=True)
         return tuple(Guard(Status.MASS_RANK, pivot, 1, scale=scale) for pivot, scale in pairs)
 
     def solve(self, b: Sequence[Scalar]) -> Vector:

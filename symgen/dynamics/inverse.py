@@ -247,8 +247,13 @@ def derived_on(graph: Graph, offer: Offer) -> Derived:
     outputs, guards = offer.form.outputs, offer.form.guards
     if all(output.constant is not None for output in outputs):
         guards = ()  # a status is decided on what the result depends on: here on nothing
-    moved = _Moved(graph)
-    return Derived(offer.form.quantity, (len(outputs),), moved.scalars(outputs), moved.guards(guards))
+    return moved(graph, Derived(offer.form.quantity, (len(outputs),), outputs, guards))
+
+
+def moved(graph: Graph, derived: Derived) -> Derived:
+    """A quantity on another graph."""
+    there = _Moved(graph)
+    return replace(derived, outputs=there.scalars(derived.outputs), guards=there.guards(derived.guards))
 
 
 class _Moved:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from symgen.dynamics.block_space import BlockSpace
 from symgen.dynamics.blocks import components
@@ -13,7 +14,7 @@ from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.grouping import grouped as grouped_scalars
-from symgen.dynamics.inverse import CANCELLATION_WORTH, FACTORING_LIMIT, FormChoice, InverseDynamics, derived_on
+from symgen.dynamics.inverse import CANCELLATION_WORTH, FACTORING_LIMIT, FormChoice, InverseDynamics, derived_on, moved
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
@@ -28,11 +29,12 @@ ABSOLUTE = "householder in absolute angles"
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Which way a quantity took, and the counted cost of each way tried."""
+    """Which way a quantity took, and the counted cost of each way tried; q_ddot and lambda have a form along it."""
 
     quantity: str
     way: str
     costs: tuple[tuple[str, int], ...]
+    form: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +47,14 @@ class Derivations:
     choices: tuple[Choice, ...]
     absent: tuple[tuple[str, str], ...]
     form: FormChoice | None = None  # of the inverse dynamics, where they are among the quantities
+    named: tuple[tuple[str, FormChoice], ...] = ()  # of other quantities, where a form was asked for by name
 
 
 class NoSuchFormError(Exception):
-    """A form that this system does not have, with the reason."""
+    """A form of a quantity that this system does not have, with the reason."""
+
+    def __init__(self, quantity: str, form: str, reason: str) -> None:
+        super().__init__(f"no form {form!r} of {quantity}: {reason}")
 
 
 def ways(mechanics: Mechanics, generic: Genericity) -> dict[str, Derivation]:
@@ -98,24 +104,38 @@ def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tupl
     return present, absent
 
 
-def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") -> Derivations:
-    """Derive what is asked for and nothing else; NoSuchFormError if u does not have the `form` asked for."""
+def derive_quantities(
+    model: Model, outputs: Sequence[str], forms: Mapping[str, str] = MappingProxyType({})
+) -> Derivations:
+    """Derive what is asked for and nothing else; `forms` by quantity are taken whatever they cost.
+
+    Raises NoSuchFormError where the system does not have one of them.
+    """
     mechanics = Mechanics(model)
     generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
     derivations, blocks = ways(mechanics, generic), block_way(mechanics, generic)
-    absolute = absolute_way(model, generic) if any(name in MOTIONS for name in present) else None
+    moving = [name for name in MOTIONS if name in present and name not in forms]
+    absolute = absolute_way(model, generic) if moving else None
+    along = {**derivations, "factored": derivations.get("minors"), ABSOLUTE: absolute}
     quantities: list[Derived] = []
     choices: list[Choice] = []
     chosen_form: FormChoice | None = None
+    named: list[tuple[str, FormChoice]] = []
     for name in present:
         if name == "inverse_dynamics":
-            found = InverseDynamics(model, generic).choose(form)
+            found = InverseDynamics(model, generic).choose(forms.get(name, "auto"))
             if isinstance(found, str):
-                raise NoSuchFormError(found)
+                raise NoSuchFormError(name, forms.get(name, "auto"), found)
             offer, chosen_form = found
             quantities.append(derived_on(mechanics.graph, offer))
             choices.append(Choice(name, chosen_form.way, chosen_form.costs))
+            continue
+        if name in forms:
+            quantity, choice = _named(mechanics, generic, name, forms[name])
+            quantities.append(quantity)
+            choices.append(Choice(name, choice.way, choice.costs))
+            named.append((name, choice))
             continue
         entry = BY_NAME[name]
         if name in MOTIONS and absolute is not None:
@@ -139,9 +159,26 @@ def derive_quantities(model: Model, outputs: Sequence[str], form: str = "auto") 
             if costs["factored"] <= costs[best] * (1 + worth):
                 candidates["factored"], best = shorter, "factored"
         quantities.append(candidates[best])
-        choices.append(Choice(name, best, tuple(costs.items())))
+        choices.append(Choice(name, best, tuple(costs.items()), _form_along(along.get(best), name)))
     grouped = tuple(_with_groups(mechanics, derived) for derived in quantities)
-    return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form)
+    return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named))
+
+
+def _named(mechanics: Mechanics, generic: Genericity, quantity: str, name: str) -> tuple[Derived, FormChoice]:
+    """A form asked for by name on the graph of the other quantities; forms and their validity are rarely needed."""
+    from symgen.dynamics.by_name import named_form
+
+    found = named_form(mechanics.model, generic, quantity, name)
+    if isinstance(found, str):
+        raise NoSuchFormError(quantity, name, found)
+    return moved(mechanics.graph, found.derived), found.choice
+
+
+def _form_along(derivation: Derivation | None, quantity: str) -> str:
+    """The form that q_ddot or lambda takes along a null space."""
+    if derivation is None or quantity not in MOTIONS:
+        return ""
+    return (derivation.acceleration if quantity == MOTIONS[0] else derivation.reaction).name
 
 
 def _with_groups(mechanics: Mechanics, derived: Derived) -> Derived:

@@ -27,11 +27,15 @@ class Singular:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """How many denominators are proved harmless, how many were searched in vain, and which are singular."""
+    """How many denominators are proved harmless, how many were searched in vain, and which are singular.
+
+    `theorem` says why none has to be looked at, where that is known of a form as a whole.
+    """
 
     proved: int
     searched: int
     singular: tuple[Singular, ...]
+    theorem: str = ""
 
     @property
     def admitted(self) -> bool:
@@ -44,6 +48,8 @@ class Verdict:
         if self.singular:
             places = " or ".join(f"{entry.where_zero} = 0" for entry in self.singular)
             return f"{FAILS} {places}, although B and M~ keep their ranks"
+        if self.theorem:
+            return self.theorem
         parts = []
         if self.proved:
             parts.append(f"{self.proved} proved to vanish only where a rank drops")

@@ -1,8 +1,9 @@
 """Whether the mass matrix is positive definite everywhere, not only along the constraints.
 
-The smallest pivot of G = L D L^T in units of its diagonal entry is minimised over configurations and parameters within
-their ranges, from many seeded starts, by moving one number at a time (Hooke and Jeeves' pattern search).  A coordinate
-without mass, or a quaternion's, shows as a pivot that vanishes somewhere.
+The smallest pivot of G = L D L^T in units of its diagonal entry, and the smallest diagonal entry in units of its terms,
+are minimised over configurations and parameters within their ranges, from many seeded starts, by moving one number at a
+time (Hooke and Jeeves' pattern search).  A coordinate without mass, or a quaternion's, shows as a pivot that vanishes
+somewhere.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Scalar
 from symgen.graph.traverse import topological
+from symgen.records import dataclass
 
 SEED = 15
 STARTS = 4
@@ -25,28 +27,55 @@ HALVINGS = 11
 SMALLEST = 1e-4
 
 
-@lru_cache(maxsize=2)  # asked for q_ddot and for lambda, along each null space
+@dataclass(frozen=True, slots=True)
+class Indefinite:
+    """A pivot of G that vanishes: of which coordinate (index), its value, and where (coordinates and parameters)."""
+
+    coordinate: int
+    pivot: Scalar
+    state: tuple[tuple[str, float], ...]
+
+
 def positive_definite(mechanics: Mechanics) -> bool:
-    """Whether G is positive definite at every configuration, for parameters in their ranges.
+    """Whether G is positive definite at every configuration, for parameters in their ranges."""
+    return indefinite(mechanics) is None
+
+
+@lru_cache(maxsize=2)  # asked for q_ddot and for lambda, along each null space
+def indefinite(mechanics: Mechanics) -> Indefinite | None:
+    """Where G is not positive definite, or None where it is so everywhere.
 
     On a graph of its own, so that no kernel shares the pivots.
     """
     mechanics = Mechanics(mechanics.model)
     graph = mechanics.graph
-    if any(row[i].is_zero for i, row in enumerate(mechanics.mass_matrix)):
-        return False
+    for i, row in enumerate(mechanics.mass_matrix):
+        if row[i].is_zero:
+            return Indefinite(i, row[i], ())
     pivots: list[Scalar] = []
     factor = Cholesky(graph, mechanics.mass_matrix, diagonal_sizes(graph, mechanics.mass_matrix))
     for i, pivot in enumerate(factor.pivots):
         if pivot.is_zero:
-            return False
+            return Indefinite(i, pivot, ())
         pivots.append(pivot / mechanics.mass_matrix[i][i])
+    if mechanics.r:
+        # without constraints the motion is not determined where a diagonal entry vanishes, and no form is to blame
+        rows = zip(mechanics.mass_matrix, factor.scales, strict=True)
+        pivots += [row[i] / size for i, (row, size) in enumerate(rows)]
     if all(pivot.constant is not None for pivot in pivots):
-        return all((pivot.constant or 0) > 0 for pivot in pivots)
-    return _smallest(mechanics, pivots) > SMALLEST
+        negative = (i % factor.size for i, pivot in enumerate(pivots) if not (pivot.constant or 0) > 0)
+        return next((Indefinite(i, factor.pivots[i], ()) for i in negative), None)
+    least, point, i = _smallest(mechanics, pivots)
+    if least > SMALLEST:
+        return None
+    i %= factor.size
+    reached = {str(node.payload) for node in topological([factor.pivots[i]]) if node.op == "symbol"}
+    state = tuple((name, value) for name, value in point.items() if name in reached)
+    return Indefinite(i, factor.pivots[i], state)
 
 
-def _smallest(mechanics: Mechanics, pivots: list[Scalar]) -> float:
+def _smallest(mechanics: Mechanics, pivots: list[Scalar]) -> tuple[float, dict[str, float], int]:
+    """The smallest pivot found, where it was found, and whose it is."""
     evaluate = Evaluator(pivots)
     known = parameter_values(mechanics)
     reached = {str(node.payload) for node in topological(pivots) if node.op == "symbol"}
@@ -55,24 +84,26 @@ def _smallest(mechanics: Mechanics, pivots: list[Scalar]) -> float:
         if parameter.name in reached and parameter.range is not None:
             ranges[parameter.name] = float(parameter.range[0]), float(parameter.range[1])
 
-    def measure(point: dict[str, float]) -> float:
-        values = evaluate(point)
-        return -math.inf if any(math.isnan(x) for x in values) else min(values)
+    def measure(point: dict[str, float]) -> tuple[float, int]:
+        values = [-math.inf if math.isnan(x) else x for x in evaluate(point)]
+        return min(zip(values, range(len(values)), strict=True))
 
     source = random.Random(SEED)
-    best = math.inf
+    best, place, index = math.inf, known, 0
     for start in range(STARTS):
         point = known | {
             name: source.uniform(*limits) if start or name not in known else known[name]
             for name, limits in ranges.items()
         }
-        least = measure(point)
+        least, which = measure(point)
         for halving in range(1, HALVINGS):
             for name, (low, high) in ranges.items():
                 for step in (-1, 1):
                     moved = min(high, max(low, point[name] + step * (high - low) * 0.5**halving))
                     trial = point | {name: moved}
-                    if (value := measure(trial)) < least:
-                        point, least = trial, value
-        best = min(best, least)
-    return best
+                    value, pivot = measure(trial)
+                    if value < least:
+                        point, least, which = trial, value, pivot
+        if least < best:
+            best, place, index = least, point, which
+    return best, place, index

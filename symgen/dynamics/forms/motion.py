@@ -18,11 +18,12 @@ from symgen.records import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """q_ddot (n) and lambda (r) with the denominators they depend on."""
+    """q_ddot (n) and lambda (r) with the denominators they depend on, by the form of this name."""
 
     accelerations: Vector
     multipliers: Vector
     guards: tuple[Guard, ...]
+    name: str = ""
 
 
 class Problem:

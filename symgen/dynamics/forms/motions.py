@@ -8,6 +8,7 @@ lose digits with the square of the condition number of B, the last is long.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Literal, TypeAlias
 
 from symgen.dynamics.forms.definiteness import positive_definite
@@ -56,7 +57,10 @@ def motion(
     name: MotionName, mechanics: Mechanics, space: NullSpace, inertia: ConstrainedInertia | None = None
 ) -> Motion:
     """One form along a null space; `nullspace` needs the constrained inverse of G that belongs to it."""
-    problem = Problem(mechanics, space.guards)
+    return replace(_motion(name, Problem(mechanics, space.guards), space, inertia), name=name)
+
+
+def _motion(name: MotionName, problem: Problem, space: NullSpace, inertia: ConstrainedInertia | None) -> Motion:
     match name:
         case "minor":
             return inertia.motion if isinstance(inertia, MinorMotion) else minor_motion(problem).motion
