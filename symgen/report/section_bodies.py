@@ -46,18 +46,16 @@ def mechanism(context: Context) -> list[Block]:
 
 
 def _frames(context: Context) -> Table:
-    rows = tuple(
-        (
-            (InlineCode(frame.name),),
-            (InlineCode(frame.parent),),
-            _vector_text(frame.translation),
-            _turns(frame),
-            say("{}", text_of(frame.description) or "–"),
-        )
-        for frame in context.model.mechanism.frames
-    )
-    header = (say("Frame"), say("Parent"), say("Moved by"), say("Turned by"), say("Meaning"))
-    return Table(header, rows, (0, 0, 0, 0, 1))
+    frames = context.model.mechanism.frames
+    described = any(text_of(frame.description) for frame in frames)
+    rows = []
+    for frame in frames:
+        row = ((InlineCode(frame.name),), (InlineCode(frame.parent),), _vector_text(frame.translation), _turns(frame))
+        rows.append((*row, say("{}", text_of(frame.description) or "–")) if described else row)
+    header = (say("Frame"), say("Parent"), say("Moved by"), say("Turned by"))
+    if not described:
+        return Table(header, tuple(rows), (0, 0, 0, 1))
+    return Table((*header, say("Meaning")), tuple(rows), (0, 0, 0, 0, 1))
 
 
 def _bodies(context: Context) -> Table:
