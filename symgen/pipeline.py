@@ -70,7 +70,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     model = load_model(path)
     outputs = _outputs(model, options)
     wanted = "report" in options.parts
-    with _reporting(model) if wanted else nullcontext() as reporting:
+    with _reporting(model, options.verify) if wanted else nullcontext() as reporting:
         progress("deriving")
         derived = _derive(model, outputs, options)
         if reporting is not None:
@@ -217,10 +217,10 @@ def _failing_forms(derived: _Derived) -> tuple[tuple[str, str], ...]:
     return tuple(told)
 
 
-def _reporting(model: Model) -> Background[ReportFiles]:
+def _reporting(model: Model, measured: bool) -> Background[ReportFiles]:
     from symgen.background import Background
 
-    return Background(lambda receive: _report(model, receive))
+    return Background(lambda receive: _report(model, receive, measured))
 
 
 def _forms(derivations: Derivations, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
@@ -244,10 +244,10 @@ def _targets(model: Model, files: dict[str, str | bytes], options: Options) -> t
     return () if options.measured is None else read_targets(options.measured / model.name / "target.json", files)
 
 
-def _report(model: Model, receive: Receive) -> ReportFiles:
+def _report(model: Model, receive: Receive, measured: bool) -> ReportFiles:
     from symgen.report.files import report_files
 
-    return report_files(model, receive)
+    return report_files(model, receive, measured)
 
 
 def _result(

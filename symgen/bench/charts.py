@@ -8,7 +8,8 @@ from math import isfinite, log10
 from typing import Any
 
 from symgen.bench.run import SCALARS, Comparison, Measured
-from symgen.paths.charts import COLOURS, svg
+from symgen.paths.drawing import svg
+from symgen.paths.line_chart import COLOURS
 
 LOOKS = {
     "symgen": (COLOURS[0], "o"),

@@ -4,37 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from io import StringIO
-from typing import Any
 
 from symgen.model.model import Model
 from symgen.paths.figures import FigureData
+from symgen.paths.line_chart import Label, Line, Panel, line_chart, plain
 from symgen.paths.path_equations import Array
 
-# Okabe and Ito's palette: told apart with every common colour blindness, and by line style in black and white.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-STYLES = ("-", "--", "-.", ":")
-STYLE = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9.0,
-    "mathtext.fontset": "dejavusans",
-    "axes.grid": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "grid.color": "#DDDDDD",
-    "grid.linewidth": 0.6,
-    "lines.linewidth": 1.6,
-    "legend.frameon": False,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "svg.hashsalt": "symgen",
-    "svg.fonttype": "path",
-}
-GREEK = re.compile(
-    "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|kappa|lambda|mu|nu|xi|rho|sigma|tau|phi|chi|psi|omega"
-)
-WIDTH, PANEL_HEIGHT = 6.4, 2.6  # inches
-LEGEND_X = 1.01  # beside the axes, where no curve can run
+_NAMES = "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi rho sigma tau phi chi psi omega"
+GREEK = dict(zip(_NAMES.split(), "αβγδεζηθκλμνξρστφχψω", strict=True))
+PANEL_HEIGHT = 148.0  # points
 
 
 def charts(model: Model, data: FigureData) -> dict[str, str]:
@@ -66,90 +44,56 @@ def _inputs(model: Model, data: FigureData) -> str:
 def _panels(data: FigureData, columns: Sequence[tuple[str, str, Array]], what: str) -> str:
     """One panel per unit, in the order in which the units first occur; singular times marked on each."""
     units = list(dict.fromkeys(unit for _, unit, _ in columns))
-    zeros = sorted({t for curve in data.curves for t in curve.zeros})
-
-    def draw(figure: Any) -> None:
-        axes = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
-        for panel, unit in zip(axes, units, strict=True):
-            members = [(name, values) for name, own_unit, values in columns if own_unit == unit]
-            for k, (name, values) in enumerate(members):
-                panel.plot(data.trajectory.t, values, label=_symbol(name), color=_colour(k), linestyle=_line(k))
-            for t in zeros:
-                panel.axvline(t, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
-            panel.set_ylabel(f"{what} in {_unit(unit)}" if unit else what)
-            panel.legend(loc="upper left", bbox_to_anchor=(LEGEND_X, 1.0), borderaxespad=0)
-        axes[-1].set_xlabel("time in s")
-        if zeros:
-            _note(axes[-1], "dashed: zeros of\nthe determinants")
-
-    return svg(draw, height=PANEL_HEIGHT * len(units) + 0.2)
+    zeros = tuple(sorted({t for curve in data.curves for t in curve.zeros}))
+    panels = [
+        Panel(
+            plain(f"{what} in {_unit(unit)}" if unit else what),
+            tuple(Line(_symbol(name), values) for name, own_unit, values in columns if own_unit == unit),
+            verticals=zeros,
+            note=("dashed: zeros of", "the determinants") if zeros and unit == units[-1] else (),
+        )
+        for unit in units
+    ]
+    return line_chart(data.trajectory.t, panels, PANEL_HEIGHT)
 
 
 def _determinants(model: Model, data: FigureData) -> str:
-    def draw(figure: Any) -> None:
-        panel = figure.subplots()
-        for k, curve in enumerate(data.curves):
-            name = ", ".join(_symbol(model.inputs[j].name) for j in curve.inputs)
-            panel.plot(data.trajectory.t, curve.values, label=name, color=_colour(k), linestyle=_line(k))
-            heights = [0.0] * len(curve.zeros)
-            panel.plot(curve.zeros, heights, "^", color=_colour(k), markersize=7, clip_on=False, zorder=5)
-        if len(data.curves) > 1:
-            panel.axhline(data.threshold, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
-            _note(panel, "dashed: threshold\nof switching (28)")
-        panel.set_ylim(0, 1.06 * max(float(curve.values.max()) for curve in data.curves) or 1.0)
-        panel.set_xlabel("time in s")
-        matrix = r"\tilde{M}_1" if len(data.curves) > 1 else r"\tilde{M}"
-        panel.set_ylabel(rf"$\det\,{matrix}^{{\mathrm{{T}}}} {matrix}$")
-        panel.legend(
-            title="inputs", loc="upper left", bbox_to_anchor=(LEGEND_X, 1.0), borderaxespad=0, alignment="left"
-        )
-
-    return svg(draw, height=PANEL_HEIGHT + 0.4)
-
-
-def _note(panel: Any, text: str) -> None:
-    """A remark beside the axes, below the legend."""
-    panel.annotate(
-        text,
-        (LEGEND_X, 0.0),
-        xycoords="axes fraction",
-        xytext=(4, 0),
-        textcoords="offset points",
-        fontsize=7.5,
-        color="#555555",
+    several = len(data.curves) > 1
+    control = '<tspan font-style="italic">M\u0303</tspan>' + (_lowered("1") if several else "")
+    transposed = '<tspan font-size="70%" dy="-3.4">T</tspan><tspan dy="3.4">\u2009</tspan>'
+    lines = (
+        Line(_listed([_symbol(model.inputs[j].name) for j in curve.inputs]), curve.values, curve.zeros)
+        for curve in data.curves
     )
+    panel = Panel(
+        Label(f"det {control}{transposed}{control}", 12),
+        tuple(lines),
+        title="inputs",
+        threshold=data.threshold if several else None,
+        note=("dashed: threshold", "of switching (28)") if several else (),
+        from_zero=True,
+    )
+    return line_chart(data.trajectory.t, (panel,), PANEL_HEIGHT + 28)
 
 
-def _colour(k: int) -> str:
-    return COLOURS[k % len(COLOURS)]
+def _listed(labels: Sequence[Label]) -> Label:
+    return Label(", ".join(label.source for label in labels), sum(label.letters + 1 for label in labels))
 
 
-def _line(k: int) -> str:
-    return STYLES[k % len(STYLES)]
-
-
-def _symbol(name: str) -> str:
+def _symbol(name: str) -> Label:
     """A name of the model file as a formula: `theta_1` and `theta1` become θ with index 1."""
     match = re.fullmatch(r"([A-Za-z]+?)_?(\d+|(?<=_)\w+)?", name)
     base, index = match.groups() if match else (name, None)
-    letter = f"\\{base}" if GREEK.fullmatch(base) else base if len(base) == 1 else rf"\mathrm{{{base}}}"
-    return f"${letter}_{{\\mathrm{{{index.replace('_', ' ')}}}}}$" if index else f"${letter}$"
+    letter = GREEK.get(base, base)
+    source = f'<tspan font-style="italic">{letter}</tspan>' if len(letter) == 1 else letter
+    lowered = _lowered(index.replace("_", " ")) if index else ""
+    return Label(source + lowered, len(letter) + 0.7 * len(index or ""))
+
+
+def _lowered(index: str) -> str:
+    """An index; an empty step brings what follows back to the line."""
+    return f'<tspan font-size="70%" dy="2.2">{index}</tspan><tspan dy="-2.2">\u200a</tspan>'
 
 
 def _unit(unit: str) -> str:
     return unit.replace("**2", "²").replace("**3", "³").replace("*", "·")
-
-
-def svg(draw: Any, height: float) -> str:
-    """Draws without a display and without pyplot's global state."""
-    import matplotlib
-    from matplotlib.backends.backend_svg import FigureCanvasSVG
-    from matplotlib.figure import Figure
-
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, height), layout="constrained")
-        FigureCanvasSVG(figure)
-        draw(figure)
-        text = StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return "\n".join(line.rstrip() for line in text.getvalue().splitlines()) + "\n"

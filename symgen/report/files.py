@@ -30,9 +30,11 @@ class ReportFiles:
     mistakes: tuple[Mistake, ...] = ()
 
 
-def report_files(model: Model, receive: Callable[[], Any]) -> ReportFiles:
+def report_files(model: Model, receive: Callable[[], Any], measured: bool) -> ReportFiles:
     """The files; receives the `Facts` of the derivation, then the certificate or None where nothing was measured,
     then what was measured on targets.
+
+    Charts are drawn while the measurement goes on, if there is one (`measured`).
     """
     facts: Facts = receive()
     try:
@@ -49,13 +51,15 @@ def report_files(model: Model, receive: Callable[[], Any]) -> ReportFiles:
         f"report/{stem}.html": render_html(document),
         f"report/{stem}.tex": render_latex(document),
     }
-    certificate: Certificate | None = receive()
-    targets: tuple[TargetCore, ...] = receive()
-    if certificate is None:
+    if not measured:
         return ReportFiles(files, notices)
     try:
         charts = path_charts(model)
     except PathError as error:
         return ReportFiles(files, notices, (error.mistake,))
+    certificate: Certificate | None = receive()
+    targets: tuple[TargetCore, ...] = receive()
+    if certificate is None:
+        return ReportFiles(files, notices)
     pdf = render_pdf(compose(with_measurements(report, certificate, charts, targets)))
     return ReportFiles({**files, f"report/{stem}.pdf": pdf}, notices)

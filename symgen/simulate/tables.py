@@ -8,7 +8,8 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from symgen.model.model import Model
-from symgen.paths.charts import COLOURS, STYLE, STYLES
+from symgen.paths.drawing import STYLE, STYLES
+from symgen.paths.line_chart import COLOURS
 from symgen.simulate.integrate import Motion
 
 WIDTH, PANEL_HEIGHT = 6.4, 2.4  # inches

@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
-from symgen.paths.charts import COLOURS, svg
+from symgen.paths.drawing import svg
+from symgen.paths.line_chart import COLOURS
 from symgen.stress.kernels import SCALARS
 from symgen.stress.run import Stress
 from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by_form

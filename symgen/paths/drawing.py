@@ -1,0 +1,40 @@
+"""Charts drawn by Matplotlib as SVG text: no display, no date, no random identifiers."""
+
+from __future__ import annotations
+
+from io import StringIO
+from typing import Any
+
+STYLES = ("-", "--", "-.", ":")
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "mathtext.fontset": "dejavusans",
+    "axes.grid": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.6,
+    "legend.frameon": False,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "svg.hashsalt": "symgen",
+    "svg.fonttype": "path",
+}
+WIDTH = 6.4  # inches
+
+
+def svg(draw: Any, height: float) -> str:
+    """Draws without a display and without pyplot's global state."""
+    import matplotlib
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        FigureCanvasSVG(figure)
+        draw(figure)
+        text = StringIO()
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return "\n".join(line.rstrip() for line in text.getvalue().splitlines()) + "\n"
