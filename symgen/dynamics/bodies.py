@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 
-from symgen.graph.calculus import derivative_along
-from symgen.graph.matrix import Vector
+from symgen.graph.calculus import derivative_along, gradient
+from symgen.graph.matrix import Matrix, Vector
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.translate import translate
 from symgen.model.expression import Expression
@@ -63,6 +63,17 @@ class Bodies:
         """A component of a point or frame as it stands in an expression."""
         one: Component = component(name)
         return self.kinematics.component_rate(one) if one.is_rate else self.kinematics.component(one)
+
+    @cached_property
+    def point_position(self) -> Vector:
+        """Places of the points in world axes, x, y, z of each in turn."""
+        return tuple(x for point in self.mechanism.points for x in self.kinematics.position(point.name))
+
+    @cached_property
+    def point_jacobian(self) -> Matrix:
+        """Velocities of the material points in world axes by the rates, three rows for each point."""
+        rates = (v for point in self.mechanism.points for v in self.kinematics.velocity(point.name))
+        return tuple(tuple(gradient(self.graph, rate, self.qd)) for rate in rates)
 
     @cached_property
     def gravity(self) -> Vector3:

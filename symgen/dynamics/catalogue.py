@@ -32,6 +32,7 @@ class Sizes:
     r_g: int
     m: int
     delta: int
+    points: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +112,7 @@ def _d(s: Sizes) -> tuple[int, ...]:
 
 PARTITION = ("independent_velocities",)
 ACTUATORS = ("m = delta",)
+POINTS = ("points",)
 
 CATALOGUE: tuple[Entry, ...] = (
     Entry("mass_matrix", _nxn, lambda d: flatten(d.mechanics.mass_matrix)),
@@ -184,6 +186,13 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("multipliers", lambda s: (s.r,), lambda d: d.multipliers(), lambda d: d.reaction.guards),
     Entry("energy", lambda _: (2,), lambda d: d.energy()),
     Entry("singularity", lambda _: (2,), lambda d: d.singularity()),
+    Entry("point_position", lambda s: (s.points, 3), lambda d: d.mechanics.bodies.point_position, needs=POINTS),
+    Entry(
+        "point_jacobian",
+        lambda s: (3 * s.points, s.n),
+        lambda d: flatten(d.mechanics.bodies.point_jacobian),
+        needs=POINTS,
+    ),
 )
 BY_NAME = {entry.name: entry for entry in CATALOGUE}
 
@@ -191,11 +200,13 @@ BY_NAME = {entry.name: entry for entry in CATALOGUE}
 def sizes(model: Model, generic: Genericity) -> Sizes:
     """The sizes of a system."""
     geometric = sum(row.kind == "geometric" for row in model.constraints)
-    return Sizes(generic.n, generic.r, geometric, generic.m, generic.delta)
+    return Sizes(generic.n, generic.r, geometric, generic.m, generic.delta, len(model.mechanism.points))
 
 
 def missing(entry: Entry, model: Model, generic: Genericity) -> str | None:
     """Why this system does not have a quantity, or None."""
+    if entry.needs == POINTS and not model.mechanism.points:
+        return "the model has no points"
     shape = entry.shape(sizes(model, generic))
     if 0 in shape:
         return "its result would be empty"

@@ -8,7 +8,17 @@ from types import MappingProxyType
 
 from symgen.dynamics.block_space import BlockSpace
 from symgen.dynamics.blocks import components
-from symgen.dynamics.catalogue import BY_NAME, CATALOGUE, PARTITION, Derived, by_blocks, derive, missing, scalars
+from symgen.dynamics.catalogue import (
+    BY_NAME,
+    CATALOGUE,
+    PARTITION,
+    POINTS,
+    Derived,
+    by_blocks,
+    derive,
+    missing,
+    scalars,
+)
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
@@ -95,7 +105,8 @@ def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tupl
     present: list[str] = []
     absent: list[tuple[str, str]] = []
     for entry in CATALOGUE:
-        if everything or entry.name in outputs:
+        # `all` does not ask a system without points for theirs
+        if entry.name in outputs or (everything and (entry.needs != POINTS or model.mechanism.points)):
             reason = missing(entry, model, generic)
             if reason is None:
                 present.append(entry.name)

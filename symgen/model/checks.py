@@ -26,6 +26,7 @@ NEEDS_CONSTRAINTS = frozenset(
         "multipliers",
     }
 )
+NEEDS_POINTS = frozenset({"point_position", "point_jacobian"})
 NEEDS_INPUTS = frozenset(
     {
         "control_matrix",
@@ -97,6 +98,8 @@ def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:
             reason = "the model has no geometric constraints"
         elif name in NEEDS_INPUTS and not model.m:
             reason = "the model has no inputs"
+        elif name in NEEDS_POINTS and not model.mechanism.points:
+            reason = "the model has no points"
         elif (name == "orthogonal_complement" or name.startswith("minimal_")) and not model.independent_velocities:
             reason = "the model names no `independent_velocities`"
         if reason is not None:

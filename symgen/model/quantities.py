@@ -64,6 +64,6 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("multipliers", "λ", "(14)", "Lagrange multipliers; the reaction on the system is −Bᵀλ", _QVU),
     Quantity("energy", "T, U", "", "kinetic and potential energy", _QV),
     Quantity("singularity", "σ", "", "distances from constraint and input singularities, 0 to 1", _Q),
+    Quantity("point_position", "(x, y, z)", "", "places of the points, a row for each in the order of the file", _Q),
+    Quantity("point_jacobian", "J", "", "velocities of the points per rate, three rows for each", _Q),
 )
-POINT_QUANTITIES: tuple[str, ...] = ("point_position", "point_jacobian")
-"""Known names that need named points, which only the bodies form has."""

@@ -36,7 +36,7 @@ from symgen.model.model import Model
 from symgen.model.names import did_you_mean, name_mistake
 from symgen.model.paths import read_paths
 from symgen.model.published import read_published
-from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
+from symgen.model.quantities import QUANTITIES
 from symgen.model.reading import entries, items, member, one_line, text_of
 from symgen.model.scope import CONFIGURATION, STATE, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
@@ -89,7 +89,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         inputs=inputs,
         allocation=allocation,
         applied_forces=forces,
-        outputs=_outputs(scope, tree.get("outputs"), bool(inputs)),
+        outputs=_outputs(tree.get("outputs"), bool(inputs)),
         independent_velocities=_coordinate_list(scope, tree.get("independent_velocities"), names),
         configuration=_configuration(scope, tree.get("configuration"), names, joint_coordinates),
         constraint_rank_tolerance=_tolerance(scope, tolerances, "constraint_rank"),
@@ -144,15 +144,13 @@ def _model_name(scope: Scope, tree: MappingNode) -> str:
     return node.value
 
 
-def _outputs(scope: Scope, node: Node | None, has_inputs: bool) -> tuple[str, ...]:
+def _outputs(node: Node | None, has_inputs: bool) -> tuple[str, ...]:
     requested = (node,) if isinstance(node, ScalarNode) else items(node)
     known = {"all", *(quantity.name for quantity in QUANTITIES)}
     outputs: list[str] = []
     for item in requested:
         name = text_of(item)
-        if name in POINT_QUANTITIES:
-            scope.notices.append(Notice(f"`{name}` is not made: this model has no named points", item.span))
-        elif name in known and name not in outputs:
+        if name in known and name not in outputs:
             outputs.append(name)
     if "all" in outputs:
         return ("all",)

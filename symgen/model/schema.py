@@ -5,7 +5,7 @@ from __future__ import annotations
 from symgen.model.joint_forms import JOINTS
 from symgen.model.loops import LOOPS
 from symgen.model.mechanism import AXES, INERTIA_ELEMENTS
-from symgen.model.quantities import POINT_QUANTITIES, QUANTITIES
+from symgen.model.quantities import QUANTITIES
 from symgen.model.shape import (
     Either,
     Field,
@@ -28,7 +28,7 @@ _UNIT = Field("unit", Text(), "SI unit such as m, kg*m**2, N*m, rad; a declarati
 _DESCRIPTION = Field("description", Text(), "what it is, in a few words; stands in headers and reports")
 _MATRIX = Listing(Either((Formula(), Listing(Formula(), 1))), 1)
 _NAMES = Listing(Word())
-_OUTPUT = Word(("all", *(quantity.name for quantity in QUANTITIES), *POINT_QUANTITIES))
+_OUTPUT = Word(("all", *(quantity.name for quantity in QUANTITIES)))
 _EQUATION = Field("equation", Text(), 'its number where it was printed, such as "(44)"', required=True)
 _QUANTITY = Field("quantity", Word(), "name of a quantity, as in `outputs`", required=True)
 _INDEPENDENT = Field("independent", _NAMES, "the independent velocities the formula is for")

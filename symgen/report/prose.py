@@ -166,6 +166,8 @@ SYMBOLS: dict[str, Layout] = {
     "actuator_bias": juxtaposed(transposed(W), Fenced(minus_sum((tau,), (juxtaposed(G, W, Accent(nu, "dot")),)))),
     "energy": listed((T, U)),
     "singularity": Letter("σ"),
+    "point_position": Fenced(listed((Letter("x"), Letter("y"), Letter("z")))),
+    "point_jacobian": bold("J"),
     "actuator_velocity": nu,
     "actuator_mass_matrix": juxtaposed(transposed(W), G, W),
 }

@@ -48,6 +48,11 @@ class Evaluation:
         return self.system.configuration(self.q, self.parameters, self.literals)
 
     @cached_property
+    def points(self) -> tuple[Any, Any]:
+        """Places of the points and their velocities per rate."""
+        return self.system.points(self.q, self.parameters, self.literals)
+
+    @cached_property
     def inverse(self) -> Any:
         """B+ (n x r)."""
         return right_pseudoinverse(self.at.constraints, self.ranks.constraints)
@@ -321,6 +326,8 @@ QUANTITIES: dict[str, Definition] = {
     "multipliers": _multipliers,
     "energy": _energy,
     "singularity": _singularity,
+    "point_position": lambda e: e.points[0],
+    "point_jacobian": lambda e: e.points[1],
 }
 
 NEEDS_CONSTRAINTS = {
@@ -342,6 +349,8 @@ NEEDS_INPUTS = {
 def offered(name: str, system: System, ranks: Ranks) -> bool:
     """Whether the model has this quantity, its result not being empty."""
     delta = system.n - ranks.constraints
+    if name.startswith("point_"):
+        return bool(system.model.mechanism.points)
     if name == "constraint_residual":
         return system.r_geometric > 0
     if name in NEEDS_CONSTRAINTS and system.r == 0:

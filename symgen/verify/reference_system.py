@@ -110,6 +110,7 @@ class System:
         self._configuration = replay_of(self._tape, [*(x for block in outputs for x in block), *gradients])
         self._geometry = replay_of(self._tape, [*outputs[2], *outputs[1][: self.r_geometric * n]])
         self._energies = self._plain([self._kinetic_energy(0, 0), self._potential_energy(0, 0)])
+        self._points: Replay | None = None
         self._applied: Replay | None = None
         if model.applied_forces or model.forces:
             self._applied = self._plain(self._applied_force())
@@ -147,6 +148,18 @@ class System:
         if self._applied is None:
             return arb_mat(self.n, 1)
         return arb_mat(self.n, 1, self._applied.run([*q, *qd, *parameters, *literals]))
+
+    def points(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
+        """Places (k x 3) and velocities per rate (3k x n) of the k points, in world axes."""
+        if self._points is None:
+            names = [point.name for point in self.model.mechanism.points]
+            places = [_truncated(x, 0) for name in names for x in self.frames.place(name)]
+            rates = [x for name in names for x in self.frames.velocity(name)]
+            shares = [self._share(rate, j) for rate in rates for j in range(self.n)]
+            self._points = self._plain([*places, *shares])
+        values = self._points.run([*q, *([None] * self.n), *parameters, *literals])
+        k = len(self.model.mechanism.points)
+        return arb_mat(k, 3, values[: 3 * k]), arb_mat(3 * k, self.n, values[3 * k :])
 
     @property
     def operations(self) -> int:
@@ -193,10 +206,11 @@ class System:
         if velocity is None:
             return []
         linear = self._translation(1, 1).polynomial(velocity)
-        return [
-            {(place, ()): register for (place, rates), register in linear.items() if rates == (j,)}
-            for j in range(self.n)
-        ]
+        return [self._share(linear, j) for j in range(self.n)]
+
+    def _share(self, rate: Polynomial, j: int) -> Polynomial:
+        """The coefficient of the j-th rate."""
+        return {(place, ()): register for (place, rates), register in rate.items() if rates == (j,)}
 
     def _component(self, name: str, coordinates: int, rates: int) -> Polynomial:
         """A component of a point or frame, to these degrees."""

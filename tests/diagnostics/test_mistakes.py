@@ -68,11 +68,11 @@ outputs: [mass_matrix, multipliers, control_matrix, orthogonal_complement, const
 constraints: {{}}
 """
     assert [notice.message for notice in load_text(text, "m.yaml").notices] == [
-        "`point_position` is not made: this model has no named points",
         "`multipliers` is not made: the model has no constraints",
         "`control_matrix` is not made: the model has no inputs",
         "`orthogonal_complement` is not made: the model names no `independent_velocities`",
         "`constraint_residual` is not made: the model has no geometric constraints",
+        "`point_position` is not made: the model has no points",
         "the definition `b` is not used",
     ]
 

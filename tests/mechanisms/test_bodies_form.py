@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import random
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 from shipped import ALL, NAMES
@@ -34,6 +37,8 @@ QUANTITIES = (
     "constraint_jacobian",
     "control_matrix",
     "energy",
+    "point_position",
+    "point_jacobian",
 )
 
 
@@ -71,10 +76,10 @@ def on_graph(mechanics: Mechanics, quantity: str) -> list[Scalar]:
     """Entries of the same quantity on the graph."""
     if quantity == "energy":
         return [mechanics.kinetic_energy, mechanics.potential_energy]
-    found = getattr(mechanics, quantity)
+    found = getattr(mechanics.bodies if quantity.startswith("point_") else mechanics, quantity)
     return (
         [x for row in found for x in row]
-        if quantity in ("mass_matrix", "constraint_jacobian", "control_matrix")
+        if quantity in ("mass_matrix", "constraint_jacobian", "control_matrix", "point_jacobian")
         else [*found]
     )
 
@@ -98,6 +103,41 @@ def test_the_graph_agrees_with_the_walk_of_the_reference(name: str) -> None:
             assert evaluate(values(state, model)) == pytest.approx(expected, rel=1e-11, abs=max(1e-12 * size, 1e-30)), (
                 quantity
             )
+
+
+def test_points_move_as_their_jacobian_says() -> None:
+    """By differences along q; the contact of a wheel moves with the wheel's material, its place with the fork."""
+    model = load_text(
+        """\
+model: wheel
+joints:
+  fork: {type: planar, coordinates: [x, y, theta]}
+  wheel: {type: revolute, parent: fork, at: [0, 0, 0.3], axis: y, coordinate: a}
+bodies: {wheel: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}, fork: {mass: 1, inertia: {zz: 1}}}
+points:
+  valve: {frame: wheel, at: [0.2, 0.05, 0.1]}
+  contact: {frame: fork, at: [0, 0, 0], moves_with: wheel}
+outputs: [point_position, point_jacobian]
+""",
+        "wheel.yaml",
+    )
+    reference = Reference(model)
+    q, zero, step = (0.3, -0.2, 0.7, 0.4), (0,) * 4, 1e-7
+
+    def at(place: Sequence[float], quantity: str) -> Any:
+        return reference.matrices(State(tuple(place), zero, zero, (), ()), [quantity])[quantity]
+
+    jacobian = at(q, "point_jacobian")
+    assert (jacobian.nrows(), jacobian.ncols()) == (6, 4)
+    for j in range(4):
+        here, there = ([*q[:j], q[j] + side * step, *q[j + 1 :]] for side in (-1, 1))
+        moved = at(there, "point_position") - at(here, "point_position")
+        for row in range(3):
+            assert float(moved[0, row]) / (2 * step) == pytest.approx(float(jacobian[row, j]), abs=1e-9)
+        assert float(moved[1, 0]) / (2 * step) == pytest.approx(float(j == 0), abs=1e-9)
+    # the material at the contact runs backwards under the turning wheel: -R along the heading
+    expected = [-0.3 * math.cos(0.7), -0.3 * math.sin(0.7), 0]
+    assert [float(jacobian[row, 3]) for row in range(3, 6)] == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize("name", SMALL)
