@@ -39,7 +39,8 @@ KINDS = (
     "small angles",
     "mass ratios",
     "drift",
-    "incompatible rates",
+    "near-redundant",
+    "incompatible inputs",
 )
 
 

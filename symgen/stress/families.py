@@ -18,7 +18,15 @@ from symgen.verify.reference_tape import ball, precision
 from symgen.verify.states import sample_states
 
 Kind: TypeAlias = Literal[
-    "parameter", "input", "constraint", "large angles", "small angles", "mass ratios", "drift", "incompatible rates"
+    "parameter",
+    "input",
+    "constraint",
+    "large angles",
+    "small angles",
+    "mass ratios",
+    "drift",
+    "near-redundant",
+    "incompatible inputs",
 ]
 ORDER: tuple[Kind, ...] = ("constraint", "input", "parameter")  # from bad to harmless
 SAMPLES = 2  # places or states of each family
@@ -33,7 +41,7 @@ class Family:
     """States at distance d for d in (0, 1]; `partitions` and `inputs` are the choices that fail as d falls.
 
     `meaning` says what d is.  A curve gives None where it has no state.  With `truths` (one for each curve) results
-    are compared with those at that state, and the distance from it is allowed for.
+    are compared with those at that state, and what the distance from it does to the exact result is allowed for.
     """
 
     kind: Kind
@@ -158,8 +166,7 @@ def _draws(model: Model, seed: str) -> _Draws:
 def _extremes(reference: Reference) -> list[Family]:
     """Families around regular states: angles, masses, drift, rates that violate the constraints."""
     model = reference.model
-    regular = [s.state for s in sample_states(reference, ("inverse_dynamics",) if model.m else (), 8) if s.admissible]
-    regular = regular[:SAMPLES]
+    regular = _regular(reference)
     angles = [i for i, c in enumerate(model.coordinates) if c.is_angle]
     found: list[Family] = []
     curves: tuple[Callable[[float], State | None], ...]
@@ -176,16 +183,37 @@ def _extremes(reference: Reference) -> list[Family]:
         meaning = f"{name} multiplied or divided by d"
         found.append(Family("mass ratios", name, meaning, curves))
     if any(row.kind == "geometric" for row in model.constraints):
-        curves = tuple(_moved(state, "q", f"drift {k}") for k, state in enumerate(regular))
-        # where rows depend on each other a result off V is a matter of definition: the one on V is what is meant
-        truths = tuple(regular) if dependent else ()
-        label = "configuration off the constraints"
-        found.append(Family("drift", label, "ten times the distance from V", curves, truths=truths))
+        found.append(_near_redundant(regular) if dependent else _drift(regular))
     if model.r:
-        curves = tuple(_moved(state, "qd", f"rates {k}") for k, state in enumerate(regular))
+        curves = tuple(_moved(state, "qd", f"rates {k}", 1.0) for k, state in enumerate(regular))
         label = "rates and accelerations that violate the constraints"
-        found.append(Family("incompatible rates", label, "relative size of the violation", curves))
+        found.append(Family("incompatible inputs", label, "relative size of the violation", curves))
     return found
+
+
+def _drift(regular: Sequence[State]) -> Family:
+    curves = tuple(_moved(state, "q", f"drift {k}", 0.1) for k, state in enumerate(regular))
+    return Family("drift", "configuration off the constraints", "ten times the distance from V", curves)
+
+
+def _near_redundant(regular: Sequence[State]) -> Family:
+    """Rows that depend on each other on V are independent off it by as much as the configuration has drifted.
+
+    A result off V is a matter of definition there: the one on V is what is meant.
+    """
+    curves = tuple(_moved(state, "q", f"drift {k}", 0.01) for k, state in enumerate(regular))
+    label = "dependent rows, configuration off the constraints"
+    return Family("near-redundant", label, "a hundred times the distance from V", curves, truths=tuple(regular))
+
+
+def near_redundant(reference: Reference) -> Family:
+    """The family of a system with dependent geometric rows."""
+    return _near_redundant(_regular(reference))
+
+
+def _regular(reference: Reference) -> list[State]:
+    names = ("inverse_dynamics",) if reference.model.m else ()
+    return [s.state for s in sample_states(reference, names, 8) if s.admissible][:SAMPLES]
 
 
 def _large_angles(state: State, angles: Sequence[int]) -> Callable[[float], State]:
@@ -224,14 +252,15 @@ def _scaled(state: State, index: int, sign: int) -> Callable[[float], State]:
     return lambda d: replace(state, parameters=(*p[:index], p[index] * d**sign, *p[index + 1 :]))
 
 
-def _moved(state: State, part: Literal["q", "qd"], seed: str) -> Callable[[float], State]:
+def _moved(state: State, part: Literal["q", "qd"], seed: str, share: float) -> Callable[[float], State]:
+    """A configuration, or rates and accelerations, off by `share` d of their size."""
     generator = random.Random(seed)
     shifts = [[generator.uniform(-1, 1) for _ in state.q] for _ in range(2)]
 
     def moved(values: Sequence[Any], d: float, by: Sequence[float]) -> tuple[float, ...]:
         size = max(abs(x) for x in values) or 1.0
-        return tuple(x + d * size * s for x, s in zip(values, by, strict=True))
+        return tuple(x + share * d * size * s for x, s in zip(values, by, strict=True))
 
     if part == "q":
-        return lambda d: replace(state, q=moved(state.q, 0.1 * d, shifts[0]))
+        return lambda d: replace(state, q=moved(state.q, d, shifts[0]))
     return lambda d: replace(state, qd=moved(state.qd, d, shifts[0]), qdd=moved(state.qdd, d, shifts[1]))

@@ -6,19 +6,20 @@ import json
 import math
 import tempfile
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from symgen.model.model import Model
-from symgen.stress.families import Family, Search, search
+from symgen.stress.families import Family, Search, near_redundant, search
 from symgen.stress.form_kernels import FormKernels
 from symgen.stress.kernels import STRESSED, Kernels
 from symgen.stress.long_run import Run, complaints, long_runs
 from symgen.stress.odd_numbers import OddNumbers, odd_numbers
+from symgen.stress.redundant import with_redundant_row
 from symgen.stress.scaling import Scaled, scaling
 from symgen.stress.series import Series
-from symgen.stress.sweep import StatusCount, Sweeper
+from symgen.stress.sweep import StatusCount, Sweep, Sweeper
 from symgen.verify.reference import Reference
 from symgen.verify.states import FEWEST_STATES, sample_states
 from symgen.verify.tolerance import FACTOR
@@ -100,6 +101,10 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
             progress(f"{family.kind}, {family.label}")
             sweeper.family(index)
         swept = sweeper.result()
+        if (twin := None if reference.ranks.constraints < model.r else with_redundant_row(model)) is not None:
+            progress("near-redundant constraints")
+            searched, more = _near_redundant(twin, searched, folder / "redundant")
+            swept = swept.joined(more)
         progress("other units")
         scaled, wrong_units = scaling(reference, kernels, folder)
         progress("odd numbers")
@@ -126,6 +131,16 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
         failures=(*swept.failures, *wrong_units, *wrong_numbers, *complaints(runs)),
         limits=swept.limits,
     )
+
+
+def _near_redundant(twin: Model, searched: Search, folder: Path) -> tuple[Search, Sweep]:
+    """The sweep of the system with one row more, and the search with its family."""
+    reference = Reference(twin)
+    known = replace(searched, families=(*searched.families, near_redundant(reference)))
+    folder.mkdir()
+    sweeper = Sweeper(reference, Kernels(twin, folder, STRESSED), known.families)
+    sweeper.family(len(searched.families))
+    return known, sweeper.result()
 
 
 def _series(one: Series) -> dict[str, Any]:

@@ -46,6 +46,11 @@ class StatusCount:
     regular: int
     regular_refused: int
 
+    def plus(self, other: StatusCount) -> StatusCount:
+        """Both counts of one kernel."""
+        names = ("states", "refused", "singular", "singular_passed", "regular", "regular_refused")
+        return replace(self, **{name: getattr(self, name) + getattr(other, name) for name in names})
+
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
@@ -57,6 +62,19 @@ class Sweep:
     statuses: tuple[StatusCount, ...]
     failures: tuple[str, ...]
     limits: tuple[str, ...]
+
+    def joined(self, other: Sweep) -> Sweep:
+        """Both together; statuses of one kernel are counted together."""
+        counts = {(one.quantity, one.scalar): one for one in self.statuses}
+        for one in other.statuses:
+            mine = counts.get((one.quantity, one.scalar))
+            counts[one.quantity, one.scalar] = one if mine is None else mine.plus(one)
+        return Sweep(
+            (*self.series, *other.series),
+            tuple(counts.values()),
+            (*self.failures, *other.failures),
+            (*self.limits, *other.limits),
+        )
 
 
 Found: TypeAlias = dict[tuple[int, Scalar, str, str], dict[float, Error]]
@@ -161,11 +179,10 @@ class Sweeper:
             return
         try:
             expected = expectations(self._reference, truth, self._names, scalar, f"{scalar} {index} {d}")
+            if truth is not state:
+                expected = self._drifted(expected, state, truth)
         except ReferenceValueError:
             return
-        if truth is not state:
-            moved = math.dist(truth.q, state.q)
-            expected = {name: replace(e, unit=e.unit + moved * e.size) for name, e in expected.items()}
         masses = self._condition_of_masses(state)
         floors = {name: self._floor(name, scalar, measures, masses) for name in self._names}
         for name, outcome in outcomes.items():
@@ -180,6 +197,15 @@ class Sweeper:
                 if name in values or values == {}:
                     entries = np.asarray(values[name], dtype=np.float64).ravel().tolist() if name in values else None
                     self._record(index, scalar, name, form, d, expected[name], entries, floors[name])
+
+    def _drifted(
+        self, expected: dict[str, Expectation], state: State, truth: State
+    ) -> dict[str, Expectation]:
+        """The unit of error grows by what the distance between both states does to the exact result."""
+        apart = math.dist(truth.q, state.q)
+        here = self._reference.evaluate(state, self._names)
+        changes = {name: expected[name].distance([float(x) for x in here[name]]) for name in self._names}
+        return {name: replace(e, unit=e.unit + max(apart * e.size, changes[name])) for name, e in expected.items()}
 
     def _record(
         self,
