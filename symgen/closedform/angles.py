@@ -8,13 +8,13 @@ closed forms in absolute ones (theory.md, section 5, step 1).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
 from typing import TypeAlias
 
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.walk import parts
+from symgen.records import dataclass
 
 LARGEST_MULTIPLE = 12
 """Multiples of an angle beyond this are not expanded by addition theorems; the whole argument is then an atom."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 
 from sympy import Expr, ImmutableDenseMatrix, Symbol
 
@@ -29,6 +28,7 @@ from symgen.closedform.substitution import substitute
 from symgen.model.energy_form import energy_form
 from symgen.model.expression import Expression
 from symgen.model.model import Allocation, Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
+from symgen.records import dataclass
 
 LONG_MATRIX = 60
 """A derived matrix whose numerators have more terms than this is printed in named minors when such a form exists."""

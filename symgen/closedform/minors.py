@@ -7,7 +7,6 @@ delta = 1 it is the generalized cross product of the rows, for delta = 2 an anti
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from math import comb
 from typing import TypeAlias
@@ -17,6 +16,7 @@ from sympy.polys.rings import PolyElement
 from symgen.closedform.homogeneous import common_factor, divide
 from symgen.closedform.quotient import Matrix, Quotient, polynomial
 from symgen.closedform.ring import TrigRing
+from symgen.records import dataclass
 
 Rows: TypeAlias = tuple[tuple[PolyElement, ...], ...]
 Subset: TypeAlias = tuple[int, ...]

@@ -8,7 +8,7 @@ decide and the verdict says so.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from mpmath import mpf, nstr
@@ -35,6 +35,7 @@ from symgen.model.model import (
     PublishedMatrix,
     PublishedSingularSet,
 )
+from symgen.records import dataclass
 
 IDENTICAL = "identical"
 ON_MANIFOLD = "equal on the constraint manifold only"

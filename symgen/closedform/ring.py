@@ -8,7 +8,6 @@ s_i to the power 0 or 1" is a canonical form: two elements are equal exactly whe
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
@@ -18,6 +17,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 from symgen.closedform.angles import AngleBasis
 from symgen.closedform.limits import WorkCounter
 from symgen.model.expression import Expression, Name
+from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from sympy import Expr, Integer
@@ -15,6 +14,7 @@ from symgen.closedform.minors import common_denominator
 from symgen.closedform.ring import TrigRing
 from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
+from symgen.records import dataclass
 
 MOST_PRINTED = 30
 """More expressions than this are not listed."""

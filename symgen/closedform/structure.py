@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal
 
@@ -13,6 +12,7 @@ from symgen.closedform.points import Point, rank
 from symgen.closedform.quotient import Matrix, Quotient
 from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
+from symgen.records import dataclass
 
 LONGEST_CURVATURE = 12
 """A component of the object of non-holonomy with more terms than this is not printed."""

@@ -7,9 +7,9 @@ except where a single letter or number is.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from symgen.records import dataclass
 from symgen.report.layout import (
     CLOSING,
     Application,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from symgen.closedform.forms import ClosedForm
 from symgen.closedform.singular import SingularSet
 from symgen.closedform.structure import Integrability, Structure
 from symgen.model.model import Model
+from symgen.records import dataclass
 from symgen.report.targets import TargetCore
 
 

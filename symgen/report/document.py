@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from symgen.records import dataclass
 from symgen.report.breaking import break_lines
 from symgen.report.layout import Layout, Row
 from symgen.report.measure import page_width

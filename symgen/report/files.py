@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from symgen.closedform.limits import TooLargeError
 from symgen.diagnostics import Mistake, Notice
 from symgen.model.model import Model
 from symgen.naming import file_stem
-from symgen.paths.path_equations import PathError
+from symgen.records import dataclass
 from symgen.report.compose import compose
 from symgen.report.facts import Facts
 from symgen.report.gather import gather, path_charts, with_measurements
@@ -53,6 +52,8 @@ def report_files(model: Model, receive: Callable[[], Any], measured: bool) -> Re
     }
     if not measured:
         return ReportFiles(files, notices)
+    from symgen.paths.path_equations import PathError  # with NumPy
+
     try:
         charts = path_charts(model)
     except PathError as error:

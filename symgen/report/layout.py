@@ -6,8 +6,9 @@ recognizable because lines are broken there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
+
+from symgen.records import dataclass
 
 Style: TypeAlias = Literal["italic", "upright", "bold"]
 Fence: TypeAlias = Literal["(", "[", "|", ""]
