@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from symgen.model.energy_form import energy_form
-from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.expression import Binary, Expression, Name, Number, Pi
 from symgen.model.model import Model
+from symgen.stress.by_energies import by_energies, substitute, with_names
 
 RADIANS = Binary("/", Pi(), Number(Fraction(180)))
 # 180/pi to 70 digits, for states
@@ -17,7 +16,7 @@ DEGREES = Fraction("57.295779513082320876798154814105170332405472466564321549160
 
 def in_degrees(model: Model) -> Model:
     """The model in degrees; generalized forces become power per degree/s, inputs and multipliers stay."""
-    model = energy_form(model)
+    model = by_energies(model)
     angles = [c for c in model.coordinates if c.is_angle]
     names: dict[str, Expression] = {}
     for c in angles:
@@ -28,8 +27,9 @@ def in_degrees(model: Model) -> Model:
         converted = substitute(value, names)
         return Binary("*", RADIANS, converted) if coordinate in is_angle else converted
 
+    written = with_names(model, names)
     return replace(
-        model,
+        written,
         name=f"{model.name}_in_degrees",
         coordinates=tuple(
             replace(
@@ -43,10 +43,6 @@ def in_degrees(model: Model) -> Model:
             else c
             for c in model.coordinates
         ),
-        definitions=tuple(replace(d, value=substitute(d.value, names)) for d in model.definitions),
-        kinetic_energy=substitute(model.kinetic_energy, names),
-        potential_energy=substitute(model.potential_energy, names),
-        constraints=tuple(replace(c, expression=substitute(c.expression, names)) for c in model.constraints),
         inputs=tuple(
             replace(i, acts_on=tuple((name, force(name, value)) for name, value in i.acts_on)) for i in model.inputs
         ),
@@ -55,20 +51,3 @@ def in_degrees(model: Model) -> Model:
         published=(),
         paths=(),
     )
-
-
-def substitute(expression: Expression, names: Mapping[str, Expression]) -> Expression:
-    """The expression with names replaced."""
-    match expression:
-        case Name(name=name):
-            return names.get(name, expression)
-        case Number() | Pi():
-            return expression
-        case Negation(operand=operand):
-            return Negation(substitute(operand, names))
-        case Binary(operator=operator, left=left, right=right):
-            return Binary(operator, substitute(left, names), substitute(right, names))
-        case Power(base=base, exponent=exponent):
-            return Power(substitute(base, names), exponent)
-        case Call(function=function, arguments=arguments):
-            return Call(function, tuple(substitute(a, names) for a in arguments))

@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from symgen.model.energy_form import energy_form
 from symgen.model.expression import Binary, Expression, Name, Number
 from symgen.model.model import ConstraintRow, Model
+from symgen.stress.by_energies import by_energies
 
 ROW = "redundant_row"
 ONE = Number(Fraction(1))
@@ -21,7 +21,7 @@ def with_redundant_row(model: Model) -> Model | None:
 
     The gradient of the first factor turns the row by g_1, which vanishes on V.
     """
-    model = energy_form(model)
+    model = by_energies(model)
     residuals = [row.expression for row in model.constraints if row.kind == "geometric"]
     if not residuals:
         return None
