@@ -205,7 +205,7 @@ def _failing_forms(derived: _Derived) -> tuple[tuple[str, str], ...]:
     form = derivations.form
     told = list(_forms(derivations, ()))
     if form is not None and form.verdict.admitted:
-        others = InverseDynamics(derived.model, derivations.generic).failing()
+        others = InverseDynamics(derived.model, derivations.generic).failing() or form.failed
         told += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
     moving = [choice.quantity for choice in derivations.choices if choice.form]
     if moving:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import combinations
+from math import comb
 
 from sympy.polys.rings import PolyElement
 
@@ -78,6 +79,9 @@ class Exact:
 
     def projector_work(self) -> int:
         """Products of terms in the numerators of N_B."""
+        least = self.model.n**2 // 2 * comb(self.model.n, self.delta - 1) if self.delta else 0
+        if least > WORK_LIMIT:
+            return least
         work = 0
         for minors in self.minor_sets:
             lines = [
@@ -152,6 +156,9 @@ class Exact:
     @cached_property
     def actuations(self) -> tuple[Actuation, ...]:
         """Delta_J and v_L for every choice of rows, of M times its common denominator."""
+        others = self.delta - 1
+        contractions = comb(self.model.m, others) * self.model.n * comb(self.model.n, others)
+        self._admit(contractions * len(self.minor_sets), "the determinants of the input equations")
         scale = polynomial(self.ring, self.control_scale)
         control = tuple(tuple((entry * scale).numerator for entry in row) for row in self.mechanics.control)
         return tuple(actuation_minors(self.ring, minors, control, self.delta) for minors in self.minor_sets)

@@ -9,12 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from math import prod
 
 import flint
 from sympy import QQ
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.ring import TrigRing
+
+# A polynomial of more terms, once homogeneous, is factored as an ordinary one only: its length doubles with every angle
+# that a monomial lacks.
+MOST_TERMS = 3_000
 
 
 @lru_cache(maxsize=64)
@@ -58,6 +63,14 @@ def homogeneous(ring: TrigRing, p: PolyElement) -> PolyElement:
             parts.setdefault(missing, ring.polys.zero.copy())[monomial] = coefficient
         p = sum((part * one**missing for missing, part in parts.items()), ring.zero)
     return p
+
+
+def _homogeneous_terms(ring: TrigRing, p: PolyElement) -> int:
+    """How many terms `homogeneous` has to write at most."""
+    pairs = tuple(zip(ring.sine, ring.cosine, strict=True))
+    degrees = [[monomial[s] + monomial[c] for s, c in pairs] for monomial in p]
+    tops = [max(column) for column in zip(*degrees, strict=True)]
+    return sum(prod((top - degree) // 2 + 1 for top, degree in zip(tops, row, strict=True)) for row in degrees)
 
 
 def common_factor(ring: TrigRing, polynomials: Iterable[PolyElement]) -> PolyElement:
@@ -106,7 +119,7 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
     """(rational constant, irreducible factors with multiplicities) of a normal form.
 
     Factors are homogeneous, with coprime integer coefficients and a positive leading coefficient.  A part of mixed
-    parity is factored as an ordinary polynomial.
+    parity is factored as an ordinary polynomial, and so is what would be too long when homogeneous.
     """
     if not p or p.is_ground:
         return p, ()
@@ -114,7 +127,9 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
         ((monomial, coefficient),) = p.items()
         single = [(ring.generator(i), e) for i, e in enumerate(monomial) if e]
         return ring.polys.ground_new(coefficient), tuple(sorted(single, key=lambda item: _order(item[0])))
-    content = common_factor(ring, [p])
+    ring.work.spend(len(p) * ring.polys.ngens)
+    long = any(_homogeneous_terms(ring, part) > MOST_TERMS for part in parity_classes(ring, p))
+    content = ring.one if long else common_factor(ring, [p])
     rest = divide(ring, p, content)
     constant = ring.one
     factors: list[tuple[PolyElement, int]] = []

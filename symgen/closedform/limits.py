@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-WORK_LIMIT = 300_000
-"""Products of terms, about two seconds of work."""
+WORK_LIMIT = 60_000
+"""Products of terms, about half a second of work: what needs more has always been too long to be printed."""
+
+LIMIT_OF_MODEL = 300_000
+"""The same for g and B, without which there is no report."""
 
 
 class TooLargeError(Exception):
@@ -19,16 +22,17 @@ class WorkCounter:
     def __init__(self) -> None:
         self._spent = 0
         self._what = ""
+        self._limit = WORK_LIMIT
         self._failed: dict[str, str] = {}
 
     @contextmanager
-    def limited(self, what: str) -> Iterator[None]:
-        """Raise TooLargeError, saying what was being built, beyond WORK_LIMIT products; the outermost limit counts."""
+    def limited(self, what: str, limit: int = WORK_LIMIT) -> Iterator[None]:
+        """Raise TooLargeError, saying what was being built, beyond so many products; the outermost limit counts."""
         if what in self._failed:
             raise TooLargeError(self._failed[what])
         outermost = not self._what
         if outermost:
-            self._spent, self._what = 0, what
+            self._spent, self._what, self._limit = 0, what, limit
         before = self._spent
         try:
             yield
@@ -43,5 +47,5 @@ class WorkCounter:
     def spend(self, products: int) -> None:
         """Note work that is about to be done."""
         self._spent += products
-        if self._what and self._spent > WORK_LIMIT:
-            raise TooLargeError(f"{self._what} needs more than {WORK_LIMIT} products of terms")
+        if self._what and self._spent > self._limit:
+            raise TooLargeError(f"{self._what} needs more than {self._limit} products of terms")

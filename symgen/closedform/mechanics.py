@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from functools import cached_property
 
+from symgen.closedform.limits import LIMIT_OF_MODEL
 from symgen.closedform.matrices import add, column, multiply, zero
 from symgen.closedform.quotient import Matrix, Quotient, polynomial
 from symgen.closedform.ring import TrigRing
@@ -70,14 +71,14 @@ class Mechanics:
     def residual(self) -> Matrix:
         """g of the geometric constraints."""
         rows = [row for row in self.model.constraints if row.kind == "geometric"]
-        with self.ring.work.limited("the geometric constraints"):
+        with self.ring.work.limited("the geometric constraints", LIMIT_OF_MODEL):
             return column([self.translator.value(row.expression) for row in rows])
 
     @cached_property
     def jacobian(self) -> Matrix:
         """B (1): derivatives of geometric constraints by q, of non-holonomic ones by qd."""
         rows = []
-        with self.ring.work.limited("B"):
+        with self.ring.work.limited("B", LIMIT_OF_MODEL):
             for row in self.model.constraints:
                 value = self.translator.value(row.expression)
                 names = self._names if row.kind == "geometric" else self._rates

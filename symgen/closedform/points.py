@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 
 import mpmath
 from mpmath import mp, mpf
@@ -76,11 +77,10 @@ class Point:
     def polynomial(self, p: PolyElement) -> mpf:
         """The value of a ring element."""
         total = mpf(0)
-        for monomial, coefficient in p.items():
-            term = mpf(int(coefficient.numerator)) / int(coefficient.denominator)
-            for exponent, value in zip(monomial, self._generators, strict=True):
-                if exponent:
-                    term *= value**exponent
+        for coefficient, powers in _terms(p):
+            term = coefficient
+            for position, exponent in powers:
+                term *= self._generators[position] ** exponent
             total += term
         return total
 
@@ -92,6 +92,18 @@ class Point:
     def matrix(self, matrix: Matrix) -> list[list[mpf]]:
         """The values of a matrix."""
         return [[self.quotient(entry) for entry in row] for row in matrix]
+
+
+@lru_cache(maxsize=4096)  # the same rows at every step of Newton's method; at the working precision of all points
+def _terms(p: PolyElement) -> tuple[tuple[mpf, tuple[tuple[int, int], ...]], ...]:
+    """Coefficients, and the positions and exponents of the generators that occur."""
+    return tuple(
+        (
+            mpf(int(coefficient.numerator)) / int(coefficient.denominator),
+            tuple((position, exponent) for position, exponent in enumerate(monomial) if exponent),
+        )
+        for monomial, coefficient in p.items()
+    )
 
 
 def parameter_values(model: Model) -> dict[str, mpf]:

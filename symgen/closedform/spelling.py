@@ -20,7 +20,7 @@ from symgen.closedform.ring import TrigRing
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 
 # A Fourier sum of more waves is not worth making: it is never the shortest form.
-MOST_WAVES = 20_000
+MOST_WAVES = 1_000
 
 
 def spell_expression(expression: Expression, values: Mapping[str, Expr] | None = None) -> Expr:

@@ -18,7 +18,7 @@ from symgen.closedform.spelling import Speller
 LONGEST_LOAD = 600
 """A load tau with more terms than this is not listed."""
 
-LONGEST_SQUARES = 3000
+LONGEST_SQUARES = 600
 """Entries of B B^T with more terms than this together are not listed."""
 
 MOST_MINORS = 30
@@ -157,16 +157,17 @@ def structured_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[st
     """The entries of S = B B^T by name, for B^+ = B^T S^{-1}; none where they are too long to be read."""
     jacobian = exact.mechanics.jacobian
     naming = Naming(speller, taken)
-    entries = {
-        (i, j): dot(exact.ring, jacobian[i], jacobian[j])
-        for i in range(len(jacobian))
-        for j in range(i, len(jacobian))
-    }
-    if sum(len(entry.numerator) for entry in entries.values()) > LONGEST_SQUARES:
+    size = range(len(jacobian))
+    try:
+        with exact.ring.work.limited("B B^T"):
+            entries = {(i, j): dot(exact.ring, jacobian[i], jacobian[j]) for i in size for j in size[i:]}
+            if sum(len(entry.numerator) for entry in entries.values()) > LONGEST_SQUARES:
+                return ()
+            return tuple(
+                (naming.symbol(f"S_{i + 1}_{j + 1}"), speller.quotient(entry)) for (i, j), entry in entries.items()
+            )
+    except TooLargeError:
         return ()
-    return tuple(
-        (naming.symbol(f"S_{i + 1}_{j + 1}"), speller.quotient(entry)) for (i, j), entry in entries.items()
-    )
 
 
 def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]) -> Structured:

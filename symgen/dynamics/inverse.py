@@ -12,6 +12,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 
+from symgen.dynamics.admission.resolution import stands_out
 from symgen.dynamics.admission.verdict import FAILS, Verdict, proof_for, verdict
 from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.coordinates import absolute_angles
@@ -24,7 +25,7 @@ from symgen.dynamics.forms.printed import printed_form
 from symgen.dynamics.forms.range import range_form
 from symgen.dynamics.forms.system import System
 from symgen.dynamics.forms.weighted import kkt_form, weighted_form
-from symgen.dynamics.genericity import Genericity, genericity
+from symgen.dynamics.genericity import Genericity, configurations, genericity
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.scalar import Graph, Scalar
@@ -38,6 +39,9 @@ AUTOMATIC = ("range", "minor", "nullspace", "householder")
 FACTORING_LIMIT = 450
 CANCELLATION_WORTH = Fraction(1, 4)
 FACTORING_GAIN = Fraction(1, 3)
+RESOLVED_AT = 2
+# Forms that are not taken and count more than this are not derived only to say where they fail.
+LONGEST_EXAMINED = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +100,10 @@ class InverseDynamics:
 
     def verdict(self, offer: Offer, first_only: bool = False) -> Verdict:
         """Whether the form may be chosen by itself."""
-        return verdict(offer.system, offer.form, self._measures(offer), first_only)
+        found = verdict(offer.system, offer.form, self._measures(offer), first_only)
+        if found.admitted and offer.form.guards and not stands_out(offer.form.guards, self._generic.n, self._points):
+            return replace(found, lost=True)
+        return found
 
     def choose(self, name: str = "auto") -> tuple[Offer, FormChoice] | str:
         """The form asked for, or the cheapest admitted one; why there is none by that name."""
@@ -109,7 +116,12 @@ class InverseDynamics:
         return self._cheapest()
 
     def failing(self) -> tuple[tuple[str, str], ...]:
-        """The forms among those that are chosen by themselves that fail at regular states, and where each does."""
+        """The forms among those that are chosen by themselves that fail at regular states, and where each does.
+
+        None of them is derived to be told of where all are long.
+        """
+        if min(self._least_costs.values()) > LONGEST_EXAMINED:
+            return ()
         offers = [offer for name in AUTOMATIC if isinstance(offer := self.offer(name), Offer)]
         verdicts = [(offer.way, self.verdict(offer)) for offer in offers]
         return tuple((way, found.explanation) for way, found in verdicts if not found.admitted)
@@ -128,6 +140,10 @@ class InverseDynamics:
             remarks[name] = found.explanation
             if found.admitted:
                 chosen = name
+        if chosen is None:
+            # in double precision a form whose denominators are lost in float32 may do
+            lost = (name for name in verdicts if verdicts[name].lost)
+            chosen = next(lost, None)
         if chosen is None:
             return "no form is valid at every regular state"
         best = offers[chosen]
@@ -183,6 +199,11 @@ class InverseDynamics:
         outputs = system.mechanics.factoring.shorten(minor.form.outputs, kept)
         made = form(minor.form.name, minor.form.quantity, outputs, minor.form.guards, system.given)
         return Offer("minor factored", system, made)
+
+    @cached_property
+    def _points(self) -> list[dict[str, float]]:
+        """Configurations on V at which denominators are looked at."""
+        return configurations(Mechanics(self._model), RESOLVED_AT)
 
     @cached_property
     def _least_costs(self) -> dict[str, int]:
