@@ -14,6 +14,7 @@ from symgen.graph.transplant import transplanted
 from symgen.records import dataclass
 
 DECIMALS = 6  # of a state in a message
+LOST = "a denominator is a small difference of large terms, which single precision takes for zero at regular states"
 FAILS = "this form is singular where"
 
 
@@ -29,18 +30,20 @@ class Singular:
 class Verdict:
     """How many denominators are proved harmless, how many were searched in vain, and which are singular.
 
-    `theorem` says why none has to be looked at, where that is known of a form as a whole.
+    `theorem` says why none has to be looked at, where that is known of a form as a whole.  `lost` says that a
+    denominator is so small among its terms that single precision could not tell it from zero anywhere.
     """
 
     proved: int
     searched: int
     singular: tuple[Singular, ...]
     theorem: str = ""
+    lost: bool = False
 
     @property
     def admitted(self) -> bool:
-        """Whether the form is valid wherever the ranks of B and M~ are what they generically are."""
-        return not self.singular
+        """Whether the form is valid wherever the ranks of B and M~ are what they generically are, in float32 too."""
+        return not self.singular and not self.lost
 
     @property
     def explanation(self) -> str:
@@ -48,6 +51,8 @@ class Verdict:
         if self.singular:
             places = " or ".join(f"{entry.where_zero} = 0" for entry in self.singular)
             return f"{FAILS} {places}, although B and M~ keep their ranks"
+        if self.lost:
+            return LOST
         if self.theorem:
             return self.theorem
         parts = []
