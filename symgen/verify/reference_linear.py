@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
-from math import sqrt
+from math import hypot
 from typing import Any
 
 from flint import arb, arb_mat
@@ -54,7 +54,7 @@ def square(matrix: Any) -> Any:
 
 def norm(matrix: Any) -> float:
     """Frobenius norm, to a float's accuracy."""
-    return sqrt(max(0.0, float(square(matrix))))
+    return hypot(*map(float, matrix.entries()))
 
 
 def determinant(matrix: Any) -> Any:

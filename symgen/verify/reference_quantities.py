@@ -7,10 +7,10 @@ P = I - N, v = N qd, Z = N (N G N + P)^-1 N = F (F'GF)^-1 F' for every basis F o
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, wraps
 from itertools import combinations
-from typing import Any
+from typing import Any, TypeAlias
 
 from flint import arb, arb_mat
 
@@ -28,6 +28,21 @@ from symgen.verify.reference_linear import (
 from symgen.verify.reference_manifold import Ranks
 from symgen.verify.reference_system import Configuration, System
 
+Derivative: TypeAlias = Callable[["Evaluation", Any], Any]
+
+
+def _once_a_velocity(derivative: Derivative) -> Derivative:
+    """A derivative along a velocity, computed once for each; an evaluation keeps the few velocities it has."""
+
+    @wraps(derivative)
+    def known(evaluation: Evaluation, velocity: Any) -> Any:
+        key = derivative.__name__, id(velocity)
+        if key not in evaluation.derivatives:
+            evaluation.derivatives[key] = velocity, derivative(evaluation, velocity)
+        return evaluation.derivatives[key][1]
+
+    return known
+
 
 @dataclass
 class Evaluation:
@@ -41,6 +56,7 @@ class Evaluation:
     u: Sequence[Any]
     parameters: Sequence[Any]
     literals: Sequence[Any]
+    derivatives: dict[tuple[str, int], tuple[Any, Any]] = field(default_factory=dict)
 
     @cached_property
     def at(self) -> Configuration:
@@ -77,6 +93,7 @@ class Evaluation:
         """N qd."""
         return self.projector * self.rate
 
+    @_once_a_velocity
     def coriolis(self, velocity: Any) -> Any:
         """Christoffel C (3) along a velocity."""
         return arb_mat(self.system.n, self.system.n, self.system.along("coriolis", self.at, velocity))
@@ -85,6 +102,7 @@ class Evaluation:
         """d/dt G along a velocity."""
         return arb_mat(self.system.n, self.system.n, self.system.along("mass", self.at, velocity))
 
+    @_once_a_velocity
     def constraints_dot(self, velocity: Any) -> Any:
         """d/dt B along a velocity."""
         return arb_mat(self.system.r, self.system.n, self.system.along("constraints", self.at, velocity))
@@ -93,6 +111,7 @@ class Evaluation:
         """d/dt M along a velocity."""
         return arb_mat(self.system.n, self.system.m, self.system.along("control", self.at, velocity))
 
+    @_once_a_velocity
     def projector_dot(self, velocity: Any) -> Any:
         """d/dt N_B along a velocity (Remark 9): -X - X', X = B+ Bdot N."""
         x = self.inverse * (self.constraints_dot(velocity) * self.projector)

@@ -50,6 +50,8 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 
 def ball(value: Any) -> Any:
     """An exact number (int, float, Fraction) as a ball at the working precision; balls pass through."""
+    if type(value) is arb:
+        return value
     if isinstance(value, Fraction):
         return arb(fmpq(value.numerator, value.denominator))
     return arb(value)

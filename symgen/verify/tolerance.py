@@ -51,6 +51,8 @@ def expectations(
     exact = reference.precise(state, quantities)
     worst = dict.fromkeys(quantities, 0.0)
     generator = random.Random(seed)
+    with precision(PERTURBED_BITS):
+        state = State(*(tuple(map(ball, part)) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
     for _ in range(PERTURBATIONS):
         with precision(PERTURBED_BITS):
             moved, literals = perturbed(reference, state, scalar, generator)
