@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -11,6 +9,7 @@ from types import ModuleType, SimpleNamespace
 import handmade
 import numpy as np
 import pytest
+from generated_python import load_generated
 
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
@@ -29,14 +28,7 @@ def load(folder: Path, model: Model, program: Program) -> ModuleType:
     for path, text in files.items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(text)
-    file = next((folder / "python").glob("*.py"))
-    spec = importlib.util.spec_from_file_location("generated_toy", file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["generated_toy"] = module
-    spec.loader.exec_module(module)
-    return module
+    return load_generated(next((folder / "python").glob("*.py")))
 
 
 def states(*axes: int) -> np.ndarray:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import ctypes
-import importlib.util
 import random
 import subprocess
-import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 import shipped
+from generated_python import load_generated
 
 from symgen.emit.defaults import default_values
 from symgen.emit.literals import round_to
@@ -81,7 +79,7 @@ def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar
 @pytest.mark.parametrize("name", shipped.NAMES)
 def test_python(tmp_path: Path, name: str) -> None:
     shipped.write_sources(name, tmp_path)
-    module = load(tmp_path / f"python/{name}.py")
+    module = load_generated(tmp_path / f"python/{name}.py")
     drawn = states(name, "float64")
     for kernel in shipped.programs(name)["float64"].kernels:
         batch = getattr(module, kernel.name)(*(np.array([s[a.name] for s in drawn]) for a in array_arguments(kernel)))
@@ -94,13 +92,3 @@ def test_python(tmp_path: Path, name: str) -> None:
             with pytest.raises(module.StateError) as caught:
                 getattr(module, kernel.name)(*(state[a.name] for a in array_arguments(kernel)))
             assert caught.value.status == status, (kernel.name, state)
-
-
-def load(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"generated_{path.stem}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
+from generated_python import load_generated
 
 from symgen.pipeline import generate
 from symgen.results import Options
@@ -59,16 +57,6 @@ def made(folder: Path, text: str) -> Path:
     return folder
 
 
-def load(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("compiler", ["gcc", "clang", "g++"])
 @pytest.mark.parametrize("text", [NAMES, FREE], ids=["names", "free"])
 def test_compiles_after_every_macro(tool: Callable[[str], str], tmp_path: Path, compiler: str, text: str) -> None:
@@ -91,7 +79,7 @@ def test_compiles_after_every_macro(tool: Callable[[str], str], tmp_path: Path, 
 
 def test_awkward_names_keep_their_python_spelling_and_their_bits(tool: Callable[[str], str], tmp_path: Path) -> None:
     tool("cc")
-    module = load(made(tmp_path, NAMES) / "python/awkward.py")
+    module = load_generated(made(tmp_path, NAMES) / "python/awkward.py")
     compiled = module.compile()
     q = np.random.default_rng(3).normal(size=(20, 4))
     p = module.Parameters(PI=2.5, B1=0.5, np=3.0)
@@ -114,6 +102,6 @@ def test_no_input_no_constraint_no_parameter(tmp_path: Path) -> None:
     )
     assert "double unused;" in header
     assert "inverse_dynamics(" not in header
-    module = load(folder / "python/free.py")
+    module = load_generated(folder / "python/free.py")
     assert module.forward_dynamics([0.5], [1.0]).tolist() == [0.0]
     assert module.mass_matrix(np.zeros((3, 1))).shape == (3, 1, 1)
