@@ -10,8 +10,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from symgen.dynamics.coordinates import absolute_angles
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.exterior import ActuationForms
+from symgen.dynamics.forms.elimination import Elimination
+from symgen.dynamics.forms.range import range_form
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.select import derive_quantities
@@ -25,12 +28,21 @@ from symgen.model.model import Model
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """Weighted operations of u: as generated, by the minor form, and by it with one thing kept."""
+    """Weighted operations of u: as generated, by the minor form, and with one thing kept."""
 
     model: str
     generated: int
     minor: int
-    kept: tuple[tuple[str, int | None], ...]
+    kept: tuple[Kept, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The weight with one thing kept, and without; None for a model that has nothing of the kind."""
+
+    what: str
+    weight: int | None
+    without: int
 
 
 class _Kept(Mechanics):
@@ -71,6 +83,32 @@ class _Kept(Mechanics):
         return tuple(self._behind() if self._forces and x.is_zero else x for x in plain)
 
 
+class _FullMatrices(Mechanics):
+    """A system whose G and C hold numbers at run time where they hold zeros."""
+
+    def _full(self, matrix: Matrix, name: str) -> Matrix:
+        return tuple(
+            tuple(self.graph.symbol(f"{name} {i} {j}") if x.is_zero else x for j, x in enumerate(row))
+            for i, row in enumerate(matrix)
+        )
+
+    @cached_property
+    def mass_matrix(self) -> Matrix:
+        """G without zeros; differentiated, what stands for them has no rate."""
+        return self._full(super().mass_matrix, "G")
+
+    def coriolis_matrix(self, velocity: Vector) -> Matrix:
+        """C without zeros."""
+        return self._full(super().coriolis_matrix(velocity), "C")
+
+
+class _WorldAxes(Elimination):
+    """The steps of the range form without turning rows and multipliers into the axes of the bodies."""
+
+    def _direction(self, a: Scalar, b: Scalar) -> None:
+        del a, b
+
+
 class _SummedForms(ActuationForms):
     """The sum over choices of inputs even where there is one choice only."""
 
@@ -86,31 +124,53 @@ def skipped(model: Model) -> Skipped:
     generic = genericity(plain)
     (chosen,) = derive_quantities(model, ("inverse_dynamics",)).quantities
     outputs = _minor(plain, generic)
-    kept = tuple(_variants(plain, generic, outputs))
+    kept = (*_of_minors(plain, generic, outputs), *_of_matrices(model, generic), _of_axes(model, generic))
     return Skipped(model.name, _weight(chosen.outputs), _weight(outputs), kept)
 
 
-def _variants(plain: Mechanics, generic: Genericity, outputs: Vector) -> Iterator[tuple[str, int | None]]:
-    """Each thing by name with the weight when it is kept; None where the model has nothing of the kind."""
+def _of_minors(plain: Mechanics, generic: Genericity, outputs: Vector) -> Iterator[Kept]:
+    """What the minor form skips."""
     model, b = plain.model, plain.constraint_jacobian
     free = [bool(b) and all(row[j].is_zero for row in b) for j in range(model.n)]
     everywhere, nowhere = [True] * model.n, [False] * model.n
+    minor = _weight(outputs)
 
     def weight(mechanics: Mechanics) -> int:
         return _weight(_minor(mechanics, generic))
 
     touched = weight(_Kept(model, lambda x: x.is_zero, free, False)) if any(free) else None
-    yield "coordinates no constraint touches", touched
-    yield "zeros of B and M", weight(_Kept(model, lambda x: x.is_zero, everywhere, False))
-    yield "constants of B and M", weight(_Kept(model, lambda x: bool(x.constant), everywhere, False))
+    yield Kept("coordinates no constraint touches", touched, minor)
+    yield Kept("zeros of B and M", weight(_Kept(model, lambda x: x.is_zero, everywhere, False)), minor)
+    yield Kept("constants of B and M", weight(_Kept(model, lambda x: bool(x.constant), everywhere, False)), minor)
     vanishing = any(x.is_zero for x in plain.potential_force)
-    yield "forces that vanish", weight(_Kept(model, lambda _: False, nowhere, True)) if vanishing else None
-    yield "τ without G and C", _weight(_by_matrices(model, generic))
+    forces = weight(_Kept(model, lambda _: False, nowhere, True)) if vanishing else None
+    yield Kept("forces that vanish", forces, minor)
+    yield Kept("τ without G and C", _weight(_by_matrices(Mechanics(model), generic)), minor)
     square = generic.m == generic.delta == generic.alpha and generic.rank == generic.r
-    yield "m = δ", _weight(_summed(model, generic)) if square else None
-    yield "groups of parameters", _each_time(plain, outputs)
+    yield Kept("m = δ", _weight(_summed(model, generic)) if square else None, minor)
+    yield Kept("groups of parameters", _each_time(plain, outputs), minor)
     unshared = cost(outputs).weight
-    yield "sines by addition", unshared if unshared != _weight(outputs) else None
+    yield Kept("sines by addition", unshared if unshared != minor else None, minor)
+
+
+def _of_matrices(model: Model, generic: Genericity) -> Iterator[Kept]:
+    """What the matrices G and C skip, where u is formed from them."""
+    plain, full = (_weight(_by_matrices(system, generic)) for system in (Mechanics(model), _FullMatrices(model)))
+    yield Kept("zeros of G and C", full if full != plain else None, plain)
+
+
+def _of_axes(model: Model, generic: Genericity) -> Kept:
+    """What body-fixed axes save in the range form."""
+
+    def weight(steps: Callable[[Mechanics], Elimination]) -> int | None:
+        mechanics = Mechanics(model)
+        change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
+        seen = mechanics if change.is_identity else Mechanics(model, mechanics, change)
+        form = range_form(seen, generic, steps)
+        return None if form is None else _weight(form.outputs)
+
+    plain, world = weight(Elimination), weight(_WorldAxes)
+    return Kept("body-fixed axes", None if plain is None or world == plain else world, plain or 0)
 
 
 def _minor(mechanics: Mechanics, generic: Genericity) -> Vector:
@@ -118,9 +178,8 @@ def _minor(mechanics: Mechanics, generic: Genericity) -> Vector:
     return Derivation(mechanics, generic, space).inverse_dynamics
 
 
-def _by_matrices(model: Model, generic: Genericity) -> Vector:
+def _by_matrices(mechanics: Mechanics, generic: Genericity) -> Vector:
     """u from G q_ddot + C q_dot + Q - Q_a with the matrices G and C."""
-    mechanics = Mechanics(model)
     graph, qd = mechanics.graph, mechanics.qd
     inertial = matvec(graph, mechanics.mass_matrix, mechanics.qdd)
     coriolis = matvec(graph, mechanics.coriolis_matrix(qd), qd)
@@ -153,11 +212,11 @@ def _weight(outputs: Sequence[Scalar]) -> int:
 
 def page(rows: Sequence[Skipped]) -> str:
     """The page docs/skipping.md."""
-    names = [name for name, _ in rows[0].kept]
+    names = [kept.what for kept in rows[0].kept]
     head = ["model", "u as generated", "minor form", *names]
     lines = [_line(head), _line(["---"] * len(head))]
     for row in rows:
-        kept = ("–" if weight is None else f"{weight} ({weight - row.minor:+d})" for _, weight in row.kept)
+        kept = ("–" if one.weight is None else f"{one.weight} ({one.weight - one.without:+d})" for one in row.kept)
         lines.append(_line([row.model, row.generated, row.minor, *kept]))
     return _PAGE.replace("TABLE", "\n".join(lines))
 
@@ -184,6 +243,8 @@ TABLE
 - *m = δ*: the sum over choices of inputs where there is one choice.
 - *groups of parameters*: sums and products of parameters alone formed wherever they are used.
 - *sines by addition*: a sine and cosine of its own for each angle.
+- *zeros of G and C*: what stands where they are zero as numbers at run time, against τ by these matrices.
+- *body-fixed axes*: the range form whose rows and multipliers stay in the axes of the model, against the range form.
 - No shipped model has several blocks of B. For two skates and a rod on one plane (`tests/dynamics/test_blocks.py`)
   B⁺ weighs 87 block by block and 158 taken together.
 """

@@ -10,6 +10,7 @@ from typing import Any
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.paths.drawing import svg
 from symgen.paths.line_chart import COLOURS
+from symgen.stress.form_charts import form_chart
 from symgen.stress.kernels import SCALARS
 from symgen.stress.run import Stress
 from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by_form
@@ -51,6 +52,8 @@ def stress_charts(result: Stress) -> dict[str, str]:
         charts["stress.families.svg"] = _families(result)
     if claim_families(result) and any(s.quantity == "inverse_dynamics" for s in result.series):
         charts["stress.claim.svg"] = _claim(result)
+    if (forms := form_chart(result)) is not None:
+        charts["stress.own_forms.svg"] = forms
     if any(run.time for run in result.runs):
         charts["stress.long_run.svg"] = _long_run(result)
     return {name: DECIMALS.sub(r"\1", text) for name, text in charts.items()}

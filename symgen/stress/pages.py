@@ -10,6 +10,7 @@ SYMBOLS = {"inverse_dynamics": "u", "forward_dynamics": "q̈", "multipliers": "�
 CAPTIONS = {
     "claim": "Error of u against the distance d to parameter singularities.",
     "forms": "Errors of u, q̈, λ and N_B against d, float64 and float32.",
+    "own_forms": "symgen's forms by name, float64: error in units against d (thick: generated; dashed: allowed).",
     "families": "symgen's error in units of what rounding does (dashed: what is allowed), by kind of trouble.",
     "long_run": "Constraint drift, tracking error and energy balance over the long run.",
 }

@@ -31,7 +31,7 @@ def programs_of(given: Model) -> dict[str, dict[Scalar, Program]]:
 
 
 def worst_errors(given: Model, forms: dict[str, dict[Scalar, Program]], scalar: Scalar) -> dict[str, float]:
-    """The largest error of each form in units of the tolerance; a state it refuses counts as right."""
+    """The largest error of each form in units of the tolerance."""
     reference = Reference(given)
     worst = dict.fromkeys(forms, 0.0)
     for number, sample in enumerate(sample_states(reference, ("inverse_dynamics",), STATES)):
@@ -42,7 +42,8 @@ def worst_errors(given: Model, forms: dict[str, dict[Scalar, Program]], scalar: 
             program = by_scalar[scalar]
             parameters = tuple(map(float, state.parameters))
             status, u = Interpreter(program.sincos, scalar).run(program.kernels[0], parts, parameters)
-            assert status == Status.OK or form not in ("minor", "range", "householder"), f"{form}: {status.name}"
+            # a basis from chosen coordinates may fail at a regular state
+            assert status == Status.OK or form == "nullspace", f"{form}: {status.name}"
             if status == Status.OK:
                 units = expected["inverse_dynamics"].in_units(expected["inverse_dynamics"].distance(u))
                 worst[form] = max(worst[form], units)

@@ -41,13 +41,17 @@ def printed_form(system: System, fixed: Sequence[int] | None = None) -> Form | s
     orders = [(*J, *(k for k in range(m) if k not in J)) for J in choices]
     weights, largest = _weights(graph, [_determinant(graph, columns, J) for J in choices])
     ordered = [_mixed(graph, weights, [columns[order[place]] for order in orders]) for place in range(m)]
-    values, own = _inverse(graph, ordered[:delta], ordered[delta:], force)
+    # a projected column is no longer than the column itself
+    squares = [dot(graph, column, column) for column in mechanics.inputs]
+    chosen = [graph.sum(w * squares[order[k]] for w, order in zip(weights, orders, strict=True)) for k in range(delta)]
+    values, own = _inverse(graph, ordered[:delta], ordered[delta:], force, chosen)
     u = [graph.zero] * m
     for weight, order in zip(weights, orders, strict=True):
         for place, k in enumerate(order):
             u[k] = u[k] + weight * values[place]
-    rank = Guard(Status.ACTUATION_RANK, largest, 1, guards) if m > delta else None
-    kept = (*guards, *((rank,) if rank is not None else ()), *own)
+    scale = graph.sum(graph.product(squares[k] for k in J) for J in choices)
+    rank = (Guard(Status.ACTUATION_RANK, largest, 2, guards, scale),) if m > delta else ()
+    kept = (*guards, *rank, *own)
     return form("printed", "inverse_dynamics", u, kept, system.given)
 
 
@@ -72,11 +76,6 @@ def _determinant(graph: Graph, columns: Sequence[Vector], chosen: Sequence[int])
     return square(graph, wedge_all(unit(graph), [columns[k] for k in chosen]))
 
 
-def _normal(columns: Sequence[Vector], graph: Graph) -> Cholesky:
-    a = tuple(tuple(dot(graph, x, y) for y in columns) for x in columns)
-    return Cholesky(graph, a, diagonal_sizes(graph, a))
-
-
 def _weights(graph: Graph, sizes: Sequence[Scalar]) -> tuple[list[Scalar], Scalar]:
     """1 for the largest of the sizes, the last one of equals, 0 for the others; and the largest size."""
     weights, largest = [graph.one], sizes[0]
@@ -96,10 +95,10 @@ def _mixed(graph: Graph, weights: Sequence[Scalar], vectors: Sequence[Vector]) -
 
 
 def _inverse(
-    graph: Graph, first: Sequence[Vector], second: Sequence[Vector], force: Vector
+    graph: Graph, first: Sequence[Vector], second: Sequence[Vector], force: Vector, squares: Sequence[Scalar]
 ) -> tuple[Vector, tuple[Guard, ...]]:
-    """(28): [I; R^T] (I + R R^T)^-1 M~_1^+ force with R = M~_1^+ M~_2."""
-    normal = _normal(first, graph)
+    """(28): [I; R^T] (I + R R^T)^-1 M~_1^+ force with R = M~_1^+ M~_2; `squares` are the sizes of the first columns."""
+    normal = Cholesky(graph, tuple(tuple(dot(graph, x, y) for y in first) for x in first), squares)
 
     def pseudoinverse(x: Vector) -> Vector:
         return normal.solve([dot(graph, column, x) for column in first])

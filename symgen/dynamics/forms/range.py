@@ -10,7 +10,7 @@ because a force of B^T alone would then be in balance.  The form is valid at eve
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, unit, wedge_all
@@ -30,14 +30,16 @@ from symgen.ir.kernel import Status
 MOST_MINORS = 3
 
 
-def range_form(mechanics: Mechanics, generic: Genericity) -> Form | None:
+def range_form(
+    mechanics: Mechanics, generic: Genericity, steps: Callable[[Mechanics], Elimination] = Elimination
+) -> Form | None:
     """u by the range form, or None where it does not apply; `mechanics` may be in absolute angles.
 
-    Needs full actuation and independent constraints.
+    Needs full actuation and independent constraints.  `steps` makes the elimination.
     """
     if not generic.full_actuation or generic.rank < generic.r:
         return None
-    elimination = Elimination(mechanics)
+    elimination = steps(mechanics)
     elimination.reduce()
     names, rows = elimination.names, elimination.core
     internal = generic.m - generic.delta

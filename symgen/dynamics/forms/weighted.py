@@ -30,7 +30,14 @@ def weighted_form(system: System) -> Form | str:
     columns = [schur.project(column) for column in mechanics.inputs]
     forms = ActuationForms(RowForms(graph, (), mechanics.n, 0), columns, generic.alpha)
     u = forms.solve(schur.project(mechanics.balance))
-    rank = Guard(Status.ACTUATION_RANK, forms.denominator(), 1 if forms.single else 2)
+    # an oblique projection may lengthen a column or take it away
+    squares = [
+        dot(graph, projected, projected) + dot(graph, plain, plain)
+        for projected, plain in zip(columns, mechanics.inputs, strict=True)
+    ]
+    scale = graph.sum(graph.product(squares[k] for k in subset) for subset in forms.subsets)
+    denominator = forms.denominator()
+    rank = Guard(Status.ACTUATION_RANK, denominator * denominator if forms.single else denominator, 2, scale=scale)
     return form("weighted", "inverse_dynamics", u, (*whole.guards, *schur.guards, rank), system.given)
 
 
