@@ -8,7 +8,7 @@ CAMPAIGN := $(PAPER) double_pendulum slider_crank
 CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(wildcard models/*.yaml))
 
-.PHONY: run test generated mechanisms fuzz proof firmware bench stress skipping trig docs lock
+.PHONY: run test generated mechanisms fuzz proof firmware bench stress skipping trig docs lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -23,8 +23,9 @@ generated: $(VENV)/installed
 	$(BIN)/symgen models/*.yaml
 
 # Every mechanism given by bodies at more states than `make generated` takes, and the longer witnesses; minutes.
-mechanisms: $(VENV)/installed
-	$(BIN)/symgen $(MECHANISMS) --only python --states 32 --quiet --out build/mechanisms
+mechanisms: robots
+	$(BIN)/symgen $(MECHANISMS) $(wildcard tests/mechanisms/*.yaml) --only c,python --states 32 --quiet \
+	    --out build/mechanisms
 	$(BIN)/pytest tests/mechanisms -m "mechanisms or not mechanisms"
 
 # Run time against error of every model beside other tools: docs/bench, measured on this machine.
@@ -76,6 +77,13 @@ lock: $(VENV)/installed
 	printf 'editables\nhatchling\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	    --no-header --no-annotate --no-emit-index-url --no-emit-find-links --extra test \
 	    --output-file requirements.lock pyproject.toml -
+	printf 'pin\nexample-robot-data\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 \
+	    --python-platform x86_64-manylinux_2_28 --generate-hashes --constraint requirements.lock --no-header \
+	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/mechanisms/robots.lock -
+
+# Pinocchio and published robot descriptions, witnesses of the mechanisms: wheels for Linux and Python 3.11.
+robots: $(VENV)/installed
+	$(BIN)/pip install --quiet --require-hashes --requirement tests/mechanisms/robots.lock
 
 $(VENV)/locked: requirements.lock
 	$(PYTHON) -m venv $(VENV)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pytest
+import robot_packages
 
 from symgen.model.expression import Expression
 from symgen.model.mechanics import default_values
@@ -16,7 +16,7 @@ from symgen.model.mechanism import WORLD, Quaternion
 from symgen.model.model import Model
 from symgen.model.walk import evaluate
 
-pinocchio = pytest.importorskip("pinocchio", reason="Pinocchio is not installed (the extra `witness`)")
+pinocchio = robot_packages.pinocchio()
 
 
 class Tree:

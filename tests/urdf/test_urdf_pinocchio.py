@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from importlib import metadata
 from pathlib import Path
-from typing import Any
 
+import numpy
 import pytest
+import robot_packages
 from robots import ARM, HEAD, LIMIT, balance, joint, link, load, mass_matrix, robot, state_of
 
 from symgen.model.model import Model
 
-pinocchio: Any = pytest.importorskip("pinocchio", reason="Pinocchio (pip install symgen[robots]) is not installed")
-numpy: Any = pytest.importorskip("numpy")
+pinocchio = robot_packages.pinocchio()
 
 ROUND = '<origin xyz="0.1 0.2 -0.1" rpy="0.3 0.2 -0.4"/>'
 ODD = robot(
@@ -34,15 +33,6 @@ PUBLISHED = {
     "xarm7.urdf": "{file: robot.urdf, friction_width: 0.01}",
     "z1.urdf": "{file: robot.urdf, friction_width: 0.01}",
 }
-
-
-def published(name: str) -> Path:
-    """A robot description of the package example-robot-data."""
-    try:
-        files = metadata.files("example-robot-data") or []
-    except metadata.PackageNotFoundError:
-        pytest.skip("example-robot-data (pip install symgen[robots]) is not installed")
-    return Path(str(next(file.locate() for file in files if file.name == name)))
 
 
 def check_agreement(model: Model, path: Path, tolerance: float) -> None:
@@ -90,7 +80,7 @@ def test_robots_written_by_hand(text: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_published_robots(name: str, tmp_path: Path) -> None:
-    text = published(name).read_text(encoding="utf-8")
+    text = robot_packages.robot_description(name).read_text(encoding="utf-8")
     model = load(tmp_path, text, HEAD.replace("robot.urdf", PUBLISHED[name]))
     # their quarter turns have eight to twelve digits, which symgen reads as exact ones
     check_agreement(model, tmp_path / "robot.urdf", 1e-7)
