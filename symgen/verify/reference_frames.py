@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.model.expression import Expression, Number
-from symgen.model.mechanism import WORLD, Frame, Mechanism, Quaternion, Turn, Vector3, component
+from symgen.model.mechanism import WORLD, Body, Frame, Mechanism, Quaternion, Turn, Vector3, component
 from symgen.verify.reference_taylor import CONSTANT, Polynomial, Taylor
 
 Triple: TypeAlias = list[Polynomial]
@@ -19,14 +19,14 @@ Rows: TypeAlias = list[Triple]
 
 
 class Frames:
-    """Places as polynomials of degree 2 in the coordinates, rates as polynomials of degree 1 in both.
+    """Places as polynomials in the coordinates, rates to one degree less and linear in the rates.
 
-    `polynomial` translates an expression to degree 2 in the coordinates, in the arithmetic `algebra`.
+    `polynomial` translates an expression to polynomials of the coordinates in the arithmetic `algebra`.
     """
 
     def __init__(self, mechanism: Mechanism, algebra: Taylor, polynomial: Callable[[Expression], Polynomial]) -> None:
         self._algebra, self._polynomial = algebra, polynomial
-        self._moving = Taylor(algebra.tape, 1, 1)
+        self._moving = Taylor(algebra.tape, algebra.coordinates - 1, 1)
         self._mechanism = mechanism
         self._frames = {frame.name: frame for frame in mechanism.frames}
         self._points = {point.name: point for point in mechanism.points}
@@ -39,6 +39,15 @@ class Frames:
         self._turning: dict[str, Triple] = {WORLD: [{}, {}, {}]}
         for frame in mechanism.frames:
             self._enter(frame)
+
+    def center(self, body: Body) -> Triple:
+        """The centre of mass in world axes."""
+        com = self._apply(self._algebra, self._axes[body.frame], self._values(body.com))
+        return self._add(self._algebra, self._origins[body.frame], com)
+
+    def turning(self, body: Body) -> Triple:
+        """The turning rates of a body in its own axes."""
+        return self._turning[body.frame]
 
     def place(self, owner: str) -> Triple:
         """A point or the origin of a frame in world axes."""
@@ -82,8 +91,7 @@ class Frames:
         half: Polynomial = {CONSTANT: algebra.tape.constant(Fraction(1, 2))}
         terms: list[Polynomial] = []
         for body in self._mechanism.bodies:
-            com = self._apply(self._algebra, self._axes[body.frame], self._values(body.com))
-            place = self._add(self._algebra, self._origins[body.frame], com)
+            place = self.center(body)
             mass = self._polynomial(body.mass)
             if mass:
                 speeds = [settled(self.rate(x)) for x in place]
@@ -102,9 +110,8 @@ class Frames:
         gravity = self._values(self._mechanism.gravity)
         terms: list[Polynomial] = []
         for body in self._mechanism.bodies if any(gravity) else ():
-            com = self._apply(algebra, self._axes[body.frame], self._values(body.com))
-            place = self._add(algebra, self._origins[body.frame], com)
-            height = _sum(algebra, [algebra.multiply(g, x) for g, x in zip(gravity, place, strict=True) if g and x])
+            pairs = zip(gravity, self.center(body), strict=True)
+            height = _sum(algebra, [algebra.multiply(g, x) for g, x in pairs if g and x])
             terms.append(algebra.negate(algebra.multiply(self._polynomial(body.mass), height)))
         return _sum(algebra, terms)
 

@@ -69,6 +69,22 @@ class Evaluation:
         return self.system.points(self.q, self.parameters, self.literals)
 
     @cached_property
+    def gradients(self) -> tuple[Any, ...]:
+        """dG/dq, dB/dq and dM/dq."""
+        return self.system.gradients.at(self.q, self.parameters, self.literals)
+
+    def _along(self, what: str, velocity: Any) -> tuple[Any, ...]:
+        return self.system.gradients.along(what, self.gradients, velocity)
+
+    @_once_a_velocity
+    def motion(self, velocity: Any) -> tuple[Any, Any]:
+        """C v (n x 1) and B_dot v (r x 1) along a velocity v, without the matrices."""
+        motion = self.system.motion
+        if motion is None:
+            return self.coriolis(velocity) * velocity, self.constraints_dot(velocity) * velocity
+        return motion.along(self.q, velocity.entries(), self.parameters, self.literals, self.at.jacobian)
+
+    @cached_property
     def inverse(self) -> Any:
         """B+ (n x r)."""
         return right_pseudoinverse(self.at.constraints, self.ranks.constraints)
@@ -96,20 +112,20 @@ class Evaluation:
     @_once_a_velocity
     def coriolis(self, velocity: Any) -> Any:
         """Christoffel C (3) along a velocity."""
-        return arb_mat(self.system.n, self.system.n, self.system.along("coriolis", self.at, velocity))
+        return arb_mat(self.system.n, self.system.n, self._along("coriolis", velocity))
 
     def mass_dot(self, velocity: Any) -> Any:
         """d/dt G along a velocity."""
-        return arb_mat(self.system.n, self.system.n, self.system.along("mass", self.at, velocity))
+        return arb_mat(self.system.n, self.system.n, self._along("mass", velocity))
 
     @_once_a_velocity
     def constraints_dot(self, velocity: Any) -> Any:
         """d/dt B along a velocity."""
-        return arb_mat(self.system.r, self.system.n, self.system.along("constraints", self.at, velocity))
+        return arb_mat(self.system.r, self.system.n, self._along("constraints", velocity))
 
     def control_dot(self, velocity: Any) -> Any:
         """d/dt M along a velocity."""
-        return arb_mat(self.system.n, self.system.m, self.system.along("control", self.at, velocity))
+        return arb_mat(self.system.n, self.system.m, self._along("control", velocity))
 
     @_once_a_velocity
     def projector_dot(self, velocity: Any) -> Any:
@@ -129,7 +145,7 @@ class Evaluation:
     @cached_property
     def bias(self) -> Any:
         """C qd + Q - Q_a."""
-        return self.rate_coriolis * self.rate + self.at.potential_gradient - self.applied(self.rate)
+        return self.motion(self.rate)[0] + self.at.potential_gradient - self.applied(self.rate)
 
     @cached_property
     def load(self) -> Any:
@@ -167,7 +183,7 @@ class Evaluation:
     @cached_property
     def accelerations(self) -> Any:
         """qdd of the KKT system: a - Z (G a - f), a = -B+ Bdot qd, f = M u - C qd - Q + Q_a."""
-        particular = -(self.inverse * (self.constraints_dot(self.rate) * self.rate))
+        particular = -(self.inverse * self.motion(self.rate)[1])
         return particular - self.weighted * (self.at.mass * particular - self.force)
 
     @cached_property
@@ -234,6 +250,8 @@ def _minimal_coriolis_matrix(e: Evaluation) -> Any:
 
 def _admissible_acceleration(e: Evaluation) -> Any:
     velocity = e.projected_rate
+    if e.ranks.constraints == e.system.r:  # B+' v = 0, and N_dot v = -B+ B_dot v by Remark 9
+        return e.projector * column(e.qdd) - e.inverse * e.motion(velocity)[1]
     return e.projector * column(e.qdd) + e.projector_dot(velocity) * velocity
 
 
@@ -309,7 +327,7 @@ Definition = Callable[[Evaluation], Any]
 QUANTITIES: dict[str, Definition] = {
     "mass_matrix": lambda e: e.at.mass,
     "coriolis_matrix": lambda e: e.rate_coriolis,
-    "coriolis_force": lambda e: e.rate_coriolis * e.rate,
+    "coriolis_force": lambda e: e.motion(e.rate)[0],
     "potential_force": lambda e: e.at.potential_gradient,
     "applied_force": lambda e: e.applied(e.rate),
     "constraint_residual": lambda e: e.at.residual,
@@ -347,6 +365,16 @@ QUANTITIES: dict[str, Definition] = {
     "singularity": _singularity,
     "point_position": lambda e: e.points[0],
     "point_jacobian": lambda e: e.points[1],
+}
+
+# The others do with what a velocity adds to forces and accelerations.
+NEED_GRADIENTS = {
+    "coriolis_matrix",
+    "constraint_jacobian_dot",
+    "nullspace_projector_dot",
+    "projected_coriolis_matrix",
+    "minimal_coriolis_matrix",
+    "actuator_bias",
 }
 
 NEEDS_CONSTRAINTS = {

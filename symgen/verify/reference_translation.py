@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeAlias
 
 from flint import arb
 
@@ -15,6 +15,8 @@ from symgen.model.mechanism import Mechanism, Quaternion, is_component
 from symgen.model.model import Model
 from symgen.verify.reference_tape import Register, ball
 from symgen.verify.reference_taylor import CONSTANT, Polynomial, Taylor
+
+Moving: TypeAlias = Callable[[int], tuple[Polynomial, Polynomial]]
 
 
 def literals_of(model: Model) -> tuple[Number | Pi, ...]:
@@ -81,6 +83,47 @@ class Translation:
         """pi of a parameter's default value, as 4 atan(1)."""
         tape = self.algebra.tape
         return tape.scaled(Fraction(4), tape.unary("atan", tape.one))
+
+
+def translation(
+    model: Model,
+    literals: Sequence[Number | Pi],
+    algebra: Taylor,
+    moving: Moving,
+    component: Callable[[str], Polynomial],
+) -> Translation:
+    """The model's names on the inputs of a replay: coordinates, rates, parameters, literals, in this order.
+
+    `moving` gives the polynomials of the j-th coordinate and of its rate; an empty one for a rate that must not occur.
+    """
+    tape, n = algebra.tape, model.n
+    names: dict[str, Polynomial] = {}
+    for j, coordinate in enumerate(model.coordinates):
+        place, rate = moving(j)
+        names[coordinate.name] = place
+        if rate:
+            names[coordinate.rate] = rate
+    for j, parameter in enumerate(model.parameters):
+        names[parameter.name] = {CONSTANT: tape.input(2 * n + j)}
+    first = 2 * n + len(model.parameters)
+    known = {id(literal): tape.input(first + j) for j, literal in enumerate(literals)}
+    definitions = {definition.name: definition.value for definition in model.definitions}
+    return Translation(algebra, names, definitions, known, component)
+
+
+def uses_components(model: Model, expression: Expression) -> bool:
+    """Whether points or frames occur in an expression or in the definitions it uses."""
+    definitions = {definition.name: definition.value for definition in model.definitions}
+    pending, seen = [expression], set[str]()
+    while pending:
+        for node in _walk(pending.pop()):
+            if isinstance(node, Name) and node.name not in seen:
+                seen.add(node.name)
+                if node.name in definitions:
+                    pending.append(definitions[node.name])
+                elif is_component(node.name):
+                    return True
+    return False
 
 
 def _formulas(model: Model) -> Iterator[Expression]:

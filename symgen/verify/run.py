@@ -99,7 +99,7 @@ def _verified(
     names = tuple(kernel.name for kernel in kernels)
     progress("verifying: looking for states")
     reference = Reference(model)
-    count = states if states > USUAL_STATES else affordable_states(reference, states)
+    count = states if states > USUAL_STATES else affordable_states(reference, names, states)
     doubles = sample_states(reference, names, count)
     samples: dict[Scalar, tuple[Sample, ...]] = {scalar: _rounded(doubles, scalar) for scalar in compilations}
     if python_source is not None:

@@ -12,6 +12,7 @@ from typing import Any
 from symgen.ir.kernel import Scalar
 from symgen.verify.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference_manifold import onto_manifold, starts
+from symgen.verify.reference_quantities import NEED_GRADIENTS
 from symgen.verify.reference_system import parameters_from
 from symgen.verify.reference_tape import ball, precision
 
@@ -37,11 +38,11 @@ class Sample:
     measures: tuple[float, float]
 
 
-def affordable_states(reference: Reference, wanted: int) -> int:
+def affordable_states(reference: Reference, quantities: Sequence[str], wanted: int) -> int:
     """How many of `wanted` states fit in 20 s, by a count of operations (never by a clock), but 8 at least."""
     system, ranks = reference.system, reference.ranks
     subsets = comb(system.r, ranks.constraints)
-    operations = system.operations + 40 * system.n**3 * subsets
+    operations = system.operations(gradients=not NEED_GRADIENTS.isdisjoint(quantities)) + 40 * system.n**3 * subsets
     seconds_per_state = 18 * 1.3e-7 * operations
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
 

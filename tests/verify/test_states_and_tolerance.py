@@ -85,11 +85,11 @@ def test_too_few_states_are_an_error() -> None:
 
 
 def test_affordable_states_shrink_with_the_model_only() -> None:
-    assert affordable_states(Reference(slider_crank()), 64) == 64
-    assert affordable_states(Reference(slider_crank()), 1000) == 1000
+    assert affordable_states(Reference(slider_crank()), ["mass_matrix"], 64) == 64
+    assert affordable_states(Reference(slider_crank()), ["mass_matrix"], 1000) == 1000
     names = [f"x_{i}" for i in range(30)]
     long_chain = build("chain", " ".join(names), " + ".join(f"{n}_dot**2" for n in names))
-    assert 8 <= affordable_states(Reference(long_chain), 64) < 64
+    assert 8 <= affordable_states(Reference(long_chain), ["mass_matrix"], 64) < 64
 
 
 def test_error_unit_follows_condition_inputs_parameters_and_literals() -> None:
