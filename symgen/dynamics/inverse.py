@@ -30,6 +30,7 @@ from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.transplant import transplanted
+from symgen.graph.traverse import cost
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -84,7 +85,15 @@ class InverseDynamics:
     @cached_property
     def minor(self) -> Derivation | str:
         """The derivation along minors, which also tells where ranks drop."""
-        return minor_derivation(System.fresh(self._model, self._generic))
+        return minor_derivation(System.fresh(self._model, self._generic, self._lumped))
+
+    @cached_property
+    def _lumped(self) -> bool:
+        """Whether the motion equations of the bodies are shorter with their parameters regrouped."""
+        if not self._model.mechanism.has_mass:
+            return False
+        apart, together = (cost(Mechanics(self._model, lumped=lumped).balance).weight for lumped in (False, True))
+        return together < apart
 
     def offer(self, name: str) -> Offer | str:
         """A form by name, or why this system does not have it."""
@@ -93,7 +102,7 @@ class InverseDynamics:
             if isinstance(derivation, Derivation):
                 system = System(derivation.mechanics, self._generic)
             else:
-                system = System.fresh(self._model, self._generic)
+                system = System.fresh(self._model, self._generic, self._lumped)
             made = _BUILDERS[name](self, system)
             self._offers[name] = made if isinstance(made, str) else Offer(name, system, made)
         return self._offers[name]
@@ -246,7 +255,7 @@ def _range(_: InverseDynamics, system: System) -> Form | str:
         return system.driven
     mechanics = system.mechanics
     change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
-    seen = mechanics if change.is_identity else Mechanics(mechanics.model, mechanics, change)
+    seen = mechanics if change.is_identity else Mechanics(mechanics.model, mechanics, change, mechanics.lumped)
     made = range_form(seen, system.generic)
     return "its steps leave more than a few rows, or M does not select rows" if made is None else made
 

@@ -26,10 +26,18 @@ class Mechanics:
     """A model's energies, forces and constraint rows as scalars of one graph.
 
     `change` describes the system in other coordinates on the graph of `base`; q, qd and qdd are then those.
+    `lumped` regroups the parameters of bodies (`newton_euler`).
     """
 
-    def __init__(self, model: Model, base: Mechanics | None = None, change: AbsoluteAngles | None = None) -> None:
+    def __init__(
+        self,
+        model: Model,
+        base: Mechanics | None = None,
+        change: AbsoluteAngles | None = None,
+        lumped: bool = False,
+    ) -> None:
         self.model = model
+        self.lumped = lumped
         graph = Graph() if base is None else base.graph
         self.graph: Graph = graph
         self.change = change
@@ -201,7 +209,7 @@ class Mechanics:
     def _inertial_force_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
         """The same without the energies of the bodies, whose differentiation would undo the recursion."""
         graph = self.graph
-        force = newton_euler(self.bodies, self.qd, acceleration, gravity)
+        force = newton_euler(self.bodies, self.qd, acceleration, gravity, self.lumped)
         if self._written_energy.is_zero:
             return force
         motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))

@@ -3,18 +3,22 @@
 Outwards: angular velocity, angular acceleration and acceleration of each origin.  Inwards: the force and moment every
 frame passes to its parent.  A frame's coordinates get the power of that wrench on their own relative motion; no energy
 is formed or differentiated (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 5.3; Luh, Walker, Paul 1980).
+
+Lumped, the bodies of a frame are one, given by mass, first moment and inertia about the frame's origin; the mass of a
+frame that turns about a point of its parent is put there as a point mass, and a rotor on a fixed axis is part of what it
+turns (base parameters: Khalil and Dombre, Modeling, Identification and Control of Robots, 2002, ch. 9).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from symgen.dynamics.bodies import Bodies, Vector3
 from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Scalar
-from symgen.model.mechanism import WORLD, Body
+from symgen.model.mechanism import WORLD, Body, RotorInertia
 from symgen.model.triples import applied, plus, transposed
 
 
@@ -35,12 +39,22 @@ class Wrench:
     moment: Vector3
 
 
-def newton_euler(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> Vector:
+@dataclass(frozen=True)
+class Lump:
+    """Mass, first moment and inertia tensor about a frame's origin, in its axes."""
+
+    mass: Scalar
+    first: Vector3
+    tensor: tuple[Vector3, Vector3, Vector3]
+
+
+def newton_euler(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3, lumped: bool = False) -> Vector:
     """d/dt dT/dq_dot - dT/dq + dU/dq of all bodies and rotors for the accelerations `qdd`.
 
     `qd` is the symbols of the rates, or zeros for a mechanism at rest; `gravity` may be zero to leave out weights.
+    `lumped` tells whether parameters are regrouped first: cheaper where frames share parameters.
     """
-    return _Recursion(bodies, qd, qdd, gravity).forces()
+    return _Recursion(bodies, qd, qdd, gravity).forces(lumped)
 
 
 class _Recursion:
@@ -55,16 +69,21 @@ class _Recursion:
         self.none: Vector3 = (zero, zero, zero)
         self.motions = {WORLD: Motion(self.none, self.none, _negative(gravity))}
 
-    def forces(self) -> Vector:
+    def forces(self, lumped: bool) -> Vector:
         """One generalized force for each coordinate."""
         loaded = self._loaded()
         frames = [frame for frame in self.bodies.mechanism.frames if frame.name in loaded]
         for frame in frames:
             self.motions[frame.name] = self._motion(frame.name)
         wrenches = {frame.name: Wrench(self.none, self.none) for frame in frames}
-        for body in self.bodies.mechanism.bodies:
-            if body.frame != WORLD:
-                wrenches[body.frame] = _sum(wrenches[body.frame], self._inertial(body))
+        rotors = list(self.bodies.mechanism.rotor_inertias)
+        if lumped:
+            lumps, rotors = self._lumps([frame.name for frame in frames])
+            wrenches = {name: self._inertial_about_origin(name, lump) for name, lump in lumps.items()}
+        else:
+            for body in self.bodies.mechanism.bodies:
+                if body.frame != WORLD:
+                    wrenches[body.frame] = _sum(wrenches[body.frame], self._inertial(body))
         totals = [self.graph.zero] * len(self.bodies.q)
         for frame in reversed(frames):
             wrench, joint = wrenches[frame.name], self.kinematics.joint(frame.name)
@@ -74,7 +93,7 @@ class _Recursion:
             if frame.parent != WORLD:
                 moment = plus(applied(joint.axes, wrench.moment), self._cross(joint.place, carried))
                 wrenches[frame.parent] = _sum(wrenches[frame.parent], Wrench(carried, moment))
-        for rotor in self.bodies.mechanism.rotor_inertias:
+        for rotor in rotors:
             rate = self.bodies.names[f"{rotor.coordinate}_dot"]
             acceleration = derivative_along(self.graph, [rate], self.direction)[0]
             torque = self.bodies.scalars.value(rotor.inertia) * acceleration
@@ -121,6 +140,65 @@ class _Recursion:
         force = (mass * place[0], mass * place[1], mass * place[2])
         return Wrench(force, plus(moment, self._cross(com, force)))
 
+    def _inertial_about_origin(self, name: str, lump: Lump) -> Wrench:
+        """m a + w' x h + w x (w x h) and its moment, I w' + w x I w + h x a."""
+        motion = self.motions[name]
+        force = self._cross(motion.acceleration, lump.first)
+        moment = applied(lump.tensor, motion.acceleration)
+        if not self.at_rest:
+            force = plus(force, self._cross(motion.velocity, self._cross(motion.velocity, lump.first)))
+            moment = plus(moment, self._cross(motion.velocity, applied(lump.tensor, motion.velocity)))
+        x, y, z = (lump.mass * a for a in motion.linear)
+        return Wrench(plus(force, (x, y, z)), plus(moment, self._cross(lump.first, motion.linear)))
+
+    def _lumps(self, frames: Sequence[str]) -> tuple[dict[str, Lump], list[RotorInertia]]:
+        """What each frame carries, and the rotors that are not part of it."""
+        zero, space = self.graph.zero, self.kinematics.space
+        lumps = {name: Lump(zero, self.none, (self.none, self.none, self.none)) for name in frames}
+        for body in self.bodies.mechanism.bodies:
+            if body.frame != WORLD:
+                mass, com = self.bodies.scalars.value(body.mass), space.values(body.com)
+                about_centre = _with_tensor(lumps[body.frame], self.bodies.inertia(body.name))
+                lumps[body.frame] = _with_point(about_centre, mass, com)
+        for name in reversed(frames):
+            joint, parent = self.kinematics.joint(name), self.kinematics.frames[name].parent
+            if parent != WORLD and all(rate.is_zero for rate in joint.place_rate):
+                lumps[parent] = _with_point(lumps[parent], lumps[name].mass, joint.place)
+                lumps[name] = replace(lumps[name], mass=zero)
+        rotors = []
+        for rotor in self.bodies.mechanism.rotor_inertias:
+            held = self._turned_alone_by(rotor.coordinate, frames)
+            if held is None:
+                rotors.append(rotor)
+            else:
+                name, axis = held
+                inertia = self.bodies.scalars.value(rotor.inertia)
+                rows = [tuple(inertia if i == j == axis else zero for j in range(3)) for i in range(3)]
+                lumps[name] = _with_tensor(lumps[name], (_triple(rows[0]), _triple(rows[1]), _triple(rows[2])))
+        return lumps, rotors
+
+    def _turned_alone_by(self, coordinate: str, frames: Sequence[str]) -> tuple[str, int] | None:
+        """The frame, and its main axis, that turns by this coordinate alone about a fixed place of the world."""
+        rate = self.bodies.names[f"{coordinate}_dot"]
+        for name in frames:
+            joint = self.kinematics.joint(name)
+            turning = [k for k, x in enumerate(joint.turning) if not x.is_zero]
+            if self.kinematics.frames[name].parent not in self._still(frames) or len(turning) != 1:
+                continue
+            if joint.turning[turning[0]] is rate and all(x.is_zero for x in joint.place_rate):
+                return name, turning[0]
+        return None
+
+    def _still(self, frames: Sequence[str]) -> set[str]:
+        """The world, and the frames that do not move."""
+        still = {WORLD}
+        for name in frames:
+            joint = self.kinematics.joint(name)
+            fixed = all(x.is_zero for x in (*joint.turning, *joint.place_rate))
+            if fixed and self.kinematics.frames[name].parent in still:
+                still.add(name)
+        return still
+
     def _rates(self, rates: Vector3) -> Vector3:
         x, y, z = derivative_along(self.graph, rates, self.direction)
         return x, y, z
@@ -138,6 +216,25 @@ class _Recursion:
         if a is self.none or b is self.none:
             return self.none
         return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _with_point(lump: Lump, mass: Scalar, at: Vector3) -> Lump:
+    """With a point mass: m (|c|^2 1 - c c^T) about the origin."""
+    x, y, z = at
+    mx, my, mz = first = (mass * x, mass * y, mass * z)
+    xx, yy, zz, xy, xz, yz = mx * x, my * y, mz * z, mx * y, mx * z, my * z
+    rows = ((yy + zz, -xy, -xz), (-xy, xx + zz, -yz), (-xz, -yz, xx + yy))
+    return _with_tensor(Lump(lump.mass + mass, plus(lump.first, first), lump.tensor), rows)
+
+
+def _with_tensor(lump: Lump, tensor: tuple[Vector3, Vector3, Vector3]) -> Lump:
+    x, y, z = (plus(a, b) for a, b in zip(lump.tensor, tensor, strict=True))
+    return replace(lump, tensor=(x, y, z))
+
+
+def _triple(row: Sequence[Scalar]) -> Vector3:
+    x, y, z = row
+    return x, y, z
 
 
 def _negative(vector: Vector3) -> Vector3:

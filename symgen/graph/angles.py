@@ -1,15 +1,17 @@
 """Which sines and cosines are evaluated, and which follow from others by the addition theorem.
 
 Each distinct angle costs a sine/cosine pair; the sum or difference of two angles whose pairs exist anyway costs three
-or six products and sums.
+or six products and sums, and so does an angle that another one is turned into by 30, 45, 60 or 90 degrees.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
-from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.scalar import PI, Graph, Scalar
 from symgen.graph.traverse import reached, topological
+from symgen.model.fixed_angles import sine_of_steps
 
 BASE, MODULUS = 0x9E3779B97F4A7C15, 2**61 - 1
 
@@ -26,6 +28,11 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Sc
     image: dict[Scalar, Scalar] = {}
     for angle in needed:
         form = graph.angle_form(angle)
+        turned = kept.as_turned(graph, form)
+        if turned is not None:
+            _turn(graph, image, angle, *turned)
+            kept.add(angle, form)
+            continue
         parts = kept.as_sum(form)
         kept.add(angle, form)
         if parts is None:
@@ -64,6 +71,7 @@ class _Kept:
         self._angles: list[tuple[Scalar, dict[Scalar, int], int]] = []
         self._by_form: dict[tuple[tuple[int, int], ...], Scalar] = {}
         self._sums: set[int] = set()
+        self._by_rest: dict[tuple[tuple[int, int], ...], tuple[Scalar, Fraction]] = {}
 
     def add(self, angle: Scalar, form: dict[Scalar, int]) -> None:
         """One more angle."""
@@ -71,6 +79,18 @@ class _Kept:
         self._angles.append((angle, form, known))
         self._by_form[_key(form)] = angle
         self._sums.add(known)
+        shift, rest = _split(form)
+        self._by_rest.setdefault(_key(rest), (angle, shift))
+
+    def as_turned(self, graph: Graph, form: dict[Scalar, int]) -> tuple[Scalar, int, Scalar, Scalar] | None:
+        """A kept angle, its sign, and sine and cosine of the fixed angle that is added to make the form."""
+        shift, rest = _split(form)
+        for sign in (1, -1):
+            found = self._by_rest.get(_key({leaf: sign * count for leaf, count in rest.items()}))
+            pair = None if found is None else _fixed_pair(graph, shift - sign * found[1])
+            if found is not None and pair is not None:
+                return found[0], sign, *pair
+        return None
 
     def as_sum(self, form: dict[Scalar, int]) -> tuple[tuple[Scalar, int], tuple[Scalar, int]] | None:
         """The first two angles, each with a sign, whose sum is the form."""
@@ -86,6 +106,54 @@ class _Kept:
                     if key in self._by_form:
                         return (angle, sign), (self._by_form[key], rest_sign)
         return None
+
+
+def _split(form: dict[Scalar, int]) -> tuple[Fraction, dict[Scalar, int]]:
+    """The fixed part of an angle, and the rest of its form."""
+    shift = sum((leaf.constant * count for leaf, count in form.items() if leaf.constant is not None), Fraction(0))
+    return shift, {leaf: count for leaf, count in form.items() if leaf.constant is None}
+
+
+def _fixed_pair(graph: Graph, angle: Fraction) -> tuple[Scalar, Scalar] | None:
+    """Sine and cosine of a fixed angle by one square root at most, or None."""
+    steps = angle * 12 / PI
+    if steps.denominator != 1:
+        return None
+    found = [sine_of_steps(int(steps) + quarter) for quarter in (0, 6)]
+    values = [None if s is None else graph.const(s[0]) * graph.function("sqrt", (graph.const(s[1]),)) for s in found]
+    sine, cosine = values
+    return None if sine is None or cosine is None else (sine, cosine)
+
+
+def _turn(
+    graph: Graph, image: dict[Scalar, Scalar], angle: Scalar, kept: Scalar, sign: int, sine: Scalar, cosine: Scalar
+) -> None:
+    """The pair of sign * kept + a fixed angle, from the pair of the kept one."""
+    known_sine, known_cosine = _value(graph, image, "sin", kept), _value(graph, image, "cos", kept)
+    if sign < 0:
+        known_sine = graph.neg(known_sine)
+    sines = graph.trig("sin", angle), graph.trig("cos", angle)
+    image[sines[0]] = _raw_sum(graph, known_sine, cosine, known_cosine, sine)
+    image[sines[1]] = _raw_sum(graph, known_cosine, cosine, graph.neg(known_sine), sine)
+
+
+def _raw_sum(graph: Graph, a: Scalar, x: Scalar, b: Scalar, y: Scalar) -> Scalar:
+    """a x + b y as it stands: the constructors would find the angle again."""
+    total = graph.zero
+    for value, factor in ((a, x), (b, y)):
+        negative = (value.op == "neg") != (factor.op == "neg" or (factor.constant is not None and factor.constant < 0))
+        value = value.args[0] if value.op == "neg" else value
+        factor = factor if not (factor.op == "neg" or (factor.constant or 0) < 0) else graph.neg(factor)
+        if factor.is_zero:
+            continue
+        term = value if factor.is_one else graph.raw("mul", (value, factor))
+        if total.is_zero:
+            total = graph.raw("neg", (term,)) if negative else term
+        elif total.op == "neg" and not negative:
+            total = graph.raw("sub", (term, total.args[0]))
+        else:
+            total = graph.raw("sub" if negative else "add", (total, term))
+    return total
 
 
 def _linear(form: dict[Scalar, int]) -> int:

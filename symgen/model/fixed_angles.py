@@ -24,12 +24,12 @@ def exact_sine_and_cosine(angle: Expression) -> tuple[tuple[Fraction, int], tupl
     steps = parts[1] * 12
     if steps.denominator != 1:
         return None
-    sine, cosine = _sine(int(steps)), _sine(int(steps) + 6)
+    sine, cosine = sine_of_steps(int(steps)), sine_of_steps(int(steps) + 6)
     return None if sine is None or cosine is None else (sine, cosine)
 
 
-def _sine(steps: int) -> tuple[Fraction, int] | None:
-    """The sine of steps * 15 degrees."""
+def sine_of_steps(steps: int) -> tuple[Fraction, int] | None:
+    """The sine of steps * 15 degrees as (factor, number under the root), or None."""
     steps %= 24
     sign = 1 if steps < 12 else -1
     steps %= 12

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.content import divided, usual_number
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Graph, Scalar
 
@@ -41,7 +42,10 @@ class Elimination:
         self._mechanics = mechanics
         self._graph: Graph = mechanics.graph
         rows, force = mechanics.constraint_jacobian, mechanics.balance
-        columns = [*rows, *mechanics.inputs]
+        # u does not feel the lengths of the rows of B: the numbers that their terms have are left out
+        numbers = [usual_number(x for x in row if not x.is_zero) for row in rows]
+        primitive = [tuple(divided(self._graph, x, k) for x in row) for row, k in zip(rows, numbers, strict=True)]
+        columns = [*primitive, *mechanics.inputs]
         self.inputs = range(len(rows), len(columns))
         self.core = [
             Row({j: column[i] for j, column in enumerate(columns) if not column[i].is_zero}, force[i])

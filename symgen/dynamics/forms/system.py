@@ -24,9 +24,9 @@ class System:
     generic: Genericity
 
     @classmethod
-    def fresh(cls, model: Model, generic: Genericity) -> System:
-        """The system on a new graph."""
-        return cls(Mechanics(model), generic)
+    def fresh(cls, model: Model, generic: Genericity, lumped: bool = False) -> System:
+        """The system on a new graph; `lumped` regroups the parameters of bodies."""
+        return cls(Mechanics(model, lumped=lumped), generic)
 
     @cached_property
     def definite(self) -> Definite:
