@@ -41,14 +41,17 @@ def cheapest(
 ) -> Motion:
     """The candidate that counts least, outputs and tested denominators together.
 
-    `nullspace` is for systems in which G is definite along the constraints only: it is normwise accurate in units in
-    which B is, where `schur_qr` measures by G.
+    `nullspace` is normwise accurate in the units that B is given in.  For q_ddot that is as good as anything where the
+    coordinates have one unit, and masses that differ a lot cost nothing; else, and for lambda, it is left for systems in
+    which G is definite along the constraints only.
     """
+    coordinates = mechanics.model.coordinates
+    even = part == "accelerations" and len({(c.unit, c.is_angle) for c in coordinates}) == 1
     weights = {
         name: cost((*getattr(one, part), *(guard.denominator for guard in one.guards))).weight
         for name, one in motions.items()
     }
-    order = sorted(motions, key=lambda name: (name == "nullspace", weights[name]))
+    order = sorted(motions, key=lambda name: (name == "nullspace" and not even, weights[name]))
     usable = (name for name in order if name != "schur_qr" or len(order) == 1 or positive_definite(mechanics))
     return motions[next(usable)]
 
