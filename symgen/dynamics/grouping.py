@@ -10,19 +10,38 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from symgen.dynamics.common_factors import with_common_factors
 from symgen.dynamics.factoring import Factoring
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost, topological
 
 
 def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
-    """The outputs with their products regrouped, each step taken where it saves operations."""
-    best = list(outputs)
-    for step in (_with_common_factors, _with_numbers_moved, _with_parameters_joined, _with_quotients):
-        found = step(graph, factoring, best)
-        if cost(found).weight < cost(best).weight:
-            best = found
-    return best
+    """The outputs with their products regrouped, each step taken where it saves operations.
+
+    What is taken out of sums decides what later steps find, so that more than one beginning is tried.
+    """
+    start = _unified(graph, outputs)
+    found = []
+    for beginning in ((_with_common_factors,), (_with_collected_factors,)):
+        best = start
+        for step in (*beginning, _with_numbers_moved, _with_parameters_joined, _with_quotients):
+            changed = _unified(graph, step(graph, factoring, best))
+            if cost(changed).weight < cost(best).weight:
+                best = changed
+        found.append(best)
+    return min(found, key=lambda outputs: cost(outputs).weight)
+
+
+def _unified(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """The outputs with one node for each operation: steps past the constructors, and other graphs, leave twins."""
+    image: dict[Scalar, Scalar] = {}
+    first: dict[tuple[str, tuple[Scalar, ...], object], Scalar] = {}
+    for node in topological(outputs):
+        args = tuple(image[argument] for argument in node.args)
+        same = _as_it_stands(graph, node, args)
+        image[node] = first.setdefault((same.op, same.args, same.payload), same)
+    return [image[output] for output in outputs]
 
 
 def _with_common_factors(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
@@ -43,6 +62,11 @@ def _with_common_factors(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) 
             factor = graph.product(image[f] for f in common)
             image[node] = graph.raw("mul", (factor, graph.raw(node.op, rest)))
     return [image[output] for output in outputs]
+
+
+def _with_collected_factors(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """x + f a + f b as x + f (a + b) where nothing else needs the products."""
+    return with_common_factors(graph, outputs)
 
 
 def _with_numbers_moved(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:

@@ -194,9 +194,13 @@ def _form_along(derivation: Derivation | None, quantity: str) -> str:
 
 def _with_groups(mechanics: Mechanics, derived: Derived) -> Derived:
     """The quantity with numbers multiplied into groups of parameters, where that saves operations."""
-    found = grouped_scalars(mechanics.graph, mechanics.factoring, scalars(derived))
-    outputs, denominators = found[: len(derived.outputs)], found[len(derived.outputs) :]
+    # with the scales of denominators, so that they go on sharing what they have in common with results
+    scales = [guard.scale for guard in derived.guards if guard.scale is not None]
+    found = iter(grouped_scalars(mechanics.graph, mechanics.factoring, [*scalars(derived), *scales]))
+    outputs = tuple(next(found) for _ in derived.outputs)
+    denominators = [next(found) for _ in derived.guards]
     guards = tuple(
-        replace(guard, denominator=denominator) for guard, denominator in zip(derived.guards, denominators, strict=True)
+        replace(guard, denominator=denominator, scale=None if guard.scale is None else next(found))
+        for guard, denominator in zip(derived.guards, denominators, strict=True)
     )
-    return replace(derived, outputs=tuple(outputs), guards=guards)
+    return replace(derived, outputs=outputs, guards=guards)

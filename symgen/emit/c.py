@@ -16,6 +16,14 @@ from symgen.emit.quantities import meaning
 from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.emit.statements import CStatements
+from symgen.emit.surroundings import (
+    LibraryPair,
+    both_name,
+    library_pair,
+    rare_macro,
+    rare_name,
+    surrounding_names,
+)
 from symgen.ir.kernel import Kernel, Load, Local, Operand, Program, Statement, Status
 from symgen.model.model import Model
 from symgen.naming import file_stem
@@ -58,6 +66,8 @@ class CView:
     members: tuple[MemberView, ...]
     functions: tuple[FunctionView, ...]
     pairs: PairsView | None
+    both: LibraryPair | None
+    rare: str
     includes_math: bool
 
 
@@ -88,7 +98,8 @@ def c_names(model: Model, program: Program) -> Names:
 def _own_names(model: Model, program: Program) -> set[str]:
     prefix, suffix = model.name, SUFFIX[program.scalar]
     stem = file_stem(model.name) + suffix
-    own = {f"{prefix}_{name}{suffix}" for name in ("params", "default_params")} | pair_names(prefix, suffix)
+    own = {f"{prefix}_{name}{suffix}" for name in ("params", "default_params")}
+    own |= pair_names(prefix, suffix) | surrounding_names(prefix, suffix)
     own |= {f"{prefix}_status", f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"}
     own |= {status_name(model, status) for status in Status}
     own |= {f"{prefix}_{kernel.name}{suffix}" for kernel in program.kernels}
@@ -116,6 +127,8 @@ def _view(model: Model, program: Program) -> CView:
         members=_members(model, program, names),
         functions=functions,
         pairs=pairs_view(prefix, suffix, program),
+        both=library_pair(prefix, program),
+        rare=rare_macro(prefix, program),
         includes_math=uses_library(program),
     )
 
@@ -164,9 +177,13 @@ def _kernel(model: Model, program: Program, kernel: Kernel, names: Names, parame
 def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) -> tuple[str, ...]:
     """The lines of a function of one state; the parameters, or what stands for them, are the members of `*p`."""
     used = used_locals(kernel)
-    sincos = None if program.sincos is None else f"{model.name}_sincos{SUFFIX[program.scalar]}"
+    suffix = SUFFIX[program.scalar]
+    sincos = None if program.sincos is None else f"{model.name}_sincos{suffix}"
     group = () if sincos is None else leading_group(kernel)
-    printer = CStatements(program.scalar, names.locals, used, sincos, lambda status: status_name(model, status))
+    both, rare = both_name(model.name, suffix), rare_name(model.name, suffix)
+    printer = CStatements(
+        program.scalar, names.locals, used, sincos, lambda status: status_name(model, status), both, rare
+    )
     loads = [load for load in kernel.loads if load.local in used]
     loaded = {load.argument for load in loads}
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
@@ -185,7 +202,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
                 if statement is group[0]:
                     lines += due(operand for pair in group for operand in pair.operands)
                     angles = [printer.operand(pair.operands[0]) for pair in group]
-                    lines += group_lines(program.scalar, f"{model.name}_sincos_group{SUFFIX[program.scalar]}", angles)
+                    lines += group_lines(program.scalar, f"{model.name}_sincos_group{suffix}", angles)
                     waiting |= _read_back(group, scalar, names)
                 continue
             if statement.operation == "sincos":
@@ -195,7 +212,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
         for check in block.checks:
             lines += [*due(check_operands(check)), *printer.check(check)]
     lines += due(kernel.outputs)
-    lines += _finite_test(model, program, kernel, names)
+    lines += _finite_test(model, program, kernel, names, rare)
     lines += [
         f"{output}[{index}] = {printer.operand(operand).strip('()')};" for index, operand in enumerate(kernel.outputs)
     ]
@@ -210,18 +227,28 @@ def _place(load: Load, names: Names) -> str:
     return f"sc->{load.member}" if load.argument == "sc" else f"{load.argument}[{load.index}]"
 
 
-def _finite_test(model: Model, program: Program, kernel: Kernel, names: Names) -> list[str]:
-    """x - x is 0 for finite x and NaN otherwise; one test decides for all outputs."""
+def _finite_test(model: Model, program: Program, kernel: Kernel, names: Names, rare: str) -> list[str]:
+    """The test that decides for all outputs."""
     results = [names.locals[o.name] for o in dict.fromkeys(kernel.outputs) if isinstance(o, Local)]
     if not results:
         return []
+    first, *others = rests(results)
     return [
-        f"{C_TYPE[program.scalar]} rest = {results[0]} - {results[0]};",
-        *(f"rest += {name} - {name};" for name in results[1:]),
-        "if (isnan(rest) != 0) {",
+        f"{C_TYPE[program.scalar]} rest = {first};",
+        *(f"rest += {other};" for other in others),
+        f"if ({rare}(isnan(rest) != 0)) {{",
         f"    return {status_name(model, Status.NOT_FINITE)};",
         "}",
     ]
+
+
+def rests(results: Sequence[str]) -> list[str]:
+    """Terms that are 0 for finite results, and one of them NaN otherwise: x - x and its product with others.
+
+    Three results a term, so that intervals of the terms stay finite too, which tools that know no correlation need.
+    """
+    groups = [results[start : start + 3] for start in range(0, len(results), 3)]
+    return [" * ".join((f"({x} - {x})" if others else f"{x} - {x}", *others)) for x, *others in groups]
 
 
 def _read_back(group: Sequence[Statement], scalar: str, names: Names) -> dict[str, str]:

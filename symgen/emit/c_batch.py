@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from symgen.emit.c import c_members, status_name
+from symgen.emit.c import c_members, rests, status_name
 from symgen.emit.comments import c_comment_lines
 from symgen.emit.locals import Names, all_statements, array_arguments, names_of
 from symgen.emit.pairs import pair_body
@@ -187,8 +187,7 @@ class _Lanes:
         plain = self.plain
         zero, one = ("0.0", "1.0") if plain.scalar == "float64" else ("0.0f", "1.0f")
         results = [plain.names[o.name] for o in dict.fromkeys(outputs) if isinstance(o, Local)]
-        # x - x is 0 for finite x and NaN otherwise
-        rest = " + ".join(f"({y} - {y})" for y in results) or zero
+        rest = " + ".join(rests(results)) or zero
         lines = [f"{C_TYPE[plain.scalar]} rest = {rest};"]
         for check in checks:
             relation = ">=" if check.inclusive else ">"

@@ -13,6 +13,7 @@ from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.emit.statements import CStatements
+from symgen.emit.surroundings import LibraryPair, library_pair, rare_macro, surrounding_names
 from symgen.ir.kernel import Block, Kernel, Program, Status
 from symgen.ir.prepare import Prepared, prepare
 from symgen.model.model import Model
@@ -43,6 +44,8 @@ class PreparedView:
     prepare_body: tuple[str, ...]
     functions: tuple[PreparedFunctionView, ...]
     pairs: PairsView | None
+    both: LibraryPair | None
+    rare: str
     includes_math: bool
 
 
@@ -62,6 +65,7 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
         pairs = replace(pairs, single=f"{model.name}_sincos{suffix}")
     names = _names(model, program, whole, prepared, suffix)
     struct = f"{model.name}_prepared{suffix}"
+    stated = replace(program, kernels=prepared.kernels)
     view = PreparedView(
         stem=stem,
         guard=f"{stem.upper()}_H",
@@ -73,6 +77,8 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
         prepare_body=_prepare_body(model, program, prepared, names, suffix),
         functions=tuple(_function(model, program, kernel, names, struct, suffix) for kernel in prepared.kernels),
         pairs=pairs,
+        both=library_pair(model.name, stated),
+        rare=rare_macro(model.name, stated),
         includes_math=uses_library(whole),
     )
     return {
@@ -84,7 +90,8 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
 def _names(model: Model, program: Program, whole: Program, prepared: Prepared, suffix: str) -> Names:
     own = {f"{model.name}_{kernel.name}_prepared{suffix}" for kernel in prepared.kernels} | {"prepared"}
     own |= {f"{model.name}_{name}{suffix}" for name in ("prepared", "prepare", "params")}
-    own |= pair_names(model.name, suffix) | {status_name(model, status) for status in Status}
+    own |= pair_names(model.name, suffix) | surrounding_names(model.name, suffix)
+    own |= {status_name(model, status) for status in Status}
     members = {f"value[{k}]": f"value[{k}]" for k in range(len(prepared.values))}
     # the members of the parameter struct are those of the other header
     return replace(names_of(model, whole, own), members=members | c_members(model, program))

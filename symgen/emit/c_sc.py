@@ -11,6 +11,7 @@ from symgen.emit.pairs import PairsView, pair_names, pairs_view
 from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
+from symgen.emit.surroundings import LibraryPair, library_pair, rare_macro, surrounding_names
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.model.model import Model
@@ -39,6 +40,8 @@ class GivenTrigView:
     members: tuple[tuple[str, str], ...]
     functions: tuple[GivenFunctionView, ...]
     pairs: PairsView | None
+    both: LibraryPair | None
+    rare: str
     includes_math: bool
 
 
@@ -52,7 +55,8 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
     stem, struct = f"{plain}_sc{suffix}", f"{model.name}_trig{suffix}"
     whole = replace(program, kernels=tuple(made.kernel for made in given))
     own = {f"{model.name}_{kernel.name}_sc{suffix}" for kernel in whole.kernels} | {"sc", struct}
-    own |= pair_names(model.name, suffix) | {status_name(model, status) for status in Status}
+    own |= pair_names(model.name, suffix) | surrounding_names(model.name, suffix)
+    own |= {status_name(model, status) for status in Status}
     # the members of the parameter struct are those of the other header
     names = replace(names_of(model, whole, own), members=c_names(model, program).members)
     view = GivenTrigView(
@@ -64,6 +68,8 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
         members=_members(model, given),
         functions=tuple(_function(model, program, kernel, names, struct, suffix) for kernel in whole.kernels),
         pairs=pairs_view(model.name, suffix, whole),
+        both=library_pair(model.name, whole),
+        rare=rare_macro(model.name, whole),
         includes_math=uses_library(whole),
     )
     return {f"c/{stem}.h": render("c/sc.h.jinja", view), f"c/{stem}.c": render("c/sc.c.jinja", view)}

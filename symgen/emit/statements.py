@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
 
 from symgen.emit.literals import c_literal, numpy_literal
 from symgen.emit.scalars import C_TYPE
@@ -19,8 +20,9 @@ _NUMPY_FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2
 class CStatements:
     """Prints statements and checks as C99, which is C++11 too.
 
-    `sincos` names the file's own sine/cosine function, None calls the library's; `status` maps a status to its
-    enumerator; locals outside `used` are not printed where a statement has two targets.
+    `sincos` names the file's own sine/cosine function, None calls the library's, both halves through the function
+    `both` where there is one; `status` maps a status to its enumerator; `rare` is the macro around failing checks;
+    locals outside `used` are not printed where a statement has two targets.
     """
 
     scalar: Scalar
@@ -28,6 +30,8 @@ class CStatements:
     used: Collection[str]
     sincos: str | None = None
     status: Callable[[Status], str] = str
+    both: str | None = None
+    rare: str = ""
 
     def operand(self, operand: Operand) -> str:
         """A local's identifier or a constant."""
@@ -69,20 +73,25 @@ class CStatements:
         return f"{self.function(operation)}({', '.join(operands)})"
 
     def _sincos(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
-        if self.sincos is None:
+        function = self.sincos
+        if function is None and all(target in self.used for target in targets):
+            function = self.both
+        if function is None:
             pairs = zip(targets, ("sin", "cos"), strict=True)
             return tuple(self._declare(t, f"{self.function(name)}({angle})") for t, name in pairs if t in self.used)
         sine, cosine = (self.names[target] for target in targets)
         # Taking the address is a use, so a half that nothing reads gives no warning.
         kind = C_TYPE[self.scalar]
-        return (f"{kind} {sine};", f"{kind} {cosine};", f"{self.sincos}({angle}, &{sine}, &{cosine});")
+        return (f"{kind} {sine};", f"{kind} {cosine};", f"{function}({angle}, &{sine}, &{cosine});")
 
     def check(self, check: Check) -> tuple[str, ...]:
         """The early return of a failed check as lines."""
         relation = ">=" if check.inclusive else ">"
-        first = () if check.first is None else self.block(check.first)
+        # what tells one failure from another is off the regular way as a whole
+        first = () if check.first is None else replace(self, rare="").block(check.first)
+        failed = f"!({self.operand(check.value)} {relation} {self.operand(check.limit)})"
         return (
-            f"if (!({self.operand(check.value)} {relation} {self.operand(check.limit)})) {{",
+            f"if ({self.rare}({failed})) {{" if self.rare else f"if ({failed}) {{",
             *(f"    {line}" for line in first),
             f"    return {self.status(check.status)};",
             "}",

@@ -101,13 +101,16 @@ class _Limits:
         return self._known[guard]
 
     def _limit(self, guard: Guard, scale: Node) -> Node:
-        constant = scale.constant
+        number = scale.args[0].constant if scale.op == "mul" else None
+        if number is not None:
+            scale = scale.args[1]
+        constant = scale.constant if number is None else number
         factor = Fraction(1) if constant is None else constant
         # statuses of equal tolerance share a threshold, and with it what is computed from it
         name = f"threshold {_own_tolerance(self._mechanics, guard)} {guard.degree} {factor}"
         self._thresholds[name] = guard, factor
         threshold = self._mechanics.graph.symbol(name)
-        return threshold * scale if constant is None else threshold
+        return threshold if scale.constant is not None else threshold * scale
 
 
 def _place(guard: Guard) -> int:

@@ -1,0 +1,57 @@
+"""What stands in a C file before its kernels: a macro for rare conditions, and both halves of the library's pair."""
+
+from __future__ import annotations
+
+from symgen.emit.locals import all_statements, used_locals
+from symgen.emit.scalars import C_TYPE, SUFFIX
+from symgen.ir.kernel import Kernel, Local, Program
+from symgen.records import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryPair:
+    """A function `name(angle, &sine, &cosine)` over the C library's `sine` and `cosine`, or its `library` pair."""
+
+    name: str
+    scalar: str
+    sine: str
+    cosine: str
+    library: str
+
+
+def rare_macro(name: str, program: Program) -> str:
+    """The macro around conditions that regular states do not meet; empty where no kernel has a test."""
+    return rare_name(name, SUFFIX[program.scalar]) if any(map(_is_tested, program.kernels)) else ""
+
+
+def library_pair(name: str, program: Program) -> LibraryPair | None:
+    """The pair of a file whose names begin with `name`; None where sine and cosine are portable or never both used."""
+    if program.sincos is not None or not any(map(_uses_both, program.kernels)):
+        return None
+    tail = "f" if program.scalar == "float32" else ""
+    own = both_name(name, SUFFIX[program.scalar])
+    return LibraryPair(own, C_TYPE[program.scalar], f"sin{tail}", f"cos{tail}", f"sincos{tail}")
+
+
+def rare_name(name: str, suffix: str) -> str:
+    """The macro of a file whose names begin with `name`."""
+    return f"{name}_rarely{suffix}".upper()
+
+
+def both_name(name: str, suffix: str) -> str:
+    """The function over the library's sine and cosine of a file whose names begin with `name`."""
+    return f"{name}_libm{suffix}"
+
+
+def surrounding_names(name: str, suffix: str) -> set[str]:
+    """Every name that stands before the kernels of a file."""
+    return {rare_name(name, suffix), both_name(name, suffix)}
+
+
+def _is_tested(kernel: Kernel) -> bool:
+    return any(block.checks for block in kernel.blocks) or any(isinstance(o, Local) for o in kernel.outputs)
+
+
+def _uses_both(kernel: Kernel) -> bool:
+    used = used_locals(kernel)
+    return any(s.operation == "sincos" and used.issuperset(s.targets) for s in all_statements(kernel))
