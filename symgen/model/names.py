@@ -5,10 +5,13 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from symgen.diagnostics import Mistake
 from symgen.model.expression import FUNCTION_ARITY
-from symgen.model.source import ScalarNode
+
+if TYPE_CHECKING:  # the command line corrects misspelt options too, and needs no YAML for that
+    from symgen.model.source import ScalarNode
 
 MAXIMUM_NAME = 40
 NAME_PATTERN = "[A-Za-z][A-Za-z0-9_]*"
