@@ -12,12 +12,9 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import TypeAlias
 
+from symgen.graph.monomials import LARGEST_POWER, Coefficient, Monomial, Monomials, Terms
 from symgen.graph.scalar import Graph, Scalar
 
-# Atoms are given by their serial numbers, which sort and hash faster than the scalars themselves.
-Monomial: TypeAlias = tuple[tuple[int, int], ...]
-# Whole coefficients are integers: their arithmetic is many times faster than that of fractions.
-Coefficient: TypeAlias = int | Fraction
 Polynomial: TypeAlias = dict[Monomial, Coefficient]
 
 # Outputs beyond these are left as they are: nothing becomes shorter by multiplying out a long sum of long products.
@@ -35,60 +32,58 @@ class Multiplier:
     def __init__(self, graph: Graph, whole: Callable[[Scalar], bool]) -> None:
         self._graph = graph
         self._whole = whole
-        self._known: dict[Scalar, Polynomial] = {}
-        self._circle = Circle(graph)
+        self._known: dict[Scalar, tuple[Terms, int]] = {}
+        self._monomials = Monomials(graph)
 
     def polynomial(self, node: Scalar) -> Polynomial | None:
-        """The scalar as a reduced polynomial, or None where it has too many terms."""
+        """The scalar as a reduced polynomial, or None where it has too many terms or too high a degree."""
         try:
-            return reduced(self._circle, self._expand(node))
+            terms, _ = self._expand(node)
         except _TooLongError:
             return None
+        read = self._monomials.read
+        return {read(key): value for key, value in self._monomials.reduced(terms).items()}
 
-    def _expand(self, node: Scalar) -> Polynomial:
+    def _expand(self, node: Scalar) -> tuple[Terms, int]:
+        """The terms of a scalar and a bound of every power in them."""
         known = self._known.get(node)
         if known is None:
             known = self._known[node] = self._expanded(node)
-        if len(known) > MOST_TERMS:
+        if len(known[0]) > MOST_TERMS or known[1] > LARGEST_POWER:
             raise _TooLongError
         return known
 
-    def _expanded(self, node: Scalar) -> Polynomial:
+    def _expanded(self, node: Scalar) -> tuple[Terms, int]:
         if (value := node.constant) is not None:
-            return {(): _whole(value)} if value else {}
+            return ({0: _whole(value)} if value else {}), 0
         if node.op in ("add", "sub") and self._whole(node):
-            return {((node.serial, 1),): 1}
+            return {self._monomials.unit(node.serial): 1}, 1
         match node.op:
-            case "add":
-                return _sum(self._expand(node.args[0]), self._expand(node.args[1]), 1)
-            case "sub":
-                return _sum(self._expand(node.args[0]), self._expand(node.args[1]), -1)
+            case "add" | "sub":
+                (a, high), (b, other) = self._expand(node.args[0]), self._expand(node.args[1])
+                return _sum(a, b, 1 if node.op == "add" else -1), max(high, other)
             case "neg":
-                return {key: -value for key, value in self._expand(node.args[0]).items()}
+                terms, high = self._expand(node.args[0])
+                return {key: -value for key, value in terms.items()}, high
             case "mul":
                 return self._times(self._expand(node.args[0]), self._expand(node.args[1]))
             case "div":
                 return self._times(self._expand(node.args[0]), self._inverse(node.args[1]))
             case _:
-                return {((node.serial, 1),): 1}
+                return {self._monomials.unit(node.serial): 1}, 1
 
-    def _inverse(self, node: Scalar) -> Polynomial:
-        terms = self._expand(node)
+    def _inverse(self, node: Scalar) -> tuple[Terms, int]:
+        terms, high = self._expand(node)
         if len(terms) != 1:
-            return {((node.serial, -1),): 1}
+            return {-self._monomials.unit(node.serial): 1}, 1
         ((key, value),) = terms.items()
-        return {tuple((atom, -power) for atom, power in key): _whole(1 / Fraction(value))}
+        return {-key: _whole(1 / Fraction(value))}, high
 
-    def _times(self, a: Polynomial, b: Polynomial) -> Polynomial:
-        if len(a) * len(b) > 8 * MOST_TERMS:
+    def _times(self, a: tuple[Terms, int], b: tuple[Terms, int]) -> tuple[Terms, int]:
+        power = a[1] + b[1]
+        if len(a[0]) * len(b[0]) > 8 * MOST_TERMS or power > LARGEST_POWER:
             raise _TooLongError
-        result: Polynomial = {}
-        for left, x in a.items():
-            powers = dict(left)
-            for right, y in b.items():
-                key = _raised(powers, right) if left and right else left or right
-                result[key] = result.get(key, 0) + x * y
-        return reduced(self._circle, {key: value for key, value in result.items() if value})
+        return self._monomials.product(a[0], b[0]), power
 
 
 def _whole(value: Fraction) -> Coefficient:
@@ -115,98 +110,11 @@ def _key(powers: dict[int, int]) -> Monomial:
     return tuple(sorted([entry for entry in powers.items() if entry[1]]))
 
 
-def _sum(a: Polynomial, b: Polynomial, sign: int) -> Polynomial:
+def _sum(a: Terms, b: Terms, sign: int) -> Terms:
     result = dict(a)
     for key, value in b.items():
         result[key] = result.get(key, 0) + sign * value
     return {key: value for key, value in result.items() if value}
-
-
-class Circle:
-    """Which atoms are sines and cosines, and the cosine or sine of the same angle."""
-
-    def __init__(self, graph: Graph) -> None:
-        self._graph = graph
-        self._partners: dict[str, dict[int, int | None]] = {"sin": {}, "cos": {}}
-
-    def partner(self, name: str, atom: int) -> int | None:
-        """For an atom that is a sine (`name` "sin") or a cosine ("cos") its partner on the circle, else None."""
-        known = self._partners[name]
-        if atom not in known:
-            node = self._graph.nodes[atom]
-            other = "cos" if name == "sin" else "sin"
-            known[atom] = self._graph.trig(other, node.args[0]).serial if node.op == name else None
-        return known[atom]
-
-    def square(self, name: str, key: Monomial) -> int | None:
-        """The first sine or cosine that stands in the monomial as a square."""
-        for atom, power in key:
-            if power >= 2 and self.partner(name, atom) is not None:
-                return atom
-        return None
-
-
-def reduced(circle: Circle, terms: Polynomial) -> Polynomial:
-    """No square of a sine is left (which makes cancellation certain), then squares are put where they save terms."""
-    squared = _with_squares(terms)
-    pending = [key for key in squared if circle.square("sin", key) is not None]
-    if not pending and not any(circle.square("cos", key) is not None for key in squared):
-        return terms
-    work = dict(terms)
-    while pending:
-        key = pending.pop()
-        square = circle.square("sin", key)
-        if square is None or key not in work:
-            continue
-        value = work.pop(key)
-        powers = dict(key)
-        powers[square] -= 2
-        pending += _put(work, powers, value)
-        cosine = circle.partner("sin", square)
-        assert cosine is not None
-        powers[cosine] = powers.get(cosine, 0) + 2
-        pending += _put(work, powers, -value)
-    return _with_sines(circle, work)
-
-
-def _with_squares(terms: Polynomial) -> list[Monomial]:
-    found = []
-    for key in terms:
-        for _, power in key:
-            if power >= 2:
-                found.append(key)
-                break
-    return found
-
-
-def _put(work: Polynomial, powers: dict[int, int], value: Coefficient) -> list[Monomial]:
-    """Adds a term; returns its key where one stands now."""
-    key = _key(powers)
-    total = work.get(key, 0) + value
-    if total:
-        work[key] = total
-        return [key]
-    work.pop(key, None)
-    return []
-
-
-def _with_sines(circle: Circle, terms: Polynomial) -> Polynomial:
-    """k T - k T c^2 = k T s^2 wherever both terms stand."""
-    work = dict(terms)
-    for key in sorted(key for key in _with_squares(terms) if circle.square("cos", key) is not None):
-        value, square = work.get(key), circle.square("cos", key)
-        if value is None or square is None:
-            continue
-        powers = dict(key)
-        powers[square] -= 2
-        partner = _key(powers)
-        if work.get(partner) == -value:
-            del work[key], work[partner]
-            sine = circle.partner("cos", square)
-            assert sine is not None
-            powers[sine] = powers.get(sine, 0) + 2
-            _put(work, powers, -value)
-    return work
 
 
 def factored(graph: Graph, terms: Polynomial, first: Callable[[Scalar], bool]) -> Scalar:
