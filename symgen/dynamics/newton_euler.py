@@ -19,16 +19,20 @@ from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Scalar
 from symgen.model.mechanism import WORLD, Body, RotorInertia
-from symgen.model.triples import applied, plus, transposed
+from symgen.model.triples import Rows, applied, plus, transposed
 
 
 @dataclass(frozen=True)
 class Motion:
-    """Angular velocity and acceleration of a frame and the acceleration of its origin, in its axes."""
+    """Angular velocity and acceleration of a frame and the acceleration of its origin, in its axes.
+
+    `field` is the matrix U with U r = w' x r + w x (w x r): what its points are accelerated by beside their origin.
+    """
 
     velocity: Vector3
     acceleration: Vector3
     linear: Vector3
+    field: Rows[Scalar]
 
 
 @dataclass(frozen=True)
@@ -67,7 +71,7 @@ class _Recursion:
         self.moves = not (self.at_rest and all(rate.is_zero for rate in qdd))
         zero = self.graph.zero
         self.none: Vector3 = (zero, zero, zero)
-        self.motions = {WORLD: Motion(self.none, self.none, _negative(gravity))}
+        self.motions = {WORLD: Motion(self.none, self.none, _negative(gravity), (self.none, self.none, self.none))}
 
     def forces(self, lumped: bool) -> Vector:
         """One generalized force for each coordinate."""
@@ -111,45 +115,34 @@ class _Recursion:
         """The parent's motion carried to the frame's origin, the joint's own added."""
         joint, parent = self.kinematics.joint(name), self.motions[self.kinematics.frames[name].parent]
         inward = transposed(joint.axes)
-        linear = plus(parent.linear, self._cross(parent.acceleration, joint.place))
+        linear = plus(parent.linear, applied(parent.field, joint.place))
         if self.moves:
             linear = plus(linear, self._rates(joint.place_rate))
         acceleration = applied(inward, parent.acceleration)
         if self.moves:
             acceleration = plus(acceleration, self._rates(joint.turning))
         if self.at_rest:
-            return Motion(self.none, acceleration, applied(inward, linear))
-        swing = self._cross(parent.velocity, joint.place)
-        linear = plus(linear, self._cross(parent.velocity, plus(swing, plus(joint.place_rate, joint.place_rate))))
+            return Motion(self.none, acceleration, applied(inward, linear), _field(self.none, acceleration))
+        linear = plus(linear, self._cross(parent.velocity, plus(joint.place_rate, joint.place_rate)))
         carried = applied(inward, parent.velocity)
-        return Motion(
-            self.kinematics.twist(name).angular,
-            plus(acceleration, self._cross(carried, joint.turning)),
-            applied(inward, linear),
-        )
+        velocity = self.kinematics.twist(name).angular
+        acceleration = plus(acceleration, self._cross(carried, joint.turning))
+        return Motion(velocity, acceleration, applied(inward, linear), _field(velocity, acceleration))
 
     def _inertial(self, body: Body) -> Wrench:
         """m a of the centre of mass and its moment, I w' + w x I w."""
         motion, com = self.motions[body.frame], self.kinematics.space.values(body.com)
-        mass, tensor = self.bodies.scalars.value(body.mass), self.bodies.inertia(body.name)
-        place = plus(motion.linear, self._cross(motion.acceleration, com))
-        moment = applied(tensor, motion.acceleration)
-        if not self.at_rest:
-            place = plus(place, self._cross(motion.velocity, self._cross(motion.velocity, com)))
-            moment = plus(moment, self._cross(motion.velocity, applied(tensor, motion.velocity)))
-        force = (mass * place[0], mass * place[1], mass * place[2])
-        return Wrench(force, plus(moment, self._cross(com, force)))
+        mass = self.bodies.scalars.value(body.mass)
+        x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
+        moment = _turning_moment(self.bodies.inertia(body.name), motion)
+        return Wrench((x, y, z), plus(moment, self._cross(com, (x, y, z))))
 
     def _inertial_about_origin(self, name: str, lump: Lump) -> Wrench:
-        """m a + w' x h + w x (w x h) and its moment, I w' + w x I w + h x a."""
+        """m a + U h and its moment, I w' + w x I w + h x a."""
         motion = self.motions[name]
-        force = self._cross(motion.acceleration, lump.first)
-        moment = applied(lump.tensor, motion.acceleration)
-        if not self.at_rest:
-            force = plus(force, self._cross(motion.velocity, self._cross(motion.velocity, lump.first)))
-            moment = plus(moment, self._cross(motion.velocity, applied(lump.tensor, motion.velocity)))
         x, y, z = (lump.mass * a for a in motion.linear)
-        return Wrench(plus(force, (x, y, z)), plus(moment, self._cross(lump.first, motion.linear)))
+        moment = plus(_turning_moment(lump.tensor, motion), self._cross(lump.first, motion.linear))
+        return Wrench(plus(applied(motion.field, lump.first), (x, y, z)), moment)
 
     def _lumps(self, frames: Sequence[str]) -> tuple[dict[str, Lump], list[RotorInertia]]:
         """What each frame carries, and the rotors that are not part of it."""
@@ -216,6 +209,25 @@ class _Recursion:
         if a is self.none or b is self.none:
             return self.none
         return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _field(w: Vector3, turning: Vector3) -> Rows[Scalar]:
+    """[w']x + [w]x [w]x, with each product of two rates once."""
+    (x, y, z), (a, b, c) = w, turning
+    xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
+    return (-(yy + zz), xy - c, xz + b), (xy + c, -(xx + zz), yz - a), (xz - b, yz + a, -(xx + yy))
+
+
+def _turning_moment(tensor: Rows[Scalar], motion: Motion) -> Vector3:
+    """I w' + w x I w, sorted by the entries of the tensor: they meet sums that the accelerations of points hold too."""
+    (i_xx, i_xy, i_xz), (_, i_yy, i_yz), (_, _, i_zz) = tensor
+    (x, y, z), (a, b, c) = motion.velocity, motion.acceleration
+    (_, u_xy, u_xz), (u_yx, _, u_yz), (u_zx, u_zy, _) = motion.field
+    return (
+        i_xx * a + (i_zz - i_yy) * (y * z) + i_xz * u_yx - i_xy * u_zx + i_yz * (y * y - z * z),
+        i_yy * b + (i_xx - i_zz) * (x * z) + i_xy * u_zy - i_yz * u_xy + i_xz * (z * z - x * x),
+        i_zz * c + (i_yy - i_xx) * (x * y) + i_yz * u_xz - i_xz * u_yz + i_xy * (x * x - y * y),
+    )
 
 
 def _with_point(lump: Lump, mass: Scalar, at: Vector3) -> Lump:
