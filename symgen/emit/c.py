@@ -198,7 +198,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
 
     for block in kernel.blocks:
         for statement in block.statements:
-            if statement in group:
+            if statement.operation == "sincos" and statement in group:
                 if statement is group[0]:
                     lines += due(operand for pair in group for operand in pair.operands)
                     angles = [printer.operand(pair.operands[0]) for pair in group]

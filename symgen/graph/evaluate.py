@@ -47,14 +47,16 @@ class Evaluator:
         place = {node: k for k, node in enumerate(order)}
         self._start = [0.0] * len(order)
         self._symbols: list[tuple[int, str]] = []
-        self._steps: list[tuple[int, Callable[..., float], tuple[int, ...]]] = []
+        # the place of a second operand is negative where there is none
+        self._steps: list[tuple[int, Callable[..., float], int, int]] = []
         for k, node in enumerate(order):
             if node.op == "symbol":
                 self._symbols.append((k, str(node.payload)))
             elif node.constant is not None:
                 self._start[k] = float(node.constant)
             else:
-                self._steps.append((k, _function(node), tuple(place[argument] for argument in node.args)))
+                first, second = (*(place[argument] for argument in node.args), -1)[:2]
+                self._steps.append((k, _function(node), first, second))
         self._places = [place[output] for output in outputs]
 
     def __call__(self, point: Mapping[str, float]) -> list[float]:
@@ -62,12 +64,9 @@ class Evaluator:
         values = self._start.copy()
         for k, name in self._symbols:
             values[k] = point[name]
-        for k, function, places in self._steps:
+        for k, function, first, second in self._steps:
             try:
-                if len(places) == 2:
-                    values[k] = function(values[places[0]], values[places[1]])
-                else:
-                    values[k] = function(*[values[place] for place in places])
+                values[k] = function(values[first]) if second < 0 else function(values[first], values[second])
             except (ValueError, ZeroDivisionError, OverflowError):
                 values[k] = math.nan
         return [values[place] for place in self._places]

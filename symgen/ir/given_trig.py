@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, OperationName, Statement, Status
 from symgen.ir.split import names_in
@@ -29,6 +30,7 @@ class GivenTrig:
     coordinates: tuple[Load, ...]
 
 
+@lru_cache(maxsize=16)  # one kernel serves several files
 def given_trig(kernel: Kernel) -> GivenTrig | None:
     """The kernel with sines and cosines as an argument; None where it has none of a sum of coordinates."""
     coordinates = {load.local: load for load in kernel.loads if load.argument == "q"}
@@ -130,7 +132,9 @@ class _Rewriter:
                 pair = self._pair(self._sums[argument], statements)
                 self._renamed |= dict(zip(statement.targets, pair, strict=True))
             else:
-                statements.append(replace(statement, operands=tuple(map(self.operand, statement.operands))))
+                operands = tuple(map(self.operand, statement.operands))
+                same = operands == statement.operands
+                statements.append(statement if same else Statement(statement.targets, statement.operation, operands))
         return Block(tuple(statements), tuple(self._check(c) for c in block.checks if not self._is_range_test(c)))
 
     def _is_range_test(self, check: Check) -> bool:
