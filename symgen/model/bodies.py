@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symgen.diagnostics import Notice
+from symgen.model.drawn import read_ties, read_wheels
 from symgen.model.expression import Expression
 from symgen.model.frames import frame_name, read_frames, read_points, read_vector
 from symgen.model.mechanism import (
@@ -29,7 +30,9 @@ def read_mechanism(scope: Scope, tree: MappingNode, joints: tuple[Frame, ...]) -
     frames = read_frames(scope, tree, joints)
     bodies = _bodies(scope, tree)
     gravity = _gravity(scope, tree, bodies)
-    return Mechanism(gravity, frames, bodies, read_points(scope, tree), _rotor_inertias(scope, tree))
+    points, rotors = read_points(scope, tree), _rotor_inertias(scope, tree)
+    pictured = tuple(read_wheels(scope, tree)), tuple(read_ties(scope, tree))
+    return Mechanism(gravity, frames, bodies, points, rotors, *pictured)
 
 
 def _bodies(scope: Scope, tree: MappingNode) -> tuple[Body, ...]:

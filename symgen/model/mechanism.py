@@ -107,14 +107,33 @@ class RotorInertia:
 
 
 @dataclass(frozen=True, slots=True)
+class Wheel:
+    """A wheel around the origin of a frame; `axle` is 0, 1, 2 for the axis x, y, z of the frame it turns about."""
+
+    frame: str
+    radius: Expression
+    axle: int
+
+
+@dataclass(frozen=True, slots=True)
+class Tie:
+    """A rod, spring or part of a cable between two points or origins of frames."""
+
+    kind: Literal["rod", "spring", "cable"]
+    ends: tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
 class Mechanism:
-    """The bodies form of a model; empty where the model has energies only."""
+    """The bodies form of a model; empty where the model has energies only.  Wheels and ties are for pictures."""
 
     gravity: Vector3 = NO_VECTOR
     frames: tuple[Frame, ...] = ()
     bodies: tuple[Body, ...] = ()
     points: tuple[Point, ...] = ()
     rotor_inertias: tuple[RotorInertia, ...] = ()
+    wheels: tuple[Wheel, ...] = ()
+    ties: tuple[Tie, ...] = ()
 
     @property
     def has_mass(self) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from html import escape
 
 from symgen.emit.render import render
@@ -25,24 +25,36 @@ class AnimationView:
 
 def animation(title: str, times: tuple[float, ...], shown: Scene) -> str:
     """The page; a scene that stays in one plane z = constant is drawn in that plane."""
-    every = [place for frame in shown.places for place in frame]
-    lower = [min(place[k] for place in every) for k in range(3)]
-    upper = [max(place[k] for place in every) for k in range(3)]
+    room = max((hoop.radius for hoop in shown.hoops), default=0.0)
+    every = [place for moment in shown.places for place in moment]
+    lower = [min(place[k] for place in every) - room for k in range(3)]
+    upper = [max(place[k] for place in every) + room for k in range(3)]
     centre = [(a + b) / 2 for a, b in zip(lower, upper, strict=True)]
     radius = max(SMALLEST_RADIUS, math.dist(lower, upper) / 2)
-    data = {
-        "names": shown.names,
-        "lines": shown.lines,
+    data = asdict(shown) | {
         "times": [round(time, 6) for time in times],
-        "places": [[[round(x, 5) for x in place] for place in frame] for frame in shown.places],
+        "places": [[[round(x, 5) for x in place] for place in moment] for moment in shown.places],
+        "axes": [[[round(x, 4) for x in rows] for rows in moment] for moment in shown.axes],
         "planar": upper[2] - lower[2] < SMALLEST_RADIUS,
         "centre": centre,
         "radius": radius,
     }
     view = AnimationView(
         title=escape(title),
-        caption="Origins of frames and points, joined to the frame they hang on; the ring is the world's origin.",
+        caption=_caption(shown),
         last=len(times) - 1,
         data=json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
     )
     return render("simulate/animation.html.jinja", view)
+
+
+def _caption(shown: Scene) -> str:
+    """What the lines and colours are."""
+    parts = ["Frames and points joined to the frame they hang on", "axes x red, y green, z blue"]
+    if shown.balls:
+        parts.append("grey balls at the centres of mass, as large as their masses")
+    if shown.ties:
+        parts.append("rods, springs and cables dashed")
+    if shown.hoops:
+        parts.append("wheels on the plane z = 0")
+    return "; ".join(parts) + ". Drag turns, the wheel of the mouse zooms."

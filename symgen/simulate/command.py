@@ -22,6 +22,7 @@ from symgen.simulate.tables import motion_chart, motion_csv
 from symgen.write import write_files
 
 Progress = Callable[[str], None]
+STILL = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +106,8 @@ def _summary(model: Model, motion: Motion) -> list[str]:
         f"  energy gained           {gained: .3e}, {abs(gained) / scale:.1e} of the largest",
         f"  constraints violated by {max(motion.residual): .1e} at most",
     ]
+    if all(max(curve) - min(curve) < STILL for curve in zip(*motion.q, strict=True)):
+        lines.append("  nothing moves: give rates or another place with --start, or --inputs")
     if not model.mechanism.frames:
         lines.append("  no animation: the model has no frames")
     return lines

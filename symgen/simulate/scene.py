@@ -1,47 +1,103 @@
-"""Where frames and points are at each frame of a motion: what the animation draws."""
+"""Where frames, points, bodies and wheels are at each moment of a motion: what the animation draws."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from symgen.model.float_kinematics import FloatKinematics
 from symgen.model.gradient import Gradients
-from symgen.model.mechanism import WORLD
+from symgen.model.mechanism import WORLD, Mechanism
 from symgen.model.model import Model
+from symgen.model.walk import evaluate
 
 Place = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
+class Ball:
+    """A body as a ball at its centre of mass, in the axes of a turned frame; `share` of the largest mass."""
+
+    frame: int
+    com: Place
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
+class Hoop:
+    """A wheel of that radius (m) about the axis `axle` (0, 1, 2) of a turned frame."""
+
+    frame: int
+    radius: float
+    axle: int
+
+
+@dataclass(frozen=True, slots=True)
 class Scene:
-    """Names of what is drawn, which of them are joined by a line, and their places (m) at each frame."""
+    """What is drawn, and where it is at each moment.
+
+    `names` are those of the frames, then of the points; `lines` join a frame to its parent, `arms` a point to its
+    frame, `ties` are rods, springs and cables.  `turned` are the frames whose axes are drawn.  `places` (m) and the
+    rows of the rotation matrices `axes` follow the motion.
+    """
 
     names: tuple[str, ...]
     lines: tuple[tuple[int, int], ...]
+    arms: tuple[tuple[int, int], ...]
+    ties: tuple[tuple[int, int], ...]
+    turned: tuple[int, ...]
+    balls: tuple[Ball, ...]
+    hoops: tuple[Hoop, ...]
     places: tuple[tuple[Place, ...], ...]
+    axes: tuple[tuple[tuple[float, ...], ...], ...]
 
 
 def scene(model: Model, parameters: Mapping[str, float], motion: Sequence[Sequence[float]]) -> Scene | None:
-    """The frames' origins and points along the motion; None for a model without frames."""
+    """The mechanism along the motion; None for a model without frames."""
     mechanism = model.mechanism
     if not mechanism.frames:
         return None
     names = (*(frame.name for frame in mechanism.frames), *(point.name for point in mechanism.points))
     number = {name: k for k, name in enumerate(names)}
-    # an origin is joined to its parent's, a point to its frame's
-    lines = [(number[f.parent], number[f.name]) for f in mechanism.frames if f.parent != WORLD]
-    lines += [(number[p.frame], number[p.name]) for p in mechanism.points if p.frame != WORLD]
+    carriers = {body.frame for body in mechanism.bodies} | {wheel.frame for wheel in mechanism.wheels}
+    turned = tuple(k for k, frame in enumerate(mechanism.frames) if frame.name in carriers)
     index = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
     definitions = {definition.name: definition.value for definition in model.definitions}
-
-    def places(q: Sequence[float]) -> tuple[Place, ...]:
+    places, axes = [], []
+    for q in motion:
         values = {**parameters, **{name: q[i] for name, i in index.items()}}
         kinematics = FloatKinematics(mechanism, Gradients(values, index, definitions))
-        found = []
-        for name in names:
-            x, y, z = (kinematics.value(f"{name}.{axis}") for axis in "xyz")
-            found.append((x, y, z))
-        return tuple(found)
+        places.append(tuple(_place(kinematics, name) for name in names))
+        axes.append(tuple(_axes(kinematics, names[k]) for k in turned))
+    return Scene(
+        names,
+        tuple((number[f.parent], number[f.name]) for f in mechanism.frames if f.parent != WORLD),
+        tuple((number[p.frame], number[p.name]) for p in mechanism.points if p.frame != WORLD),
+        tuple((number[tie.ends[0]], number[tie.ends[1]]) for tie in mechanism.ties),
+        turned,
+        _balls(mechanism, parameters, number),
+        tuple(Hoop(number[w.frame], evaluate(w.radius, parameters), w.axle) for w in mechanism.wheels),
+        tuple(places),
+        tuple(axes),
+    )
 
-    return Scene(names, tuple(lines), tuple(places(q) for q in motion))
+
+def _balls(mechanism: Mechanism, parameters: Mapping[str, float], number: Mapping[str, int]) -> tuple[Ball, ...]:
+    """Bodies with mass, but those that stand in the world."""
+    heavy = [body for body in mechanism.bodies if body.frame != WORLD and evaluate(body.mass, parameters) > 0]
+    largest = max((evaluate(body.mass, parameters) for body in heavy), default=1.0)
+    balls = []
+    for body in heavy:
+        x, y, z = (evaluate(entry, parameters) for entry in body.com)
+        balls.append(Ball(number[body.frame], (x, y, z), evaluate(body.mass, parameters) / largest))
+    return tuple(balls)
+
+
+def _place(kinematics: FloatKinematics, name: str) -> Place:
+    x, y, z = (kinematics.value(f"{name}.{axis}") for axis in "xyz")
+    return x, y, z
+
+
+def _axes(kinematics: FloatKinematics, name: str) -> tuple[float, ...]:
+    return tuple(kinematics.value(f"{name}.r{row}{column}") for row, column in product("123", "123"))

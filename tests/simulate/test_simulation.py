@@ -103,6 +103,40 @@ def test_a_new_model_works_and_is_animated(out: Path, monkeypatch: pytest.Monkey
     assert main(["my_cart.yaml", "--out", str(out / "made"), "--only", "c", "--no-verify", "--quiet"]) == 0
 
 
+def test_wheels_rods_and_bodies_are_drawn(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (out / "cart.yaml").write_text(
+        """\
+model: cart
+joints:
+  body: {type: planar, coordinates: [x, y, theta]}
+  wheel: {type: revolute, parent: body, at: [0, 0.2, 0], axis: y, coordinate: a}
+parameters: {R: 0.1}
+gravity: [0, 0, 0]
+bodies: {body: {mass: 8, inertia: {zz: 1}}, wheel: {mass: 1, com: [0.01, 0, 0], inertia: {xx: 1, yy: 1, zz: 1}}}
+points: {post: {at: [3, 0, 0]}}
+rolling: {tyre: {frame: wheel, radius: 2*R}}
+springs: {pull: {between: [post, body], stiffness: 10, length: 3}}
+""",
+        encoding="utf-8",
+    )
+    assert main(["simulate", str(out / "cart.yaml"), "--duration", "0.1", "--out", str(out)]) == 0
+    assert "nothing moves: give rates" in capsys.readouterr().out
+    assert run(str(out / "cart.yaml"), "--duration", "0.1", "--start", "a_dot=1", "--out", str(out)) == 0
+    page = (out / "cart" / "simulation.html").read_text(encoding="utf-8")
+    data = json.loads(page.split('id="motion">')[1].split("</script>")[0])
+    assert data["names"] == ["body", "wheel", "post"]
+    assert data["hoops"] == [{"frame": 1, "radius": 0.2, "axle": 1}]
+    assert data["ties"] == [[2, 0]]
+    assert [ball["share"] for ball in data["balls"]] == [1.0, 0.125]
+    assert data["turned"] == [0, 1]
+    # the wheel has turned about its own y axis by the way of its centre over its radius
+    first, last = (rows[1] for rows in (data["axes"][0], data["axes"][-1]))
+    assert first == [1, 0, 0, 0, 1, 0, 0, 0, 1]
+    way = math.dist(data["places"][0][1], data["places"][-1][1])
+    assert math.isclose(math.atan2(last[2], last[8]), way / 0.2, abs_tol=2e-4)
+    assert way > 0.01
+
+
 @pytest.mark.parametrize("name", ["../x", "1a", "for", "x_dot", ""])
 def test_names_that_are_no_models(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
