@@ -27,7 +27,7 @@ def emit_proofs(model: Model, programs: Sequence[Program]) -> dict[str, str]:
         files |= emit_eva(model, program)
         files |= emit_gappa(model, program)
     if len(programs) > 1:
-        files |= emit_fuzz(model, programs[0])
+        files |= emit_fuzz(model, programs)
     page = "\n".join(_page(model, programs, sorted(files))) + "\n"
     return {**files, "proof/README.md": page}
 

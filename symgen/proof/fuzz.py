@@ -1,14 +1,21 @@
-"""A fuzz target for all kernels of a model: raw bits go in, and what comes out is held against four rules."""
+"""A fuzz target for all kernels of a model: raw bits go in, and what comes out is held against six rules.
+
+Forms with prepared parameters, or with sines and cosines from the caller, are kernels like the others.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from symgen.emit.c import c_names
 from symgen.emit.literals import decimal_text
 from symgen.emit.locals import array_arguments
+from symgen.emit.quantities import BATCHED
 from symgen.emit.render import render
+from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program
+from symgen.ir.prepare import prepare
 from symgen.model.model import Model, Range
 from symgen.naming import file_stem
 from symgen.proof.box import box
@@ -18,54 +25,94 @@ ARRAYS = ("q", "qd", "qdd", "u")
 HELD = ("inverse_dynamics", "forward_dynamics")
 
 
+PLAIN, PREPARED, GIVEN = "plain", "prepared", "given"
+_ENDING = {PLAIN: "", PREPARED: "_prepared", GIVEN: "_sc"}
+
+
 @dataclass(frozen=True, slots=True)
 class KernelView:
-    """One kernel: the places of its arguments among q, qd, qdd, u, and the length of its result."""
+    """One function: the places of its arguments among q, qd, qdd, u, and the length of its result.
+
+    `name` is the quantity with the ending of its form; `same` names the function that must return the same bits.
+    """
 
     name: str
+    form: str
     arguments: tuple[int, ...]
     size: int
     held: bool
+    same: str
 
 
 @dataclass(frozen=True, slots=True)
 class FuzzView:
-    """Everything the template of the fuzz target prints."""
+    """Everything the template of the fuzz target prints.
+
+    `given` are members of the struct of sines and cosines, each with whether it is a sine and its place in q.
+    """
 
     stem: str
     model: str
+    units: tuple[str, ...]
     sizes: tuple[tuple[str, int], ...]
     longest: int
     largest_result: int
     members: tuple[str, ...]
+    given: tuple[tuple[str, bool, int], ...]
     ranges: tuple[tuple[str, str, str], ...]
     kernels: tuple[KernelView, ...]
     held: tuple[str, ...]
 
 
-def emit_fuzz(model: Model, program: Program) -> dict[str, str]:
-    """`proof/<model>_fuzz.c`, which needs the C of both scalar types."""
+def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
+    """`proof/<model>_fuzz.c`, which needs the C of both scalar types; `programs` are float64 and float32."""
+    program = programs[0]
     ranges = box(model)
-    sizes = tuple((name, len(ranges[name])) for name in ARRAYS)
-    named = [(f"{name}[{index}]", pair) for name in (*ARRAYS, "p") for index, pair in enumerate(ranges[name])]
+    ready, given = _prepared(programs), _given(program)
     members = tuple(c_names(model, program).members[parameter.name] for parameter in model.parameters)
+    trig = tuple(_members(model, given))
+    sizes = (*((name, len(ranges[name])) for name in ARRAYS), ("sc", len(trig)))
+    named = [(f"{name}[{index}]", pair) for name in (*ARRAYS, "p") for index, pair in enumerate(ranges[name])]
+    forms = {PLAIN: program.kernels, PREPARED: ready, GIVEN: tuple(made.kernel for made in given)}
+    stem = file_stem(model.name)
     view = FuzzView(
-        stem=file_stem(model.name),
+        stem=stem,
         model=model.name,
+        units=tuple(stem + _ENDING[form] for form, kernels in forms.items() if kernels),
         sizes=sizes,
         longest=max(1, *(size for _, size in sizes)),
         largest_result=max((len(kernel.outputs) for kernel in program.kernels), default=1),
         members=members,
+        given=trig,
         ranges=tuple((place, *_bounds(pair)) for place, pair in named),
-        kernels=tuple(map(_kernel, program.kernels)),
+        kernels=tuple(_kernel(kernel, form) for form, kernels in forms.items() for kernel in kernels),
         held=tuple(kernel.name for kernel in program.kernels if kernel.name in HELD),
     )
     return {f"proof/{view.stem}_fuzz.c": render("proof/fuzz.c.jinja", view)} if view.kernels else {}
 
 
-def _kernel(kernel: Kernel) -> KernelView:
+def _prepared(programs: Sequence[Program]) -> tuple[Kernel, ...]:
+    """The kernels with prepared parameters that both scalar types have."""
+    made = [prepared.kernels if (prepared := prepare(p, BATCHED)) else () for p in programs]
+    common = set.intersection(*({kernel.name for kernel in kernels} for kernels in made))
+    return tuple(kernel for kernel in made[0] if kernel.name in common)
+
+
+def _given(program: Program) -> tuple[GivenTrig, ...]:
+    made = (given_trig(kernel) for kernel in program.kernels if kernel.name in BATCHED)
+    return tuple(kernel for kernel in made if kernel is not None)
+
+
+def _members(model: Model, given: Sequence[GivenTrig]) -> Iterator[tuple[str, bool, int]]:
+    for index in sorted({load.index for made in given for load in made.coordinates}):
+        yield f"sin_{model.coordinates[index].name}", True, index
+        yield f"cos_{model.coordinates[index].name}", False, index
+
+
+def _kernel(kernel: Kernel, form: str) -> KernelView:
     places = tuple(ARRAYS.index(argument.name) for argument in array_arguments(kernel))
-    return KernelView(kernel.name, places, len(kernel.outputs), kernel.name in HELD)
+    same = kernel.name if form == PREPARED else ""
+    return KernelView(kernel.name + _ENDING[form], form, places, len(kernel.outputs), kernel.name in HELD, same)
 
 
 def _bounds(pair: Range) -> tuple[str, str]:

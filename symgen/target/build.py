@@ -48,11 +48,15 @@ class Workshop:
 
     def compile(self, source: str, level: str, compiler: Compiler = "gcc", flags: Sequence[str] = ()) -> Path:
         """An object of generated C at one level of optimisation; gcc also writes its stack usage beside it."""
-        target = self.folder / f"{Path(source).stem}_{compiler}{level}.o"
+        target = self.object(source, level, compiler)
         usage = ("-fstack-usage",) if compiler == "gcc" else ()
         command = [*self._command(compiler), *FLAGS, level, *usage, *flags, "-c", "-o", str(target), source]
         run(command, self.folder)
         return target
+
+    def object(self, source: str, level: str, compiler: Compiler = "gcc") -> Path:
+        """Where `compile` puts the object of a source."""
+        return self.folder / f"{Path(source).stem}_{compiler}{level}.o"
 
     def harness(self, driver: str, watched: int) -> tuple[Path, ...]:
         """The objects of driver and board; `watched` bytes of stack are painted before every call."""

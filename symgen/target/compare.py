@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, isfinite
 
-from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Scalar
+from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.target.driver import FORMAT, SIZE, Record, Results
+from symgen.target.entries import GIVEN, Entries, Entry
 from symgen.target.vectors import PERTURBATIONS
 
 # Both results may be 16 units of d + eps |y| from the exact one, and the d of a few perturbations falls short by two.
@@ -27,51 +28,58 @@ class Difference:
     wrong: tuple[str, ...]
 
 
-def uses_library(kernel: Kernel, portable: bool) -> bool:
-    """Whether a kernel calls functions of the C library whose last bits are its own."""
+def uses_library(entry: Entry, portable: bool) -> bool:
+    """Whether a function's results come through functions of the C library, whose last bits are its own.
+
+    What is prepared may have come through one.
+    """
+    kernel = entry.kernel if entry.form == GIVEN else entry.plain
     names = {statement.operation for statement in kernel.statements}
     return bool(names & LIBRARY) or (not portable and "sincos" in names)
 
 
-def compare(
-    kernels: Sequence[Kernel], scalar: Scalar, portable: bool, host: Results, found: Results, units: Units, regular: int
-) -> Difference:
+def compare(entries: Entries, portable: bool, host: Results, found: Results, units: Units, regular: int) -> Difference:
     """Every record of `found` beside the host's; the first `regular` states are judged where bits may differ."""
     different, farthest = 0, 0.0
     wrong: list[str] = []
-    for kernel in kernels:
-        pairs = list(zip(host.records[kernel.name], found.records[kernel.name], strict=True))
+    for entry in entries.functions:
+        pairs = list(zip(host.records[entry.name], found.records[entry.name], strict=True))
         unequal = [k for k, (a, b) in enumerate(pairs) if a != b]
         different += len(unequal)
-        if not uses_library(kernel, portable):
+        if not uses_library(entry, portable):
             if unequal:
                 a, b = pairs[unequal[0]]
-                wrong.append(f"{kernel.name}: {len(unequal)} of {len(pairs)} differ, first vector {unequal[0]}: "
+                wrong.append(f"{entry.name}: {len(unequal)} of {len(pairs)} differ, first vector {unequal[0]}: "
                              f"status {b.status} for {a.status}, {b.outputs.hex()} for {a.outputs.hex()}")
             continue
         for k in unequal:
             if k >= regular:
                 continue
-            distance = _distance(*pairs[k], scalar, units[kernel.name][k])
+            distance = _distance(*pairs[k], entries.scalar, units[entry.kernel.name][k])
             farthest = max(farthest, distance)
             if not distance <= BOUND:
-                wrong.append(f"{kernel.name}: vector {k} is {distance:.3g} units of d + eps |y| from the host's")
+                wrong.append(f"{entry.name}: vector {k} is {distance:.3g} units of d + eps |y| from the host's")
     return Difference(different, farthest, tuple(wrong))
 
 
-def units_of(kernels: Sequence[Kernel], scalar: Scalar, exact: Results, moved: Results) -> Units:
-    """d + eps |y| of every kernel and state, d the largest distance under the perturbations, both run in float64."""
+def units_of(entries: Entries, scalar: Scalar, exact: Results, moved: Results) -> Units:
+    """d + eps |y| of every quantity and state in a scalar type, d the largest distance under the perturbations.
+
+    Both results are those of the plain kernels in float64.
+    """
     eps = float(UNIT_ROUNDOFF[scalar])
     found: dict[str, list[float]] = {}
-    for kernel in kernels:
+    for entry in entries.functions:
+        if entry.form:
+            continue
         units = []
-        for k, record in enumerate(exact.records[kernel.name]):
+        for k, record in enumerate(exact.records[entry.name]):
             y = numbers(record, "float64")
-            around = moved.records[kernel.name][k * PERTURBATIONS : (k + 1) * PERTURBATIONS]
+            around = moved.records[entry.name][k * PERTURBATIONS : (k + 1) * PERTURBATIONS]
             others = [numbers(other, "float64") for other in around if other.status == 0]
             d = max((_norm([a - b for a, b in zip(y, z, strict=True)]) for z in others), default=0.0)
             units.append(d + eps * _norm(y))
-        found[kernel.name] = units
+        found[entry.name] = units
     return found
 
 

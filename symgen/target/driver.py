@@ -6,12 +6,14 @@ import math
 import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
-from symgen.ir.kernel import Argument, Kernel, Program, Scalar
+from symgen.ir.kernel import Argument, Scalar
 from symgen.model.model import Model
 from symgen.naming import file_stem
+from symgen.target.entries import Entries, Entry
 from symgen.verify.reference import State
 
 FORMAT: dict[Scalar, str] = {"float64": "d", "float32": "f"}
@@ -28,7 +30,7 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Results:
-    """Records by kernel, in the order of the states, and the deepest painted stack of each kernel in bytes."""
+    """Records by entry, in the order of the states, and the deepest painted stack of each in bytes."""
 
     records: Mapping[str, tuple[Record, ...]]
     stack: Mapping[str, int]
@@ -36,7 +38,7 @@ class Results:
 
 @dataclass(frozen=True, slots=True)
 class KernelView:
-    """How the driver calls one kernel."""
+    """How the driver calls one function."""
 
     caller: str
     call: str
@@ -45,26 +47,30 @@ class KernelView:
 
 @dataclass(frozen=True, slots=True)
 class GroupView:
-    """The kernels of one scalar type."""
+    """The functions of one scalar type; `given` names members of the struct of sines and cosines by place in a row."""
 
-    header: str
+    headers: tuple[str, ...]
     type: str
     params: str
     defaults: str
+    prepared: str
+    prepare: str
+    trig: str
+    given: tuple[tuple[str, int], ...]
     states_file: str
     results_file: str
-    arrays: tuple[Argument | ParameterArray, ...]
+    arrays: tuple[Argument | OwnArray, ...]
     parameters: int
     widest: int
     kernels: tuple[KernelView, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class ParameterArray:
-    """The parameters at the end of a row."""
+class OwnArray:
+    """What a row holds beside the arguments: parameters, sines and cosines."""
 
+    name: str
     length: int
-    name: str = "p"
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,25 +90,23 @@ def results_file(scalar: Scalar) -> str:
     return f"results_{scalar}.bin"
 
 
-def function_name(model: Model, kernel: Kernel, scalar: Scalar) -> str:
-    """The C function of a kernel."""
-    return f"{model.name}_{kernel.name}{SUFFIX[scalar]}"
-
-
-def driver_source(model: Model, programs: Mapping[Scalar, Program]) -> str:
-    """The driver for the kernels of all programs."""
-    return render("target/driver.c.jinja", DriverView(tuple(_group(model, p) for p in programs.values())))
+def driver_source(model: Model, entries: Mapping[Scalar, Entries]) -> str:
+    """The driver for the functions of all scalar types."""
+    return render("target/driver.c.jinja", DriverView(tuple(_group(model, e) for e in entries.values())))
 
 
 def pack_states(states: Sequence[State], scalar: Scalar) -> bytes:
-    """States as the driver reads them: their number, then rows of q, qd, qdd, u and parameters; little-endian."""
-    rows = [(*s.q, *s.qd, *s.qdd, *s.u, *s.parameters) for s in states]
+    """States as the driver reads them: their number, then rows; little-endian.
+
+    A row is q, qd, qdd, u, parameters, and the sine and cosine of every coordinate for those who take them.
+    """
+    rows = [(*s.q, *s.qd, *s.qdd, *s.u, *s.parameters, *_given(s.q)) for s in states]
     return struct.pack("<I", len(rows)) + b"".join(struct.pack(f"<{len(r)}{FORMAT[scalar]}", *r) for r in rows)
 
 
-def unpack_results(data: bytes, program: Program, states: int) -> Results:
+def unpack_results(data: bytes, entries: Entries, states: int) -> Results:
     """The driver's results; raises ValueError when the file is not of the expected length."""
-    sizes = {kernel.name: max(1, math.prod(kernel.shape)) * SIZE[program.scalar] for kernel in program.kernels}
+    sizes = {entry.name: entry.size * SIZE[entries.scalar] for entry in entries.functions}
     expected = states * sum(4 + size for size in sizes.values()) + 4 * len(sizes)
     if len(data) != expected:
         raise ValueError(f"{len(data)} bytes of results instead of {expected}")
@@ -117,28 +121,38 @@ def unpack_results(data: bytes, program: Program, states: int) -> Results:
     return Results({name: tuple(r) for name, r in records.items()}, dict(zip(sizes, stack, strict=True)))
 
 
-def _group(model: Model, program: Program) -> GroupView:
-    suffix, kind = SUFFIX[program.scalar], C_TYPE[program.scalar]
+def _given(q: Sequence[Any]) -> list[float]:
+    return [half(x) if math.isfinite(x) else math.nan for x in q for half in (math.sin, math.cos)]
+
+
+def _group(model: Model, entries: Entries) -> GroupView:
+    suffix, kind = SUFFIX[entries.scalar], C_TYPE[entries.scalar]
     arrays = (
         Argument("q", model.n), Argument("qd", model.n), Argument("qdd", model.n), Argument("u", model.m),
-        ParameterArray(len(model.parameters)),
+        OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
     )
+    units = dict.fromkeys([f"{file_stem(model.name)}{suffix}", *(entry.unit for entry in entries.functions)])
     return GroupView(
-        header=f"{file_stem(model.name)}{suffix}.h",
+        headers=tuple(f"{unit}.h" for unit in units),
         type=kind,
         params=f"{model.name}_params{suffix}",
         defaults=f"{model.name}_default_params{suffix}",
-        states_file=states_file(program.scalar),
-        results_file=results_file(program.scalar),
+        prepared=f"{model.name}_prepared{suffix}" if entries.prepared else "",
+        prepare=f"{model.name}_prepare{suffix}",
+        trig=f"{model.name}_trig{suffix}" if entries.given else "",
+        given=tuple(
+            (f"{half}_{model.coordinates[index].name}", 2 * index + place)
+            for index in entries.given
+            for place, half in enumerate(("sin", "cos"))
+        ),
+        states_file=states_file(entries.scalar),
+        results_file=results_file(entries.scalar),
         arrays=tuple(array for array in arrays if array.length),
         parameters=len(model.parameters),
-        widest=max(1, *(math.prod(kernel.shape) for kernel in program.kernels)),
-        kernels=tuple(_kernel(model, program.scalar, kernel, k) for k, kernel in enumerate(program.kernels)),
+        widest=max((entry.size for entry in entries.functions), default=1),
+        kernels=tuple(_kernel(kind, entry, k) for k, entry in enumerate(entries.functions)),
     )
 
 
-def _kernel(model: Model, scalar: Scalar, kernel: Kernel, place: int) -> KernelView:
-    kind = C_TYPE[scalar]
-    arguments = [f"row_{kind}.{argument.name}" for argument in kernel.arguments if argument.length]
-    call = f"{function_name(model, kernel, scalar)}({', '.join([*arguments, f'&p_{kind}', f'y_{kind}'])})"
-    return KernelView(f"call_{kind}_{place}", call, max(1, math.prod(kernel.shape)))
+def _kernel(kind: str, entry: Entry, place: int) -> KernelView:
+    return KernelView(f"call_{kind}_{place}", entry.call, entry.size)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -31,25 +31,34 @@ def footprints(workshop: Workshop, target: Path, functions: Sequence[str]) -> di
     return {name: _footprint(workshop, target, name, frames) for name in functions}
 
 
+def deepest_frame(targets: Iterable[Path]) -> int:
+    """The largest sum of two frames in any of the objects that gcc wrote: a function and a helper of its file."""
+    frames = [sorted(_frames(target.with_suffix(".su")).values())[-2:] for target in targets]
+    return max(map(sum, frames), default=0)
+
+
 def _footprint(workshop: Workshop, target: Path, function: str, frames: Mapping[str, int]) -> Footprint:
     part = target.with_suffix(f".{function}.o")
     run([workshop.tool("ld"), *_emulation(workshop), "-r", "--gc-sections", "-e", function, "-o", str(part),
          str(target)])
     code, ram = _sections(workshop, part)
-    symbols = [line.split() for line in run([workshop.tool("nm"), str(part)]).stdout.splitlines()]
-    undefined = tuple(sorted({row[1] for row in symbols if row[0] == "U"} & _referred(workshop, part)))
+    own, undefined = _symbols(workshop, part)
     linked, _ = _sections(workshop, _linked(workshop, part, function)) if undefined else (code, ram)
-    own = {row[-1].partition(".")[0] for row in symbols if row[-2] in ("t", "T")}
     # helpers do not call each other: the chain is the function and the largest of them
     helpers = max((frames.get(name, 0) for name in own if name != function), default=0)
     part.unlink()
     return Footprint(code, linked, ram, frames.get(function, 0) + helpers, undefined)
 
 
-def _referred(workshop: Workshop, part: Path) -> set[str]:
-    """The symbols an object refers to; its table may name others that went away."""
-    rows = [line.split() for line in run([workshop.tool("objdump"), "-r", str(part)]).stdout.splitlines()]
-    return {re.split(r"[+-]0x", row[2])[0] for row in rows if len(row) == 3 and row[1].startswith("R_")}
+def _symbols(workshop: Workshop, part: Path) -> tuple[set[str], tuple[str, ...]]:
+    """The functions in an object, and the undefined symbols it refers to; its table may name others that went away."""
+    told = run([workshop.tool("objdump"), "-t", "-r", str(part)]).stdout
+    rows = [line.split() for line in told.splitlines()]
+    # `00000000 g     F .text.name  00000010 name` and `00000000  *UND*  00000000 name`
+    functions = {row[-1].partition(".")[0] for row in rows if "F" in row[1:4]}
+    unknown = {row[-1] for row in rows if "*UND*" in row}
+    referred = {re.split(r"[+-]0x", row[2])[0] for row in rows if len(row) == 3 and row[1].startswith("R_")}
+    return functions, tuple(sorted(unknown & referred))
 
 
 def _linked(workshop: Workshop, part: Path, function: str) -> Path:

@@ -13,27 +13,27 @@ from threading import Lock
 
 from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
+from symgen.emit.c_prepared import emit_c_prepared
+from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.operations import count_operations
-from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.target.build import STACK_WATCHED, Workshop
 from symgen.target.compare import Units, compare, units_of, uses_library
 from symgen.target.cores import LEVELS, Compiler, Core
 from symgen.target.driver import (
     Results,
     driver_source,
-    function_name,
     pack_states,
     results_file,
     states_file,
     unpack_results,
 )
 from symgen.target.emulator import addresses, build_counter, count_calls, run_image, stage
-from symgen.target.footprint import footprints
+from symgen.target.entries import Entries, plain_entries, with_companions
+from symgen.target.footprint import Footprint, deepest_frame, footprints
 from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
 from symgen.target.tools import EMULATOR, PREFIX, ToolError, compilers, version
 from symgen.target.vectors import FEWEST, Vectors, perturbed, vectors_of
@@ -43,12 +43,15 @@ Progress = Callable[[str], None]
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 FAST, SMALL = "-O2", "-Os"  # the levels at which instructions and stack are measured; the footprint at the second
 BASE: tuple[Compiler, str] = ("gcc", "-O2")
-# With these every kernel is built; elsewhere those of more operations are left out, for the time that compilers take.
-WHOLE: tuple[tuple[Compiler, str], ...] = (BASE, ("gcc", "-Os"), ("clang", "-O2"))
-MOST_OPERATIONS = 700
+# With these every kernel is built; elsewhere u and what has not more operations, for the time that compilers take.
+WITH_ALL: tuple[tuple[Compiler, str], ...] = (BASE, ("gcc", "-Os"), ("clang", "-O2"))
+MOST_OPERATIONS = 300
+ALWAYS = "inverse_dynamics"
+BESIDE = 1024  # bytes of stack that a kernel may take beside its own frames, for functions of the libraries
 CHOICES = ("ratio_or_zero", "copysign")
 PROCESSES = 2
 PORTABLE, LIBM = "portable", "libm"
+WHOLE, PART = "whole", "part"  # of a model's kernels, with portable sine and cosine
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +69,7 @@ class _Build:
 
     @property
     def kernels(self) -> str:
-        return f"{self.trig} {'all' if (self.compiler, self.level) in WHOLE else 'small'}"
+        return LIBM if self.trig == LIBM else WHOLE if (self.compiler, self.level) in WITH_ALL else PART
 
     @property
     def label(self) -> str:
@@ -80,33 +83,47 @@ class _Bench:
         derivations = derive_quantities(model, model.outputs)
         programs = dict(schedule(derivations.mechanics, derivations.quantities, SCALARS).items())
         self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
-        self.programs: dict[str, dict[Scalar, Program]] = {
-            f"{PORTABLE} all": programs,
-            f"{PORTABLE} small": {scalar: _small(program) for scalar, program in programs.items()},
-            f"{LIBM} all": {scalar: with_library_trig(program) for scalar, program in programs.items()},
+        small = {scalar: _small(program) for scalar, program in programs.items()}
+        library = {scalar: with_library_trig(program) for scalar, program in small.items()}
+        plain = {scalar: plain_entries(model, program) for scalar, program in programs.items()}
+        self.entries: dict[str, dict[Scalar, Entries]] = {
+            WHOLE: {scalar: with_companions(model, plain[scalar], program) for scalar, program in small.items()},
+            PART: {scalar: plain_entries(model, program) for scalar, program in small.items()},
+            LIBM: {scalar: plain_entries(model, program) for scalar, program in library.items()},
         }
-        self.sources = {kernels: self._sources(programs) for kernels, programs in self.programs.items()}
+        self.published = self._files(programs, emit_c)
+        files = {
+            WHOLE: {**self.published, **self._files(small, emit_c_prepared), **self._files(small, emit_c_sc)},
+            PART: self._files(small, emit_c),
+            LIBM: self._files(library, emit_c),
+        }
+        self.sources = {
+            kernels: {"driver.c": driver_source(model, entries), **files[kernels]}
+            for kernels, entries in self.entries.items()
+        }
         self.states = {scalar: vectors.rounded(scalar) for scalar in SCALARS}
         self.inputs = self._written("states", self.states)
         self.counter = build_counter(folder)
         self.harnesses = Lock()  # builds run side by side and share drivers and boards
         base = {trig: _Build(None, *BASE, trig) for trig in (PORTABLE, LIBM)}
-        images = {trig: self.image(build, 0)[1] for trig, build in base.items()}
+        images = {trig: self.image(build, painted=False)[1] for trig, build in base.items()}
         self.expected = {trig: self._run(build, images[trig]) for trig, build in base.items()}
         self.units = {scalar: self._units(scalar, images[PORTABLE]) for scalar in SCALARS}
 
     def results(self, build: _Build) -> dict[Scalar, Results]:
         """Builds an image, runs it, and reads what it wrote."""
-        return self._run(build, self.image(build, 0)[1])
+        return self._run(build, self.image(build, painted=False)[1])
 
-    def image(self, build: _Build, watched: int) -> tuple[Workshop, Path]:
-        """An image with its input files beside it."""
+    def image(self, build: _Build, painted: bool) -> tuple[Workshop, Path]:
+        """An image with its input files beside it; where stacks are watched, more than the deepest frame is painted."""
         with self.harnesses:
             shop = self.workshop(build)
+        units = [name for name in self.sources[build.kernels] if name.endswith(".c") and name != "driver.c"]
+        objects = {unit: shop.compile(unit, build.level, build.compiler) for unit in units}
+        watched = min(STACK_WATCHED, BESIDE + deepest_frame(objects.values())) if painted else 0
+        with self.harnesses:
             harness = shop.harness("driver.c", watched)
-        stem = file_stem(self.model.name)
-        objects = [shop.compile(f"{stem}{SUFFIX[scalar]}.c", build.level, build.compiler) for scalar in SCALARS]
-        image = shop.link(f"{build.compiler}{build.level}-{watched}", [*harness, *objects])
+        image = shop.link(f"{build.compiler}{build.level}-{watched}", [*harness, *objects.values()])
         stage(image, self.inputs)
         return shop, image
 
@@ -119,27 +136,28 @@ class _Bench:
         return shop
 
     def read(
-        self, image: Path, programs: Mapping[Scalar, Program], states: Mapping[Scalar, int]
+        self, image: Path, entries: Mapping[Scalar, Entries], states: Mapping[Scalar, int]
     ) -> dict[Scalar, Results]:
         """What an image wrote; raises ToolError when it is incomplete."""
         found = {}
-        for scalar, program in programs.items():
+        for scalar, known in entries.items():
             try:
                 data = (image.parent / results_file(scalar)).read_bytes()
-                found[scalar] = unpack_results(data, program, states[scalar])
+                found[scalar] = unpack_results(data, known, states[scalar])
             except (OSError, ValueError) as error:
                 raise ToolError(f"{image.parent.name}: {error}") from error
         return found
 
     def _run(self, build: _Build, image: Path) -> dict[Scalar, Results]:
         run_image(build.core, image)
-        return self.read(image, self.programs[build.kernels], {s: len(states) for s, states in self.states.items()})
+        return self.read(image, self.entries[build.kernels], {s: len(states) for s, states in self.states.items()})
 
-    def _sources(self, programs: Mapping[Scalar, Program]) -> dict[str, str]:
-        files = {"driver.c": driver_source(self.model, programs)}
-        for program in programs.values():
-            files |= {path.rpartition("/")[2]: text for path, text in emit_c(self.model, program).items()}
-        return files
+    def _files(
+        self, programs: Mapping[Scalar, Program], emit: Callable[[Model, Program], dict[str, str]]
+    ) -> dict[str, str]:
+        """Generated files by their names."""
+        made = [emit(self.model, program) for program in programs.values()]
+        return {path.rpartition("/")[2]: text for files in made for path, text in files.items()}
 
     def _written(self, folder: str, states: Mapping[Scalar, Sequence[State]]) -> list[Path]:
         (self.folder / folder).mkdir(exist_ok=True)
@@ -152,14 +170,14 @@ class _Bench:
     def _units(self, scalar: Scalar, image: Path) -> Units:
         """d + eps |y| of the regular states, by the float64 kernels of an image of the host."""
         regular = self.states[scalar][: len(self.vectors.regular)]
-        program = self.programs[f"{PORTABLE} all"]["float64"]
+        entries = self.entries[WHOLE]["float64"]
         made = []
         for kind, states in (("exact", regular), ("moved", perturbed(regular, scalar))):
             # both scalar types run; what float32 makes of these states is of no interest
             stage(image, self._written(f"{kind}-{scalar}", {"float64": states, "float32": states[:1]}))
             run_image(None, image)
-            made.append(self.read(image, {"float64": program}, {"float64": len(states)})["float64"])
-        return units_of(program.kernels, scalar, *made)
+            made.append(self.read(image, {"float64": entries}, {"float64": len(states)})["float64"])
+        return units_of(entries, scalar, *made)
 
 
 def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: None) -> TargetReport:
@@ -200,9 +218,7 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
         statuses=_statuses(bench),
         versions=_versions(cores),
         sources={
-            path: hashlib.sha256(text.encode()).hexdigest()
-            for path, text in bench.sources[f"{PORTABLE} all"].items()
-            if path != "driver.c"
+            path: hashlib.sha256(text.encode()).hexdigest() for path, text in bench.published.items()
         },
         cells=tuple(cell for cells, _, _ in made for cell in cells),
         cores=reports,
@@ -212,8 +228,10 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
 
 
 def _small(program: Program) -> Program:
-    """The program without its largest kernels."""
-    kept = tuple(k for k in program.kernels if count_operations(k.statements).total <= MOST_OPERATIONS)
+    """The program without its largest kernels; u stays."""
+    kept = tuple(
+        k for k in program.kernels if k.name == ALWAYS or count_operations(k.statements).total <= MOST_OPERATIONS
+    )
     return replace(program, kernels=kept)
 
 
@@ -234,15 +252,15 @@ def _measured(bench: _Bench, build: _Build) -> tuple[list[Cell], list[KernelCost
     else:
         results, costs = bench.results(build), []
     cells, failures = [], []
-    for scalar, program in bench.programs[build.kernels].items():
+    for scalar, entries in bench.entries[build.kernels].items():
         portable = build.trig == PORTABLE
         found = compare(
-            program.kernels, scalar, portable, bench.expected[build.trig][scalar], results[scalar],
-            bench.units[scalar], len(bench.vectors.regular),
+            entries, portable, bench.expected[build.trig][scalar], results[scalar], bench.units[scalar],
+            len(bench.vectors.regular),
         )
-        records = len(program.kernels) * len(bench.states[scalar])
+        count = len(entries.functions)
         cells.append(Cell(
-            build.where, build.compiler, build.level, scalar, build.trig, len(program.kernels), records,
+            build.where, build.compiler, build.level, scalar, build.trig, count, count * len(bench.states[scalar]),
             found.different, found.distance,
         ))
         failures += [f"{build.label}, {scalar}: {wrong}" for wrong in found.wrong]
@@ -250,24 +268,31 @@ def _measured(bench: _Bench, build: _Build) -> tuple[list[Cell], list[KernelCost
 
 
 def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Results], list[KernelCost]]:
-    shop, image = bench.image(build, STACK_WATCHED)
-    programs = bench.programs[build.kernels]
-    names = {(s, k.name): function_name(bench.model, k, s) for s, p in programs.items() for k in p.kernels}
-    counts = count_calls(core, image, bench.counter, addresses(shop, image, list(names.values())))
-    results = bench.read(image, programs, {scalar: len(states) for scalar, states in bench.states.items()})
+    shop, image = bench.image(build, painted=True)
+    entries = bench.entries[build.kernels]
+    functions = [entry.function for known in entries.values() for entry in known.functions]
+    counts = count_calls(core, image, bench.counter, addresses(shop, image, functions))
+    results = bench.read(image, entries, {scalar: len(states) for scalar, states in bench.states.items()})
     costs = []
-    for scalar in programs:
-        functions = {kernel: name for (s, kernel), name in names.items() if s == scalar}
-        target = shop.folder / f"{file_stem(bench.model.name)}{SUFFIX[scalar]}_{build.compiler}{build.level}.o"
-        sizes = footprints(shop, target, list(functions.values())) if build.level == SMALL else {}
-        for kernel, name in functions.items():
-            records = results[scalar].records[kernel]
-            counted = [c for c, record in zip(counts[name], records, strict=True) if record.status == 0]
+    for scalar, known in entries.items():
+        sizes = _sizes(shop, build, known) if build.level == SMALL else {}
+        for entry in known.functions:
+            records = results[scalar].records[entry.name]
+            counted = [c for c, record in zip(counts[entry.function], records, strict=True) if record.status == 0]
             costs.append(KernelCost(
-                kernel, scalar, build.level, len(counted), min(counted, default=0), max(counted, default=0),
-                results[scalar].stack[kernel], sizes.get(name),
+                entry.name, scalar, build.level, len(counted), min(counted, default=0), max(counted, default=0),
+                results[scalar].stack[entry.name], sizes.get(entry.function),
             ))
     return results, costs
+
+
+def _sizes(shop: Workshop, build: _Build, entries: Entries) -> dict[str, Footprint]:
+    """Footprints by function; each file has an object of its own."""
+    found: dict[str, Footprint] = {}
+    for unit in dict.fromkeys(entry.unit for entry in entries.functions):
+        target = shop.object(f"{unit}.c", build.level, build.compiler)
+        found |= footprints(shop, target, [entry.function for entry in entries.functions if entry.unit == unit])
+    return found
 
 
 def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
@@ -276,16 +301,16 @@ def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
     Counts may vary where a sign is copied or a quotient is 0 for a divisor of 0: compilers make jumps of such choices.
     """
     assert build.core is not None
-    kernel = next(k for k in bench.programs[build.kernels][cost.scalar].kernels if k.name == cost.kernel)
+    entry = next(e for e in bench.entries[build.kernels][cost.scalar].functions if e.name == cost.kernel)
     where = f"{build.label}, {cost.scalar}: {cost.kernel}"
     wrong = []
     size = cost.footprint
     if size is not None and size.ram:
         wrong.append(f"{where} has {size.ram} bytes of static data")
-    if cost.stack >= STACK_WATCHED:
-        wrong.append(f"{where} takes more than {STACK_WATCHED} bytes of stack")
-    if cost.scalar in build.core.native and not uses_library(kernel, portable=True):
-        chooses = any(statement.operation in CHOICES for statement in kernel.statements)
+    if size is not None and cost.stack >= size.frame + BESIDE:
+        wrong.append(f"{where} takes more than {size.frame + BESIDE} bytes of stack")
+    if cost.scalar in build.core.native and not uses_library(entry, portable=True):
+        chooses = any(statement.operation in CHOICES for statement in entry.kernel.statements)
         if cost.fewest != cost.most and not chooses:
             wrong.append(f"{where} takes {cost.fewest} to {cost.most} instructions")
         if size is not None and size.undefined:

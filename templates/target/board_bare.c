@@ -83,16 +83,40 @@ void board_read(int file, void *bytes, size_t count) {
     move(SYS_READ, file, (uintptr_t)bytes, count);
 }
 
+/* A service takes an emulator longer than a kernel: what is written waits here until it is worth a call. */
+static unsigned char waiting[4096];
+static size_t waiting_count;
+static int waiting_file;
+
+static void flush(void) {
+    if (waiting_count > 0u) {
+        move(SYS_WRITE, waiting_file, (uintptr_t)waiting, waiting_count);
+        waiting_count = 0u;
+    }
+}
+
 void board_write(int file, const void *bytes, size_t count) {
-    move(SYS_WRITE, file, (uintptr_t)bytes, count);
+    const unsigned char *next = bytes;
+    if (file != waiting_file) {
+        flush();
+        waiting_file = file;
+    }
+    for (size_t k = 0; k < count; k++) {
+        if (waiting_count == sizeof waiting) {
+            flush();
+        }
+        waiting[waiting_count++] = next[k];
+    }
 }
 
 void board_close(int file) {
+    flush();
     const uintptr_t block[] = {(uintptr_t)file};
     (void)board_service(SYS_CLOSE, block);
 }
 
 void board_exit(int code) {
+    flush();
     const uintptr_t block[] = {APPLICATION_EXIT, (uintptr_t)code};
     (void)board_service(SYS_EXIT_EXTENDED, block);
     for (;;) {

@@ -17,8 +17,9 @@ from symgen.emit.c import emit_c
 from symgen.ir.schedule import schedule
 from symgen.target.build import Workshop
 from symgen.target.cores import BY_NAME
-from symgen.target.driver import driver_source, function_name, pack_states, states_file
+from symgen.target.driver import driver_source, pack_states, states_file
 from symgen.target.emulator import addresses, build_counter, count_calls, stage
+from symgen.target.entries import plain_entries
 from symgen.target.footprint import footprints
 from symgen.target.vectors import rounded_state
 from symgen.verify.reference import Reference, State
@@ -62,10 +63,11 @@ def _symgen(name: str, folder: Path) -> tuple[dict[str, int], int]:
     """Instructions of u at each level, and its bytes at -Os."""
     derivations = derive_quantities(model(name), ("inverse_dynamics",))
     program = schedule(derivations.mechanics, derivations.quantities, ("float64", "float32"))["float32"]
-    function = function_name(model(name), program.kernels[0], "float32")
+    entries = plain_entries(model(name), program)
+    function = entries.functions[0].function
     shop = Workshop(folder / "symgen", CORE)
     files = {path.rpartition("/")[2]: text for path, text in emit_c(model(name), program).items()}
-    shop.write({**files, "driver.c": driver_source(model(name), {"float32": program})})
+    shop.write({**files, "driver.c": driver_source(model(name), {"float32": entries})})
     inputs = folder / states_file("float32")
     inputs.write_bytes(pack_states(_states(name), "float32"))
     counter = build_counter(folder)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from dataclasses import replace
 from pathlib import Path
@@ -10,16 +11,17 @@ import pytest
 from shipped import model, programs
 
 from symgen.cli import main
-from symgen.ir.kernel import Program
 from symgen.target.compare import BOUND, compare
 from symgen.target.driver import Record, Results, driver_source, pack_states, unpack_results
+from symgen.target.entries import Entries, plain_entries, with_companions
 from symgen.target.vectors import perturbed, vectors_of
 from symgen.verify.reference import Reference, State
 
 
-def _program() -> Program:
+def _entries() -> Entries:
     program = programs("front_car")["float32"]
-    return replace(program, kernels=tuple(k for k in program.kernels if k.name in ("inverse_dynamics", "energy")))
+    few = replace(program, kernels=tuple(k for k in program.kernels if k.name in ("inverse_dynamics", "energy")))
+    return plain_entries(model("front_car"), few)
 
 
 def _results(u: float, states: int = 2, status: int = 0) -> Results:
@@ -49,47 +51,50 @@ def test_unknown_cores_are_refused_with_the_known_ones(capsys: pytest.CaptureFix
 
 
 def test_states_are_packed_row_by_row() -> None:
-    state = State((1.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
+    state = State((0.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
     data = pack_states([state, state], "float32")
-    assert struct.unpack("<I16f", data) == (2, *[float(x) for x in range(1, 9)] * 2)
+    count, *row = struct.unpack("<I12f", data[:52])
+    assert len(data) == 4 + 2 * 48
+    assert (count, row[:8]) == (2, [0, *map(float, range(2, 9))])
+    assert row[8:] == pytest.approx([0, 1, math.sin(2), math.cos(2)])
 
 
 def test_results_are_read_back_and_short_files_refused() -> None:
-    program = _program()
+    entries = _entries()
     rows = [struct.pack("<I2f", 0, *values) for values in ((1.0, 2.0), (3.0, 4.0))] * 2
     data = b"".join(rows) + struct.pack("<2I", 24, 32)
-    found = unpack_results(data, program, 2)
-    names = [kernel.name for kernel in program.kernels]
+    found = unpack_results(data, entries, 2)
+    names = [entry.name for entry in entries.functions]
     assert [found.records[name][1].outputs for name in names] == [rows[0][4:], rows[1][4:]]
     assert [found.stack[name] for name in names] == [24, 32]
     with pytest.raises(ValueError, match="instead of"):
-        unpack_results(data[:-1], program, 2)
+        unpack_results(data[:-1], entries, 2)
 
 
 def test_one_bit_or_one_status_is_a_difference() -> None:
-    program = _program()
-    units = {kernel.name: (1e-7, 1e-7) for kernel in program.kernels}
-    same = compare(program.kernels, "float32", True, _results(1.0), _results(1.0), units, 2)
+    entries = _entries()
+    units = {entry.name: (1e-7, 1e-7) for entry in entries.functions}
+    same = compare(entries, True, _results(1.0), _results(1.0), units, 2)
     assert same.different == 0
     assert not same.wrong
     next_float = struct.unpack("<f", struct.pack("<I", 0x3F800001))[0]
     for other in (_results(next_float), _results(1.0, status=1)):
-        found = compare(program.kernels, "float32", True, _results(1.0), other, units, 2)
+        found = compare(entries, True, _results(1.0), other, units, 2)
         assert found.different == 4
         assert len(found.wrong) == 2
 
 
 def test_a_library_may_differ_within_the_bound_at_regular_states() -> None:
-    program = _program()
-    units = {kernel.name: (1e-7, 1e-7) for kernel in program.kernels}
+    entries = _entries()
+    units = {entry.name: (1e-7, 1e-7) for entry in entries.functions}
     near, far = _results(1.0 + 0.5 * BOUND * 1e-7), _results(1.0 + 2 * BOUND * 1e-7)
-    close = compare(program.kernels, "float32", False, _results(1.0), near, units, 2)
+    close = compare(entries, False, _results(1.0), near, units, 2)
     assert close.different == 4
     assert not close.wrong
     assert 0 < close.distance <= BOUND
-    assert compare(program.kernels, "float32", False, _results(1.0), far, units, 2).wrong
-    assert not compare(program.kernels, "float32", False, _results(1.0), far, units, 0).wrong
-    assert compare(program.kernels, "float32", False, _results(1.0), _results(1.0, status=4), units, 2).wrong
+    assert compare(entries, False, _results(1.0), far, units, 2).wrong
+    assert not compare(entries, False, _results(1.0), far, units, 0).wrong
+    assert compare(entries, False, _results(1.0), _results(1.0, status=4), units, 2).wrong
 
 
 def test_vectors_are_many_seeded_and_hold_singular_ones() -> None:
@@ -101,8 +106,12 @@ def test_vectors_are_many_seeded_and_hold_singular_ones() -> None:
     assert len(perturbed(first.regular[:2], "float32")) == 12
 
 
-def test_the_driver_calls_every_kernel_of_both_types() -> None:
-    text = driver_source(model("front_car"), programs("front_car"))
+def test_the_driver_calls_every_function_of_both_types() -> None:
+    car = model("front_car")
+    entries = {s: with_companions(car, plain_entries(car, p), p) for s, p in programs("front_car").items()}
+    text = driver_source(car, entries)
     for kernel in programs("front_car")["float32"].kernels:
         assert f"front_car_{kernel.name}(" in text
         assert f"front_car_{kernel.name}_f(" in text
+    assert "front_car_inverse_dynamics_prepared_f(row_float.q" in text
+    assert "front_car_inverse_dynamics_sc(&sc_double" in text

@@ -16,6 +16,7 @@ from symgen.target.compare import compare
 from symgen.target.cores import BY_NAME, CORES, LEVELS
 from symgen.target.driver import driver_source, pack_states, results_file, states_file, unpack_results
 from symgen.target.emulator import addresses, build_counter, count_calls, emulate, stage
+from symgen.target.entries import plain_entries
 from symgen.target.footprint import footprints
 from symgen.target.record import KernelCost, TargetReport
 from symgen.target.run import measure
@@ -66,8 +67,8 @@ def test_a_model_passes_with_the_same_bits_at_every_level(report: TargetReport) 
     assert "the same bits" in target_tables(report)
 
 
-def _cost(report: TargetReport, level: str) -> KernelCost:
-    return next(c for c in report.cores[0].costs if (c.scalar, c.level) == ("float32", level))
+def _cost(report: TargetReport, level: str, kernel: str = "inverse_dynamics") -> KernelCost:
+    return next(c for c in report.cores[0].costs if (c.scalar, c.level, c.kernel) == ("float32", level, kernel))
 
 
 def test_cost_and_footprint_of_inverse_dynamics_on_a_cortex_m4f(report: TargetReport) -> None:
@@ -80,6 +81,13 @@ def test_cost_and_footprint_of_inverse_dynamics_on_a_cortex_m4f(report: TargetRe
     assert size.undefined == ()
     assert size.ram == 0
     assert small.stack <= size.frame < STACK_WATCHED
+
+
+def test_prepared_parameters_and_given_sines_cost_less(report: TargetReport) -> None:
+    plain, prepared, given = (
+        _cost(report, "-O2", f"inverse_dynamics{form}").most for form in ("", "_prepared", "_sc")
+    )
+    assert given < prepared < plain
 
 
 def test_calls_are_counted_exactly(tool: Callable[[str], str], tmp_path: Path) -> None:
@@ -128,7 +136,8 @@ def test_fused_operations_would_be_noticed(tool: Callable[[str], str], tmp_path:
     only = {"float32": replace(program, kernels=tuple(k for k in program.kernels if k.name == "inverse_dynamics"))}
     files = {path.removeprefix("c/"): text for path, text in emit_c(model("front_car"), only["float32"]).items()}
     shop = Workshop(tmp_path, core)
-    shop.write({**files, "driver.c": driver_source(model("front_car"), only)})
+    entries = plain_entries(model("front_car"), only["float32"])
+    shop.write({**files, "driver.c": driver_source(model("front_car"), {"float32": entries})})
     states = vectors_of(Reference(model("front_car"))).rounded("float32")
     inputs = tmp_path / states_file("float32")
     inputs.write_bytes(pack_states(states, "float32"))
@@ -138,6 +147,6 @@ def test_fused_operations_would_be_noticed(tool: Callable[[str], str], tmp_path:
         stage(image, [inputs])
         emulate(core, image)
         results.append((image.parent / results_file("float32")).read_bytes())
-    plain, fused = (unpack_results(data, only["float32"], len(states)) for data in results)
+    plain, fused = (unpack_results(data, entries, len(states)) for data in results)
     units = {"inverse_dynamics": (1.0,) * len(states)}
-    assert compare(only["float32"].kernels, "float32", True, plain, fused, units, 256).wrong
+    assert compare(entries, True, plain, fused, units, 256).wrong
