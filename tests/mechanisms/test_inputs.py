@@ -1,0 +1,124 @@
+"""Every kind of input against virtual power by differences of places: a column of M is what its force does to q."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from symgen.model.load import load_text
+from symgen.verify.reference import Reference, State
+
+TEXT = """\
+model: crane
+joints:
+  mast: {type: revolute, axis: z, coordinate: a}
+  boom: {type: revolute, parent: mast, at: [0, 0, 1], axis: y, rotation: [[x, 0.1]], coordinate: b}
+  trolley: {type: prismatic, parent: boom, axis: x, coordinate: s}
+bodies:
+  mast: {mass: 3, inertia: {xx: 1, yy: 1, zz: 1}}
+  boom: {mass: 2, com: [0.4, 0, 0], inertia: {xx: 0.2, yy: 0.3, zz: 0.3}}
+  trolley: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}
+gravity: [0, 0, -9.81]
+points:
+  hook: {frame: trolley, at: [0.2, 0.1, -0.3]}
+  pulley: {frame: mast, at: [0.1, 0, 1.4]}
+  bollard: {at: [1, 0.5, 0]}
+  # the axes of the boom, as points at distance 1 from its origin
+  boom_o: {frame: boom}
+  boom_x: {frame: boom, at: [1, 0, 0]}
+  boom_y: {frame: boom, at: [0, 1, 0]}
+  boom_z: {frame: boom, at: [0, 0, 1]}
+inputs:
+  in_the_joint: {unit: N*m, joint: b}
+  by_coefficients: {unit: N, acts_on: {s: cos(b), a: s}}
+  at_a_point: {unit: N, point: hook, direction: [0.6, 0, 0.8]}
+  in_the_axes_of_a_body: {unit: N, point: hook, direction: [0, 0.6, -0.8], axes: boom}
+  between_points: {unit: N, point: hook, direction: [0, 1, 0], axes: boom, reaction: pulley}
+  along_a_cable: {unit: N, cable: [hook, pulley, bollard]}
+  torque: {unit: N*m, torque_on: boom, direction: [0, 0.8, 0.6]}
+  torque_between_bodies: {unit: N*m, torque_on: boom, direction: [0, 1, 0], axes: boom, reaction: mast}
+outputs: [control_matrix, point_position]
+"""
+Q = (0.4, 0.3, 0.5)
+STEP = 1e-6
+
+
+@cache
+def crane() -> Reference:
+    return Reference(load_text(TEXT, "crane.yaml"))
+
+
+@cache
+def places(q: tuple[float, ...]) -> dict[str, np.ndarray]:
+    """The points at a configuration."""
+    zero = (0,) * 3
+    found = crane().matrices(State(q, zero, zero, (0,) * 8, ()), ["point_position"])["point_position"]
+    rows = [[float(x) for x in row] for row in found.tolist()]
+    return {point.name: np.array(row) for point, row in zip(crane().model.mechanism.points, rows, strict=True)}
+
+
+def column(name: str) -> np.ndarray:
+    """The input's column of the control matrix."""
+    zero = (0,) * 3
+    matrix = crane().matrices(State(Q, zero, zero, (0,) * 8, ()), ["control_matrix"])["control_matrix"]
+    k = [one.name for one in crane().model.inputs].index(name)
+    return np.array([float(matrix[i, k]) for i in range(3)])
+
+
+def slope(point: str) -> np.ndarray:
+    """d place / d q (3 x 3)."""
+    columns = []
+    for i in range(3):
+        there, here = (tuple(x + side * STEP * (k == i) for k, x in enumerate(Q)) for side in (1, -1))
+        columns.append((places(there)[point] - places(here)[point]) / (2 * STEP))
+    return np.array(columns).T
+
+
+def boom_axes(q: tuple[float, ...] = Q) -> np.ndarray:
+    """The matrix of the boom's axes in those of the world."""
+    return np.array([places(q)[f"boom_{axis}"] - places(q)["boom_o"] for axis in "xyz"]).T
+
+
+def turning(of: int) -> np.ndarray:
+    """The boom's rate of turn, in world axes, per rate of a coordinate: the skew part of R' R^T."""
+    there, here = (tuple(x + side * STEP * (k == of) for k, x in enumerate(Q)) for side in (1, -1))
+    skew = (boom_axes(there) - boom_axes(here)) / (2 * STEP) @ boom_axes().T
+    return np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
+
+
+def test_in_a_joint_and_by_coefficients() -> None:
+    assert column("in_the_joint").tolist() == [0, 1, 0]
+    assert column("by_coefficients") == pytest.approx([0.5, 0, math.cos(0.3)])
+
+
+def test_forces_at_points() -> None:
+    assert column("at_a_point") == pytest.approx(slope("hook").T @ [0.6, 0, 0.8], abs=1e-9)
+    direction = boom_axes() @ [0, 0.6, -0.8]
+    assert column("in_the_axes_of_a_body") == pytest.approx(slope("hook").T @ direction, abs=1e-9)
+
+
+def test_a_force_between_points_is_equal_and_opposite() -> None:
+    direction = boom_axes() @ [0, 1, 0]
+    assert column("between_points") == pytest.approx((slope("hook") - slope("pulley")).T @ direction, abs=1e-9)
+
+
+def test_a_cable_pulls_its_points_together() -> None:
+    def length(q: tuple[float, ...]) -> float:
+        at = places(q)
+        return float(np.linalg.norm(at["hook"] - at["pulley"]) + np.linalg.norm(at["pulley"] - at["bollard"]))
+
+    shortening = []
+    for i in range(3):
+        there, here = (tuple(x + side * STEP * (k == i) for k, x in enumerate(Q)) for side in (1, -1))
+        shortening.append(-(length(there) - length(here)) / (2 * STEP))
+    assert column("along_a_cable") == pytest.approx(shortening, abs=1e-9)
+
+
+def test_torques() -> None:
+    expected = [turning(i) @ [0, 0.8, 0.6] for i in range(3)]
+    assert column("torque") == pytest.approx(expected, abs=1e-9)
+    # about the hinge between the two bodies it is the torque in that joint
+    assert column("torque_between_bodies") == pytest.approx([0, 1, 0], abs=1e-15)
