@@ -62,6 +62,7 @@ class PythonCandidate:
     form: str
     batch: Callable[[Any, Any, Any, Any], Any]
     single: Callable[[Sequence[float], Sequence[float], Sequence[float], Sequence[float]], Any]
+    chosen: bool = False
 
     @property
     def label(self) -> str:

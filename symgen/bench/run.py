@@ -164,7 +164,7 @@ def _compare(
             footprint=None,
             operations=None,
             errors=errors,
-            chosen=candidate.generator == "symgen",
+            chosen=candidate.chosen,
         )
         measured.append(row)
     return Comparison(task, len(samples), _with_front(measured), left_out, many)
@@ -211,7 +211,7 @@ def _measure(
 def _python(
     model: Model, task: Task, programs: dict[str, dict[Scalar, Program]], full_rank: bool
 ) -> list[PythonCandidate]:
-    return [symgen_python(model, programs, task), *(python_peers(model, task) if full_rank else [])]
+    return [*symgen_python(model, programs, task), *(python_peers(model, task) if full_rank else [])]
 
 
 def _with_front(measured: Sequence[Measured]) -> tuple[Measured, ...]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
 from symgen.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
-from symgen.dynamics.catalogue import BY_NAME, derive
+from symgen.dynamics.catalogue import Derived
+from symgen.dynamics.compared import motions_of
 from symgen.dynamics.inverse import forms_of
-from symgen.dynamics.select import derive_quantities, ways
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.select import ABSOLUTE, derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.operations import count_operations
 from symgen.emit.pairs import pair_names
@@ -28,18 +30,24 @@ PORTABLE, LIBRARY = "portable", "libm"
 def programs_of(model: Model, task: Task, scalars: Sequence[Scalar]) -> dict[str, dict[Scalar, Program]]:
     """The task's kernel alone, by form; the first is what symgen generates, the others are those it did not take."""
     derivations = derive_quantities(model, (task.quantity,))
-    chosen = derivations.choices[0].way
-    found = {chosen: schedule(derivations.mechanics, derivations.quantities, scalars)}
-    if task.quantity == "inverse_dynamics":
-        for form, (mechanics, quantity) in forms_of(model).items():
-            if form not in found:
-                found[form] = schedule(mechanics, [quantity], scalars)
-        return found
-    for way, derivation in ways(derivations.mechanics, derivations.generic).items():
-        if way not in found:
-            quantity = derive(BY_NAME[task.quantity], derivation)
-            found[way] = schedule(derivations.mechanics, [quantity], scalars)
+    choice = derivations.choices[0]
+    absolute = " in absolute angles" if choice.form and choice.way == ABSOLUTE else ""
+    found = {(choice.form or choice.way) + absolute: schedule(derivations.mechanics, derivations.quantities, scalars)}
+    for form, (mechanics, quantity) in _forms(model, task.quantity):
+        if form not in found:
+            found[form] = schedule(mechanics, [quantity], scalars)
     return found
+
+
+def _forms(model: Model, quantity: str) -> Iterator[tuple[str, tuple[Mechanics, Derived]]]:
+    """Every form by name, each on a graph of its own."""
+    if quantity == "inverse_dynamics":
+        yield from forms_of(model).items()
+        return
+    for form, (mechanics, derived) in motions_of(model).items():
+        for one in derived:
+            if one.name == quantity:
+                yield form, (mechanics, one)
 
 
 def symgen_candidates(
@@ -57,10 +65,17 @@ def symgen_candidates(
     return tuple(found)
 
 
-def symgen_python(model: Model, programs: dict[str, dict[Scalar, Program]], task: Task) -> PythonCandidate:
-    """The NumPy module of the way that symgen generates."""
-    way, by_scalar = next(iter(programs.items()))
-    program = by_scalar["float64"]
+def symgen_python(
+    model: Model, programs: dict[str, dict[Scalar, Program]], task: Task
+) -> tuple[PythonCandidate, ...]:
+    """The NumPy modules of every form, first the one that symgen generates."""
+    return tuple(
+        _python(model, by_scalar["float64"], form, task, number == 0)
+        for number, (form, by_scalar) in enumerate(programs.items())
+    )
+
+
+def _python(model: Model, program: Program, form: str, task: Task, chosen: bool) -> PythonCandidate:
     (source,) = emit_python(model, program).values()
     module = PythonModule(str(source)).module
     function = getattr(module, task.quantity)
@@ -71,7 +86,7 @@ def symgen_python(model: Model, programs: dict[str, dict[Scalar, Program]], task
     def single(q: Sequence[float], qd: Sequence[float], third: Sequence[float], p: Sequence[float]) -> Any:
         return function(*_arrays(program.kernels[0], q, qd, third), p=module.Parameters(*p))
 
-    return PythonCandidate("symgen", f"{way}, Python", batch, single)
+    return PythonCandidate("symgen", f"{form}, Python", batch, single, chosen)
 
 
 def _arrays(kernel: Kernel, q: Any, qd: Any, third: Any) -> list[Any]:

@@ -15,7 +15,8 @@ def bench_tables(result: Benchmark) -> str:
     for comparison in result.comparisons:
         sections.append(f"{comparison.task.quantity}, {comparison.states} states\n{_table(comparison)}")
         sections += [many_lines(comparison.many)] if comparison.many else []
-        sections += [f"  not measured: {name} ({why})" for name, why in comparison.left_out]
+        lines = [f"  not measured: {name} ({why})" for name, why in comparison.left_out]
+        sections += ["\n".join(lines)] if lines else []
     sections += [f"  note: {note}" for note in result.notes]
     return "\n\n".join(sections) + "\n"
 

@@ -10,6 +10,7 @@ from typing import Any
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.paths.drawing import svg
 from symgen.paths.line_chart import COLOURS
+from symgen.stress.axes import logarithmic
 from symgen.stress.form_charts import form_chart
 from symgen.stress.kernels import SCALARS
 from symgen.stress.run import Stress
@@ -17,10 +18,10 @@ from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by
 from symgen.verify.tolerance import FACTOR
 
 SYMBOLS = {
-    "inverse_dynamics": "$u$",
-    "forward_dynamics": r"$\ddot{q}$",
-    "multipliers": r"$\lambda$",
-    "nullspace_projector": "$N_B$",
+    "inverse_dynamics": "u",
+    "forward_dynamics": "q̈",
+    "multipliers": "λ",
+    "nullspace_projector": "N_B",
 }
 # symgen last: drawn on top
 LOOKS: Mapping[str, tuple[str, str, str]] = {
@@ -78,8 +79,8 @@ def _claim(result: Stress) -> str:
         panel = figure.subplots()
         _curves(panel, by_form(result.series, "inverse_dynamics", "float64", [shown]), "float64", True)
         panel.set_title(f"towards {result.families[shown].label} = 0, float64", fontsize=9, loc="left")
-        panel.set_ylabel("relative error of $u$")
-        panel.set_xlabel("distance $d$ from the singularity")
+        panel.set_ylabel("relative error of u")
+        panel.set_xlabel("distance d from the singularity")
         panel.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0)
 
     return svg(draw, height=3.2)
@@ -99,7 +100,7 @@ def _forms(result: Stress) -> str:
         for panel, scalar in zip(panels[0], SCALARS, strict=True):
             panel.set_title(scalar, fontsize=9, loc="left")
         for panel in panels[-1]:
-            panel.set_xlabel("distance $d$")
+            panel.set_xlabel("distance d")
         handles, labels = panels[0][0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
 
@@ -119,9 +120,8 @@ def _curves(panel: Any, forms: Mapping[str, Series], scalar: Scalar, marked: boo
             markersize=2.6, linewidth=1.2, zorder=3 if form == SYMGEN else 2,
         )
     panel.axhline(eps, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
-    panel.set_xscale("log")
-    panel.set_yscale("log")
-    panel.minorticks_off()
+    logarithmic(panel.xaxis)
+    logarithmic(panel.yaxis)
     panel.set_ylim(eps / 50, 3 * NOTHING)
     panel.set_xlim(2, min((e.distance for one in forms.values() for e in one.errors), default=0.1) / 2)
 
@@ -141,13 +141,12 @@ def _families(result: Stress) -> str:
                     if SYMGEN in forms:
                         _units(panel, forms[SYMGEN], COLOURS[k], line, f"{symbol} {scalar}")
             panel.axhline(FACTOR, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
-            panel.set_xscale("log")
-            panel.set_yscale("log")
-            panel.minorticks_off()
+            logarithmic(panel.xaxis)
+            logarithmic(panel.yaxis)
             panel.set_ylim(0.03, 1e3)
             panel.invert_xaxis()
             panel.set_title(kind, fontsize=9, loc="left")
-            panel.set_xlabel("$d$", labelpad=0)
+            panel.set_xlabel("d", labelpad=0)
         for panel in panels[len(kinds) :]:
             panel.set_visible(False)
         for panel in panels[::2]:
@@ -174,8 +173,8 @@ def _units(panel: Any, series: Series, colour: str, line: str, label: str) -> No
 def _long_run(result: Stress) -> str:
     """Drift, tracking error and energy balance over the run, with and without projections."""
     rows = (
-        ("position_drift", "$|g|$"),
-        ("rate_drift", r"$|B\,\dot{q}|$"),
+        ("position_drift", "|g|"),
+        ("rate_drift", "|B q̇|"),
         ("tracking", "tracking error"),
         ("energy", "energy error in J"),
     )
@@ -192,7 +191,8 @@ def _long_run(result: Stress) -> str:
                     label="with projections" if run.projected else "without projections",
                 )
             values = [x for run in result.runs for x in getattr(run, name) if x > 0]
-            panel.set_yscale("log" if max(values) > 10 * min(values) else "linear")
+            if max(values) > 10 * min(values):
+                logarithmic(panel.yaxis)
             panel.minorticks_off()
             panel.set_ylabel(label)
         panels[-1].set_xlabel("time in s")

@@ -7,13 +7,14 @@ from typing import Any
 
 from symgen.paths.drawing import svg
 from symgen.paths.line_chart import COLOURS
+from symgen.stress.axes import logarithmic
 from symgen.stress.families import Kind
 from symgen.stress.form_kernels import LABELS
 from symgen.stress.run import Stress
 from symgen.stress.series import SYMGEN, Series, by_form
 from symgen.verify.tolerance import FACTOR
 
-SYMBOLS = {"inverse_dynamics": "$u$", "forward_dynamics": r"$\ddot{q}$", "multipliers": r"$\lambda$"}
+SYMBOLS = {"inverse_dynamics": "u", "forward_dynamics": "q̈", "multipliers": "λ"}
 KINDS: tuple[Kind, ...] = ("parameter", "input", "constraint", "mass ratios")
 LOWEST, HIGHEST = 0.05, 1e9  # units; a form without a result is drawn at the top
 STYLES = ("-", "--", ":", "-.")
@@ -41,18 +42,17 @@ def form_chart(result: Stress) -> str | None:
                     if label in forms:
                         _line(panel, forms[label], label.removeprefix("form "), colour, style, 1.0, 2)
                 if SYMGEN in forms:
-                    _line(panel, forms[SYMGEN], SYMGEN, "#000000", "-", 2.2, 1)
+                    _line(panel, forms[SYMGEN], SYMGEN, "#BBBBBB", "-", 3.5, 1)
                 panel.axhline(FACTOR, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
             row[0].set_ylabel(f"{SYMBOLS[quantity]}: error over unit")
         for panel, kind in zip(panels[0], kinds, strict=True):
             panel.set_title(kind, fontsize=9, loc="left")
-            panel.set_xscale("log")
-            panel.set_yscale("log")
-            panel.minorticks_off()
+            logarithmic(panel.xaxis)
+            logarithmic(panel.yaxis)
             panel.set_ylim(LOWEST, HIGHEST * 3)
             panel.set_xlim(2, 5e-13)
         for panel in panels[-1]:
-            panel.set_xlabel("$d$", labelpad=0)
+            panel.set_xlabel("d", labelpad=0)
         shown: dict[str, Any] = {}
         for panel in panels.ravel():
             shown |= {label: line for line, label in zip(*panel.get_legend_handles_labels(), strict=True)}

@@ -12,7 +12,7 @@ import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
 from symgen.stress.families import Family
-from symgen.stress.form_kernels import FormKernels
+from symgen.stress.form_kernels import LABELS, FormKernels
 from symgen.stress.forms import Data, partitioned, projected, switched
 from symgen.stress.kernels import PIECES, STRESSED, Kernels, rounded_state
 from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Error, Series
@@ -121,7 +121,8 @@ class Sweeper:
         exceeded = [(self._families[one.family], one) for one in series if one.form == SYMGEN and one.breaks]
         reasons = [self._reason(family, one) for family, one in exceeded]
         sentences = [_sentence(family, one) for family, one in exceeded]
-        limits = tuple(f"{text}; {why}" for text, why in zip(sentences, reasons, strict=True) if why)
+        others = [_within(series, one) for _, one in exceeded]
+        limits = tuple(f"{text}; {why}{o}" for text, why, o in zip(sentences, reasons, others, strict=True) if why)
         failures = (text for text, why in zip(sentences, reasons, strict=True) if not why)
         return Sweep(series, statuses, (*failures, *self._failures), limits)
 
@@ -357,6 +358,18 @@ def _sentence(family: Family, one: Series) -> str:
         f"at most {worst.units:.2g} times d + eps |y*| ({FACTOR:g} is allowed) at d = {worst.distance:.2g}, "
         f"relative {worst.relative:.2g}"
     )
+
+
+def _within(series: Sequence[Series], exceeded: Series) -> str:
+    """Which forms by name stay within the tolerance where the generated one does not."""
+    found = [
+        one.form.removeprefix("form ")
+        for one in series
+        if (one.family, one.scalar, one.quantity) == (exceeded.family, exceeded.scalar, exceeded.quantity)
+        and one.form in LABELS.values()
+        and one.breaks is None
+    ]
+    return f"; within it: --form {exceeded.quantity}={' or '.join(found)}" if found else ""
 
 
 def _texts(values: Sequence[float]) -> str:

@@ -77,7 +77,7 @@ def test_forward_dynamics_and_multipliers(name: str, quantity: str, tmp_path: Pa
     results = results_of(built, tmp_path, candidates, task)
     assert [c.label for c in candidates] == ["CasADi native"]
     assert all(errors_of(load, results[c.entry]).largest < ACCURATE for c in candidates)
-    python = symgen_python(described, programs_of(described, task, ("float64",)), task)
+    python, *_ = symgen_python(described, programs_of(described, task, ("float64",)), task)
     assert errors_of(load, run_python(described, python, load)[0]).largest < ACCURATE
 
 

@@ -51,6 +51,7 @@ def beside_special_angles(name: str) -> list[State]:
     return found
 
 
+@cache
 def rows_of_one_size(name: str, state: State) -> bool:
     """Whether lengths are O(1), as the thresholds assume."""
     if model(name).r == 0:
@@ -60,10 +61,14 @@ def rows_of_one_size(name: str, state: State) -> bool:
     return min(rows) > GRADED * max(rows)
 
 
-def measures(name: str, state: State, quantity: str) -> list[float]:
+@cache
+def both_measures(name: str, state: State) -> tuple[float, ...]:
+    return tuple(float(x) for x in reference(name).matrices(state, ("singularity",), BITS)["singularity"].entries())
+
+
+def measures(name: str, state: State, quantity: str) -> tuple[float, ...]:
     """What the rank of a kernel's result depends on."""
-    ranks, sizes = reference(name).ranks, model(name)
-    both = [float(x) for x in reference(name).matrices(state, ("singularity",), BITS)["singularity"].entries()]
+    ranks, sizes, both = reference(name).ranks, model(name), both_measures(name, state)
     driven = quantity == "inverse_dynamics" and ranks.actuation == sizes.n - ranks.constraints
     return both if driven else both[:1]
 
