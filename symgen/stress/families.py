@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from symgen.model.model import Model
-from symgen.stress.determinants import Trouble, choices, common_troubles, joint_troubles
+from symgen.stress.determinants import Choices, Trouble, choices, common_troubles, joint_troubles
 from symgen.stress.dimensions import parameter_dimensions
 from symgen.stress.zeros import BITS as PLACE_BITS
 from symgen.stress.zeros import Place, places
@@ -55,21 +55,29 @@ class Family:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """What was found: the families, whether determinants were factored, and what has no singularity (in words)."""
+    """What was found: the families, whether determinants were factored, and what has no singularity (in words).
+
+    `partitions` counts the choices of independent coordinates, `failing` those that fail along one of the families.
+    """
 
     families: tuple[Family, ...]
     factored: bool
     nowhere: tuple[str, ...]
+    partitions: int = 0
+    failing: int = 0
 
 
 def search(reference: Reference) -> Search:
     """All families of a model, in a fixed order."""
-    singular, factored, nowhere = _singularities(reference)
-    return Search((*singular, *_extremes(reference)), factored, nowhere)
-
-
-def _singularities(reference: Reference) -> tuple[list[Family], bool, tuple[str, ...]]:
     known = choices(reference)
+    singular, nowhere = _singularities(reference, known)
+    partitions = {*known.partitions, *(subset for trouble in known.troubles for subset in trouble.partitions)}
+    failing = {subset for family in singular for subset in family.partitions}
+    families = (*singular, *_extremes(reference))
+    return Search(families, known.factored, nowhere, len(partitions), len(failing))
+
+
+def _singularities(reference: Reference, known: Choices) -> tuple[list[Family], tuple[str, ...]]:
     found: list[Family] = []
     nowhere: list[str] = []
     for trouble in known.troubles:
@@ -93,7 +101,7 @@ def _singularities(reference: Reference) -> tuple[list[Family], bool, tuple[str,
             what = "the rank of B drops" if kind == "constraint" else "the degree of actuation drops"
             proven = known.factored and not candidates
             nowhere.append(f"{what} nowhere" if proven else f"{what}: no such configuration was found")
-    return sorted(found, key=lambda family: ORDER.index(family.kind)), known.factored, tuple(nowhere)
+    return sorted(found, key=lambda family: ORDER.index(family.kind)), tuple(nowhere)
 
 
 def _places(reference: Reference, trouble: Trouble) -> list[Place]:

@@ -87,6 +87,9 @@ def _model(result: Mapping[str, Any], charts: Sequence[str]) -> list[str]:
     parts = [f"## {result['model']}\n"]
     families = [f"- {family['kind']}: `{family['label']}`" for family in result["families"] if _singular(family)]
     parts.append("\n".join(["Singularities found:\n", *(families or ["- none"])]) + "\n")
+    if result["partitions"]:
+        choices = f"{result['failing_partitions']} of {result['partitions']} choices of independent coordinates"
+        parts.append(f"Along these fail {choices}.\n")
     if result["nowhere"]:
         parts.append("\n".join(["Looked for without success:\n", *(f"- {line}" for line in result["nowhere"])]) + "\n")
     parts += [_forms(result, kind) for kind in FORM_KINDS]

@@ -73,6 +73,8 @@ class Stress:
             "sizes": self.sizes,
             "factored": self.searched.factored,
             "nowhere": list(self.searched.nowhere),
+            "partitions": self.searched.partitions,
+            "failing_partitions": self.searched.failing,
             "families": families,
             "series": [_series(one) for one in self.series],
             "statuses": [asdict(one) for one in self.statuses],

@@ -42,6 +42,15 @@ def test_front_car_has_parameter_singularities_only() -> None:
     assert "the degree of actuation drops nowhere" in found("front_car").nowhere
 
 
+def test_every_choice_of_coordinates_that_can_fail_does_along_a_family() -> None:
+    # no row of the car holds the rate of phi, so that phi is in each of the choices
+    assert known("front_car").partitions == ((0, 3), (1, 3), (2, 3))
+    assert (found("front_car").partitions, found("front_car").failing) == (3, 3)
+    # the rod is never upright
+    assert (found("slider_crank").partitions, found("slider_crank").failing) == (3, 2)
+    assert any(line.startswith("cos β = 0: not found") for line in found("slider_crank").nowhere)
+
+
 def test_rear_car_has_an_input_singularity() -> None:
     assert singular("rear_car")["cos φ"] == "input"
     assert singular("rear_car")["cos θ"] == "parameter"
