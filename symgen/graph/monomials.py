@@ -36,6 +36,7 @@ class Monomials:
         self._squares = 0  # MIDDLE - 2 in every field
         self._sines = 0  # the highest bit of the fields of sines
         self._cosines = 0
+        self._partners: dict[Code, Code] = {}
 
     def unit(self, atom: int) -> Code:
         """The code of an atom to the power 1."""
@@ -99,24 +100,32 @@ class Monomials:
 
     def _partner(self, square: Code) -> Code:
         """The code of the cosine or sine of the same angle as an atom, given by the code of its square."""
-        node = self._graph.nodes[self._atoms[(square.bit_length() - 2) // BITS]]
-        return self.unit(self._graph.trig("cos" if node.op == "sin" else "sin", node.args[0]).serial)
+        known = self._partners.get(square)
+        if known is None:
+            node = self._graph.nodes[self._atoms[(square.bit_length() - 2) // BITS]]
+            other = self._graph.trig("cos" if node.op == "sin" else "sin", node.args[0])
+            known = self._partners[square] = self.unit(other.serial)
+        return known
 
     def _with_sines(self, terms: Terms) -> Terms:
         """k T - k T c^2 = k T s^2 wherever both terms stand."""
         bias, cosines = self._squares, self._cosines
+        squares = {key: self._first((key + bias) & cosines) for key in terms if (key + bias) & cosines}
+        if not any(terms.get(key - square) == -terms[key] for key, square in squares.items()):
+            return terms
         work = dict(terms)
-        for key in sorted((key for key in terms if (key + bias) & cosines), key=self.read):
-            value = work.get(key)
-            if value is None:
-                continue
-            # the first in the order of the atoms
-            square = min(self._fields((key + bias) & cosines), key=lambda code: self._atoms[code.bit_length() // BITS])
-            rest = key - 2 * square
-            if work.get(rest) == -value:
+        for key in sorted(squares, key=self.read):
+            value, rest = work.get(key), key - squares[key]
+            if value is not None and work.get(rest) == -value:
                 del work[key], work[rest]
-                _put(work, rest + 2 * self._partner(2 * square), -value)
+                _put(work, rest + 2 * self._partner(squares[key]), -value)
         return work
+
+    def _first(self, found: int) -> Code:
+        """The square of the first atom, in the order of atoms, among fields whose highest bit is set."""
+        if not found & (found - 1):
+            return 2 << (found.bit_length() - BITS)
+        return 2 * min(self._fields(found), key=lambda unit: self._atoms[unit.bit_length() // BITS])
 
     def _fields(self, found: int) -> Iterator[Code]:
         """The units of the fields whose highest bit is set."""
