@@ -5,8 +5,8 @@ frame passes to its parent.  A frame's coordinates get the power of that wrench 
 is formed or differentiated (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 5.3; Luh, Walker, Paul 1980).
 
 Lumped, the bodies of a frame are one, given by mass, first moment and inertia about the frame's origin; the mass of a
-frame that turns about a point of its parent is put there as a point mass, and a rotor on a fixed axis is part of what it
-turns (base parameters: Khalil and Dombre, Modeling, Identification and Control of Robots, 2002, ch. 9).
+frame that turns about a point of its parent is put there as a point mass, and a rotor on a fixed axis is part of what
+it turns (base parameters: Khalil and Dombre, Modeling, Identification and Control of Robots, 2002, ch. 9).
 """
 
 from __future__ import annotations
@@ -92,10 +92,14 @@ class _Recursion:
         for frame in reversed(frames):
             wrench, joint = wrenches[frame.name], self.kinematics.joint(frame.name)
             carried = applied(joint.axes, wrench.force)
-            self._work(totals, joint.turning, wrench.moment)
+            absolute = self.kinematics.twist(frame.name).angular
+            # a moment that works on the frame's own rate alone need not be handed to the parent and taken off again
+            handed = self._terms(absolute) >= self._terms(joint.turning)
+            self._work(totals, joint.turning if handed else absolute, wrench.moment)
             self._work(totals, joint.place_rate, carried)
             if frame.parent != WORLD:
-                moment = plus(applied(joint.axes, wrench.moment), self._cross(joint.place, carried))
+                moment = self._cross(joint.place, carried)
+                moment = plus(applied(joint.axes, wrench.moment), moment) if handed else moment
                 wrenches[frame.parent] = _sum(wrenches[frame.parent], Wrench(carried, moment))
         for rotor in rotors:
             rate = self.bodies.names[f"{rotor.coordinate}_dot"]
@@ -204,6 +208,11 @@ class _Recursion:
             for index, share in enumerate(gradient(self.graph, rate, self.bodies.qd)):
                 if not share.is_zero:
                     totals[index] = totals[index] + share * component
+
+    def _terms(self, rates: Vector3) -> int:
+        """How many rates of coordinates the components depend on, in all."""
+        shares = (gradient(self.graph, rate, self.bodies.qd) for rate in rates if not rate.is_zero)
+        return sum(not share.is_zero for row in shares for share in row)
 
     def _cross(self, a: Vector3, b: Vector3) -> Vector3:
         if a is self.none or b is self.none:

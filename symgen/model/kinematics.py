@@ -13,7 +13,7 @@ from typing import Generic
 from symgen.model import combine
 from symgen.model.expression import Expression
 from symgen.model.joints import Joint, joint_of, main_axis, plane_turn, turn_matrix
-from symgen.model.mechanism import WORLD, ZERO, Component, Mechanism, Vector3
+from symgen.model.mechanism import WORLD, ZERO, Component, Mechanism, Quaternion, Vector3
 from symgen.model.triples import (
     Arithmetic,
     P,
@@ -28,6 +28,7 @@ from symgen.model.triples import (
     product,
     transposed,
 )
+from symgen.model.walk import names_in
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,10 @@ class Kinematics(Generic[P, V]):
     def place(self, frame: str, at: Triple[P], seen_from: str = WORLD) -> Triple[P]:
         """A place given in the frame, from the origin and in the axes of another."""
         meeting = self._meeting(frame, seen_from)
+        still = self._last_fixed_turn(meeting, frame)
+        if still not in (None, frame):
+            # what is added up beyond a fixed turn is turned once
+            at, frame = self.place(frame, at, still), still
         axes, origin = self._below(meeting, frame)
         found = plus(origin, applied(axes, at))
         if meeting == seen_from:
@@ -179,6 +184,19 @@ class Kinematics(Generic[P, V]):
         """The nearest frame that both descend from."""
         line = set(self.lineage(one))
         return next(frame for frame in self.lineage(other) if frame in line)
+
+    def _last_fixed_turn(self, ancestor: str, frame: str) -> str | None:
+        """The last frame on the way that is turned against the ancestor by fixed angles only; in a plane angles add."""
+        found = None
+        if self._sums_of_angles and self.plane(ancestor, frame) is not None:
+            return None
+        line = self.lineage(frame)
+        for name in reversed(line[: line.index(ancestor)]):
+            turns = self.frames[name].rotation
+            if isinstance(turns, Quaternion) or any(list(names_in(turn.angle)) for turn in turns):
+                break
+            found = name if turns or found else None
+        return found
 
     def _located(self, owner: str) -> tuple[str, Triple[P], str]:
         """Frame, place in it, and carrier of a point or of a frame's origin."""
