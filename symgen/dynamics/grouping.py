@@ -8,29 +8,55 @@ anyway, and a reciprocal that serves one product becomes its quotient.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 from symgen.dynamics.common_factors import with_common_factors
 from symgen.dynamics.factoring import Factoring
+from symgen.dynamics.late_factors import with_late_factors
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import cost, topological
+from symgen.graph.traverse import cost, reached, topological
+from symgen.records import dataclass
+
+_Step: TypeAlias = Callable[[Graph, Factoring, Sequence[Scalar]], list[Scalar]]
+# Outputs of so many nodes are regrouped in one way only.
+SHORT = 400
+
+
+@dataclass(frozen=True, slots=True)
+class _Weighed:
+    """Outputs and their counted cost."""
+
+    outputs: tuple[Scalar, ...]
+    weight: int
 
 
 def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     """The outputs with their products regrouped, each step taken where it saves operations.
 
-    What is taken out of sums decides what later steps find, so that more than one beginning is tried.
+    What is taken out of sums decides what later steps find, so that short outputs are begun in two ways.
     """
-    start = _unified(graph, outputs)
-    found = []
-    for beginning in ((_with_common_factors,), (_with_collected_factors,)):
-        best = start
-        for step in (*beginning, _with_numbers_moved, _with_parameters_joined, _with_quotients):
-            changed = _unified(graph, step(graph, factoring, best))
-            if cost(changed).weight < cost(best).weight:
-                best = changed
-        found.append(best)
-    return min(found, key=lambda outputs: cost(outputs).weight)
+    start = _weighed(_unified(graph, outputs))
+    found = _improved(graph, factoring, start, (_with_collected_factors, *_STEPS))
+    if len(reached(outputs)) <= SHORT:
+        pairs = _improved(graph, factoring, start, (_with_common_factors,))
+        others = list(dict.fromkeys([found, *([] if pairs is start else [_improved(graph, factoring, pairs, _STEPS)])]))
+        late = [_improved(graph, factoring, one, (with_late_factors,)) for one in others]
+        found = min([*others, *late], key=lambda one: one.weight)
+    return list(_improved(graph, factoring, found, (_with_quotients,)).outputs)
+
+
+def _improved(graph: Graph, factoring: Factoring, best: _Weighed, steps: Sequence[_Step]) -> _Weighed:
+    """The outputs after those steps that save operations."""
+    for step in steps:
+        changed = step(graph, factoring, best.outputs)
+        if tuple(changed) != best.outputs and (found := _weighed(_unified(graph, changed))).weight < best.weight:
+            best = found
+    return best
+
+
+def _weighed(outputs: Sequence[Scalar]) -> _Weighed:
+    return _Weighed(tuple(outputs), cost(outputs).weight)
 
 
 def _unified(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
@@ -144,3 +170,6 @@ def _uses(order: Sequence[Scalar], outputs: Sequence[Scalar]) -> Counter[Scalar]
 
 def _as_it_stands(graph: Graph, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
     return node if args == node.args else graph.raw(node.op, args, node.payload)
+
+
+_STEPS = (_with_numbers_moved, _with_parameters_joined)
