@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from types import MappingProxyType
 
 from symgen.dynamics.block_space import BlockSpace
@@ -21,6 +22,7 @@ from symgen.dynamics.catalogue import (
 )
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
+from symgen.dynamics.forms.articulated import articulated
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.grouping import grouped as grouped_scalars
@@ -35,6 +37,9 @@ from symgen.records import dataclass
 # Their forms have multiplied out what may cancel.
 MOTIONS = ("forward_dynamics", "multipliers")
 ABSOLUTE = "householder in absolute angles"
+ARTICULATED = "articulated inertias"
+# What errors that act like turns of joints are worth in operations.
+STRUCTURED_WORTH = Fraction(1, 20)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +104,16 @@ def absolute_way(model: Model, generic: Genericity) -> Derivation | None:
     return Derivation(seen, generic, reflected(seen.graph, seen.constraint_jacobian, seen.n, generic.rank))
 
 
+def articulated_motion(model: Model, generic: Genericity) -> dict[str, Derived]:
+    """q_ddot and lambda by articulated inertias, on a graph of their own; none where the system lacks that form."""
+    found = articulated(model, generic)
+    if found is None:
+        return {}
+    motion = found[1]
+    outputs = dict(zip(MOTIONS, (motion.accelerations, motion.multipliers), strict=True))
+    return {name: Derived(name, (len(values),), values, motion.guards) for name, values in outputs.items() if values}
+
+
 def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
     """The names to derive, in catalogue order, and what was asked for that this system does not have."""
     everything = "all" in outputs
@@ -127,7 +142,10 @@ def derive_quantities(
     present, absent = requested(model, generic, outputs)
     derivations, blocks = ways(mechanics, generic), block_way(mechanics, generic)
     moving = [name for name in MOTIONS if name in present and name not in forms]
-    absolute = absolute_way(model, generic) if moving else None
+    by_frames = articulated_motion(model, generic) if moving else {}
+    # where minors are not listed, no other form is derived to be counted: they grow faster than the articulated one
+    many = generic.r > 0 and generic.delta > LARGEST_DELTA
+    absolute = absolute_way(model, generic) if moving and not by_frames else None
     along = {**derivations, "factored": derivations.get("minors"), ABSOLUTE: absolute}
     quantities: list[Derived] = []
     choices: list[Choice] = []
@@ -149,14 +167,18 @@ def derive_quantities(
             named.append((name, choice))
             continue
         entry = BY_NAME[name]
-        if name in MOTIONS and absolute is not None:
+        if name in by_frames and many:
+            candidates = {ARTICULATED: moved(mechanics.graph, by_frames[name])}
+        elif name in MOTIONS and absolute is not None:
             candidates = {ABSOLUTE: brought_back(mechanics.graph, absolute.mechanics, derive(entry, absolute))}
         else:
             candidates = {way: derive(entry, derivation) for way, derivation in derivations.items()}
         if blocks is not None and by_blocks(entry):
             candidates["blocks"] = derive(entry, blocks)
+        if name in by_frames and not many:
+            candidates[ARTICULATED] = moved(mechanics.graph, by_frames[name])
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
-        best = min(costs, key=lambda way: costs[way])
+        best = min(costs, key=lambda way: costs[way] * (1 - STRUCTURED_WORTH * (way == ARTICULATED)))
         # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
         if entry.needs == PARTITION and "minors" in costs and costs["minors"] <= costs[best] * (1 + CANCELLATION_WORTH):
             best = "minors"

@@ -6,6 +6,7 @@ import random
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from math import comb, isfinite, sqrt
 from typing import Any
 
@@ -13,7 +14,7 @@ from symgen.ir.kernel import Scalar
 from symgen.verify.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference_manifold import onto_manifold, starts
 from symgen.verify.reference_quantities import NEED_GRADIENTS
-from symgen.verify.reference_system import parameters_from
+from symgen.verify.reference_system import ParameterValues, default_parameters
 from symgen.verify.reference_tape import ball, precision
 
 FEWEST_STATES = 8
@@ -43,7 +44,7 @@ def affordable_states(reference: Reference, quantities: Sequence[str], wanted: i
     system, ranks = reference.system, reference.ranks
     subsets = comb(system.r, ranks.constraints)
     operations = system.operations(gradients=not NEED_GRADIENTS.isdisjoint(quantities)) + 40 * system.n**3 * subsets
-    seconds_per_state = 18 * 1.3e-7 * operations
+    seconds_per_state = 30 * 1.3e-7 * operations
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
 
 
@@ -56,12 +57,16 @@ def sample_states(reference: Reference, quantities: Sequence[str], count: int, s
     """
     with precision(SAMPLING_BITS):
         inside: list[Sample] = []
-        outside: list[Sample] = []
-        for sample, in_range in _candidates(reference, quantities, count, seed):
-            (inside if in_range else outside).append(sample)
+        outside: list[_Regular] = []
+        for found_state, in_range in _candidates(reference, count, seed):
+            if not in_range:
+                outside.append(found_state)
+            elif (sample := _sample(reference, quantities, found_state)) is not None:
+                inside.append(sample)
             if len(inside) == count:
                 break
-        found = (inside + outside)[:count]
+        others = (_sample(reference, quantities, found_state) for found_state in outside)
+        found = [*inside, *islice((sample for sample in others if sample is not None), count - len(inside))]
     if len(found) < FEWEST_STATES:
         raise VerificationError(
             f"{reference.model.name}: only {len(found)} regular configurations on the constraint manifold were found "
@@ -83,19 +88,30 @@ def _single(value: Any) -> float:
     return float(struct.unpack("f", struct.pack("f", value))[0])
 
 
-def _candidates(
-    reference: Reference, quantities: Sequence[str], count: int, seed: int
-) -> Iterator[tuple[Sample, bool]]:
+@dataclass(frozen=True, slots=True)
+class _Regular:
+    """A regular state as drawn, rates and accelerations not projected yet, and the inputs as shares of their size."""
+
+    state: State
+    shares: tuple[float, ...]
+    admissible: bool
+    values: dict[str, tuple[float, ...]]
+
+
+def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_Regular, bool]]:
     """Regular states, and whether the coordinates lie in their ranges."""
     generator = random.Random(f"states {seed}")
     system = reference.system
     points = starts(system, generator, 6 * count + 60)
     literals = reference.literals()
-    typical = _row_lengths(reference, points[:TYPICAL_POINTS], _parameters(reference, generator, vary=False))
+    varied = ParameterValues(reference.model, [p.name for p in reference.model.parameters if p.range is not None])
+    usual = _parameters(varied, generator, vary=False)
+    typical = _row_lengths(reference, points[:TYPICAL_POINTS], usual)
+    least = _least_measures(reference, points[:TYPICAL_POINTS], usual)
     last: list[Any] | None = None
     kept = {True: 0, False: 0}
     for index, point in enumerate(points):
-        parameters = _parameters(reference, generator, vary=index > 0)
+        parameters = _parameters(varied, generator, vary=index > 0)
         start = point
         if last is not None and index % 4 and system.r_geometric:
             start = _step(reference, last, generator)
@@ -104,12 +120,15 @@ def _candidates(
         if q is None:
             continue
         in_range = _in_ranges(reference, q)
-        sample = _sample(reference, quantities, [float(x) for x in q], parameters, typical, kept[in_range], generator)
-        if sample is None:
+        place = [float(x) for x in q]
+        # what lies outside is rarely needed
+        needed = _measured(reference) if in_range else ()
+        regular = _regular(reference, place, parameters, typical, least, kept[in_range], generator, needed)
+        if regular is None:
             continue
         last = q
         kept[in_range] += 1
-        yield sample, in_range
+        yield regular, in_range
 
 
 def _row_lengths(reference: Reference, points: Sequence[Sequence[float]], parameters: Sequence[float]) -> list[float]:
@@ -120,9 +139,29 @@ def _row_lengths(reference: Reference, points: Sequence[Sequence[float]], parame
             rows = reference.matrices(_at_rest(reference, q, parameters), ["constraint_jacobian"], SAMPLING_BITS)
         except ReferenceValueError:
             continue
-        found = [sqrt(sum(float(x) ** 2 for x in row)) for row in rows["constraint_jacobian"].tolist()]
+        found = _lengths(_floats(rows["constraint_jacobian"]), reference.model.n)
         lengths = [max(pair) if isfinite(pair[1]) else pair[0] for pair in zip(lengths, found, strict=True)]
     return lengths
+
+
+def _least_measures(
+    reference: Reference, points: Sequence[Sequence[float]], parameters: Sequence[float]
+) -> tuple[float, ...]:
+    """What the measures of `singularity` must be at a regular state.
+
+    They are products of about delta numbers between 0 and 1; many rows, or units that make columns of very different
+    size, leave them small everywhere, so that no more than a tenth of the largest found is asked for.
+    """
+    regular = REGULAR ** max(1.0, (reference.model.n - reference.ranks.constraints) / 2)
+    found = []
+    for q in points:
+        try:
+            state = _at_rest(reference, q, parameters)
+            found.append(_floats(reference.matrices(state, ["singularity"], SAMPLING_BITS)["singularity"]))
+        except ReferenceValueError:
+            continue
+    largest = [max((x for x in column if isfinite(x)), default=1.0) for column in zip(*found, strict=True)]
+    return tuple(min(regular, x / 10) for x in largest or (1.0, 1.0))
 
 
 def _at_rest(reference: Reference, q: Sequence[float], parameters: Sequence[float]) -> State:
@@ -130,14 +169,14 @@ def _at_rest(reference: Reference, q: Sequence[float], parameters: Sequence[floa
     return State(tuple(q), (0.0,) * n, (0.0,) * n, (0.0,) * m, tuple(parameters))
 
 
-def _parameters(reference: Reference, generator: random.Random, vary: bool) -> list[float]:
+def _parameters(varied: ParameterValues, generator: random.Random, vary: bool) -> list[float]:
     """Parameter values: those with a range drawn from it."""
     chosen = {
         parameter.name: generator.uniform(float(parameter.range[0]), float(parameter.range[1]))
-        for parameter in reference.model.parameters
+        for parameter in varied.model.parameters
         if parameter.range is not None
     }
-    return [float(value) for value in parameters_from(reference.model, chosen if vary else {})]
+    return [float(value) for value in (varied(chosen) if vary else default_parameters(varied.model))]
 
 
 def _step(reference: Reference, q: Sequence[Any], generator: random.Random) -> list[float]:
@@ -148,16 +187,27 @@ def _step(reference: Reference, q: Sequence[Any], generator: random.Random) -> l
     ]
 
 
-def _sample(
+def _lengths(rows: Sequence[float], n: int) -> list[float]:
+    """The length of each row of n numbers."""
+    return [sqrt(sum(x**2 for x in rows[start : start + n])) for start in range(0, len(rows), n)]
+
+
+def _measured(reference: Reference) -> tuple[str, ...]:
+    """What makes a sample of a regular state."""
+    return "admissible_velocity", "admissible_acceleration", *(("inverse_dynamics",) if reference.model.m else ())
+
+
+def _regular(
     reference: Reference,
-    quantities: Sequence[str],
     q: Sequence[float],
     parameters: Sequence[float],
     typical: Sequence[float],
+    least: Sequence[float],
     index: int,
     generator: random.Random,
-) -> Sample | None:
-    """A state at q, or None near a singularity or outside the domain of a quantity."""
+    needed: Sequence[str],
+) -> _Regular | None:
+    """A state at q with what is `needed` of it, or None near a singularity."""
     model = reference.model
     rates = [generator.uniform(*map(float, c.rate_range)) for c in model.coordinates]
     accelerations = [generator.uniform(*map(float, c.acceleration_range)) for c in model.coordinates]
@@ -168,29 +218,41 @@ def _sample(
         q = [x + DRIFT * s * max(abs(x), 0.1) for x, s in zip(q, shifts, strict=True)]
     zero = (0.0,) * model.m
     state = State(tuple(q), tuple(rates), tuple(accelerations), zero, tuple(parameters))
-    needed = ["singularity", "admissible_velocity", "admissible_acceleration", *(["inverse_dynamics"] * bool(model.m))]
-    # the measures are products of about δ numbers between 0 and 1
-    regular = REGULAR ** max(1.0, (model.n - reference.ranks.constraints) / 2)
     try:
-        values = {name: _floats(matrix) for name, matrix in reference.matrices(state, needed, SAMPLING_BITS).items()}
-        if not all(map(isfinite, values["singularity"])) or min(values["singularity"]) < regular:
-            return None
-        # the measures compare directions of rows only; a row that all but vanishes is a drop of rank, too
-        lengths = _row_lengths(reference, [q], parameters)
-        if any(length < REGULAR * usual for length, usual in zip(lengths, typical, strict=True)):
-            return None
-        if admissible:
+        values = _values(reference, state, ("singularity", "constraint_jacobian", *needed))
+    except ReferenceValueError:
+        return None
+    if not all(x >= low and isfinite(x) for x, low in zip(values["singularity"], least, strict=True)):
+        return None
+    # the measures compare directions of rows only; a row that all but vanishes is a drop of rank, too
+    lengths = _lengths(values["constraint_jacobian"], model.n)
+    if not all(isfinite(x) and x >= REGULAR * usual for x, usual in zip(lengths, typical, strict=True)):
+        return None
+    return _Regular(state, tuple(shares), admissible, values)
+
+
+def _values(reference: Reference, state: State, names: Sequence[str]) -> dict[str, tuple[float, ...]]:
+    return {name: _floats(matrix) for name, matrix in reference.matrices(state, names, SAMPLING_BITS).items()}
+
+
+def _sample(reference: Reference, quantities: Sequence[str], regular: _Regular) -> Sample | None:
+    """A regular state with its inputs, rates and accelerations, or None outside the domain of a quantity."""
+    state, values = regular.state, regular.values
+    try:
+        if missing := [name for name in _measured(reference) if name not in values]:
+            values = values | _values(reference, state, missing)
+        if regular.admissible:
             state = replace(state, qd=values["admissible_velocity"], qdd=values["admissible_acceleration"])
-        if model.m:
+        if regular.shares:
             scale = 2 * max(1.0, *(abs(x) for x in values["inverse_dynamics"]))
-            state = replace(state, u=tuple(scale * share for share in shares))
+            state = replace(state, u=tuple(scale * share for share in regular.shares))
         everything = reference.matrices(state, quantities, SAMPLING_BITS)
     except ReferenceValueError:
         return None
     if not all(isfinite(x) for matrix in everything.values() for x in _floats(matrix)):
         return None
     first, second = values["singularity"]
-    return Sample(state, admissible, (first, second))
+    return Sample(state, regular.admissible, (first, second))
 
 
 def _floats(matrix: Any) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""Long chains: forms that cannot be the cheapest are not built, u grows linearly, accelerations use absolute angles."""
+"""Long chains: forms that cannot be the cheapest are not built, u and accelerations grow linearly."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from chains import chain
 
-from symgen.dynamics.select import ABSOLUTE, Derivations, derive_quantities
+from symgen.dynamics.select import ABSOLUTE, ARTICULATED, Derivations, derive_quantities
 from symgen.graph.traverse import topological
 from symgen.model.load import load_model
 
@@ -28,8 +28,20 @@ def test_u_grows_linearly(tmp_path: Path) -> None:
     assert weights[2] - weights[1] == pytest.approx(2 * (weights[1] - weights[0]), rel=0.05)
 
 
-def test_accelerations_in_absolute_angles(tmp_path: Path) -> None:
-    found = derived(6, tmp_path, "forward_dynamics", "multipliers")
+def test_accelerations_grow_linearly(tmp_path: Path) -> None:
+    weights = []
+    for links in (8, 12, 16):
+        found = derived(links, tmp_path, "forward_dynamics", "multipliers")
+        assert [choice.way for choice in found.choices] == [ARTICULATED, ARTICULATED]
+        weights.append([weight for choice in found.choices for _, weight in choice.costs])
+    for few, more, many in zip(*weights, strict=True):
+        assert many - more == pytest.approx(more - few, rel=0.05)
+
+
+def test_energies_written_out_are_derived_in_absolute_angles(tmp_path: Path) -> None:
+    path = tmp_path / "chain6.yaml"
+    path.write_text(chain(6).replace("gravity:", "kinetic_energy: J*a_1_dot**2/2\ngravity:"), encoding="utf-8")
+    found = derive_quantities(load_model(path), ("forward_dynamics", "multipliers"))
     assert [choice.way for choice in found.choices] == [ABSOLUTE, ABSOLUTE]
     known = {c.name for c in found.mechanics.model.coordinates}
     for quantity in found.quantities:

@@ -9,19 +9,43 @@ squared condition number of A^T D^-1 A is never met; `schur_ldl` forms that matr
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 from symgen.dynamics.forms.motion import Motion, Problem
+from symgen.dynamics.guards import Guard
 from symgen.dynamics.inertia import Cholesky, diagonal_sizes
 from symgen.graph.matrix import Matrix, Vector, dot
 from symgen.graph.scalar import Graph, Scalar
 
 
+class Factor(Protocol):
+    """G = L D L^T with the pivots D; L may be triangular in any order of the coordinates."""
+
+    @property
+    def pivots(self) -> Sequence[Scalar]:
+        """D."""
+
+    @property
+    def guards(self) -> tuple[Guard, ...]:
+        """What must not vanish for G to be definite."""
+
+    def lowered(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L y = b."""
+
+    def raised(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L^T x = b."""
+
+
 def schur_qr(problem: Problem) -> Motion:
     """By A = Q R with reflections: valid wherever G is positive definite and B has full rank."""
+    factor = Cholesky(problem.graph, problem.mass_matrix, diagonal_sizes(problem.graph, problem.mass_matrix))
+    return along_factor(problem, factor, [factor.lowered(row) for row in problem.rows])
+
+
+def along_factor(problem: Problem, factor: Factor, columns: Sequence[Vector]) -> Motion:
+    """The same for any factor of G; `columns` are those of A."""
     graph, r = problem.graph, problem.r
-    factor = Cholesky(graph, problem.mass_matrix, diagonal_sizes(graph, problem.mass_matrix))
     weights = tuple(1 / pivot for pivot in factor.pivots)
-    columns = [factor.lowered(row) for row in problem.rows]
     turned = WeightedReflections(graph, columns, factor.pivots, weights)
     free = turned.apply_transposed(factor.lowered(problem.force))
     # R^T D^-1 z = a, with the first r weights of D^-1

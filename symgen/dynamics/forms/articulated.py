@@ -1,0 +1,112 @@
+"""q_ddot and lambda of bodies by articulated inertias: reflections in the metric of G^-1, and G itself never formed.
+
+The forces of the constraints enter as wrenches on the frames that their points belong to, so that the columns of B^T
+are brought inwards joint by joint, too.  Operations grow with the number of frames, and errors stay those of a chain of
+turns; dense factors lose what cancels between entries of G that were rounded one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from symgen.dynamics.articulated import ArticulatedFactor, Six
+from symgen.dynamics.forms.definite import Definite
+from symgen.dynamics.forms.definiteness import positive_definite
+from symgen.dynamics.forms.motion import Motion, Problem
+from symgen.dynamics.forms.schur import along_factor
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.pivoted import reflected
+from symgen.graph.calculus import gradient
+from symgen.graph.matrix import Vector
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.translate import translate
+from symgen.graph.traverse import substitute
+from symgen.model.components import components_in, definitions_before_frames
+from symgen.model.expression import Number
+from symgen.model.kinematics import Kinematics, Twist
+from symgen.model.mechanism import component
+from symgen.model.model import Model
+
+
+class _Loose(Kinematics[Scalar, Scalar]):
+    """Every frame moves by itself: its turning rates and the velocity of its origin are symbols."""
+
+    def __init__(self, mechanics: Mechanics) -> None:
+        super().__init__(mechanics.model.mechanism, mechanics.bodies.scalars)
+        self._graph: Graph = mechanics.graph
+
+    def symbols(self, name: str) -> Six:
+        """Turning rates and velocity in the frame's axes."""
+        return tuple(self._graph.symbol(f"{name} {kind}") for kind in ("wx", "wy", "wz", "vx", "vy", "vz"))
+
+    def _own_twist(self, name: str) -> Twist[Scalar]:
+        a, b, c, x, y, z = self.symbols(name)
+        return Twist((a, b, c), (x, y, z))
+
+
+def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] | None:
+    """The motion and the system it was derived on, a graph of its own.
+
+    None where T is not that of bodies alone, a coordinate moves several frames or none, rows depend on each other, or
+    G is not definite.
+    """
+    energy = model.kinetic_energy
+    if not model.mechanism.has_mass or not isinstance(energy, Number) or energy.value != 0 or generic.rank < generic.r:
+        return None
+    mechanics = Mechanics(model)
+    try:
+        factor = ArticulatedFactor(mechanics.bodies)
+    except ValueError:
+        return None
+    definite = Definite(mechanics)
+    if not all(definite.holds(own) for own in factor.own.values()) and not positive_definite(mechanics):
+        return None
+    rows, graph = mechanics.constraint_jacobian, mechanics.graph
+    guards = reflected(graph, rows, mechanics.n, generic.rank).guards if rows else ()
+    columns = [factor.lowered(direct, wrenches) for direct, wrenches in _forces(mechanics)]
+    return mechanics, along_factor(Problem(mechanics, guards), factor, columns)
+
+
+def _forces(mechanics: Mechanics) -> list[tuple[Vector, Mapping[str, Six]]]:
+    """For each row of B what it does to the coordinates directly, and the wrenches it puts on frames."""
+    graph, model = mechanics.graph, mechanics.model
+    loose = _Loose(mechanics)
+    stand_ins = {name: graph.symbol(f"component {name}") for name in components_in(model)}
+    names = _names(mechanics, stand_ins)
+    values = {symbol: mechanics.names[name] for name, symbol in stand_ins.items()}
+    rates = {name: loose.component_rate(component(name)) for name in stand_ins}
+    rows = [row for row in model.constraints if row.kind == "geometric"]
+    rows += [row for row in model.constraints if row.kind == "nonholonomic"]
+    found: list[tuple[Vector, Mapping[str, Six]]] = []
+    for row in rows:
+        expression = translate(graph, row.expression, names)
+        used = [name for name in stand_ins if row.kind == "geometric" or component(name).is_rate]
+        slopes = gradient(graph, expression, [stand_ins[name] for name in used])
+        own = gradient(graph, expression, mechanics.q if row.kind == "geometric" else mechanics.qd)
+        slopes, own = substitute(graph, slopes, values), substitute(graph, own, values)
+        speed = graph.sum(x * rates[name] for x, name in zip(slopes, used, strict=True) if not x.is_zero)
+        direct = tuple(a + b for a, b in zip(own, gradient(graph, speed, mechanics.qd), strict=True))
+        wrenches = {}
+        for frame in model.mechanism.frames:
+            wrench = tuple(gradient(graph, speed, loose.symbols(frame.name)))
+            if not all(entry.is_zero for entry in wrench):
+                wrenches[frame.name] = wrench
+        found.append((direct, wrenches))
+    return found
+
+
+def _names(mechanics: Mechanics, stand_ins: Mapping[str, Scalar]) -> dict[str, Scalar]:
+    """The names of formulas with symbols in place of components of points and frames."""
+    graph, model = mechanics.graph, mechanics.model
+    names = {
+        **{c.name: node for c, node in zip(model.coordinates, mechanics.q, strict=True)},
+        **{c.rate: node for c, node in zip(model.coordinates, mechanics.qd, strict=True)},
+        **{p.name: node for p, node in zip(model.parameters, mechanics.parameters, strict=True)},
+        **{d.name: mechanics.names[d.name] for d in definitions_before_frames(model)},
+        **stand_ins,
+    }
+    for definition in model.definitions:
+        if definition.name not in names:
+            names[definition.name] = translate(graph, definition.value, names)
+    return names

@@ -1,0 +1,99 @@
+"""q_ddot and lambda by articulated inertias are those of the dense factor, for every kind of joint and constraint."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+import shipped
+
+from symgen.dynamics.forms.articulated import articulated
+from symgen.dynamics.forms.motion import Problem
+from symgen.dynamics.forms.schur import schur_qr
+from symgen.dynamics.genericity import genericity, parameter_values
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.evaluate import Evaluator
+from symgen.model.load import load_model
+from symgen.model.model import Model
+
+# revolute and prismatic joints, rotors, points of wheels, floating bodies in the plane, damped and driven
+NAMES = ("scara", "five_bar", "delta", "differential_drive", "rolling_disc", "front_car_bodies", "arm7")
+JOINTS = """model: joints
+coordinates:
+  x: {unit: m, range: [-1, 1]}
+  y: {unit: m, range: [-1, 1]}
+  a: {unit: rad, range: [-1, 1]}
+  b: {unit: rad, range: [-1, 1]}
+  c: {unit: rad, range: [-1, 1]}
+  d: {unit: m, range: [0.2, 1]}
+parameters:
+  l: {value: 0.4, unit: m}
+  m: {value: 1.5, unit: kg}
+  J: {value: 0.02, unit: kg*m**2}
+  g: {value: 9.81, unit: m/s**2}
+gravity: [0, 0, -g]
+frames:
+  base: {translation: [x, y, 0], rotation: [[z, a]]}
+  wrist: {parent: base, translation: [l, 0, l/2], rotation: [[y, b], [x, c]]}
+  slide: {parent: wrist, translation: [l, 0, d]}
+bodies:
+  base: {mass: 2*m, com: [l/3, l/5, 0], inertia: {xx: J, yy: 2*J, zz: 2*J, xy: J/5}}
+  wrist: {mass: m, com: [0, l/2, l/3], inertia: {xx: J, yy: 2*J, zz: 1.5*J, yz: J/7}}
+  slide: {mass: m, com: [0, 0, l], inertia: {xx: J, yy: J, zz: J}}
+points:
+  tip: {frame: slide, at: [l/2, 0, l/4]}
+constraints:
+  geometric:
+    height: tip.z - l
+    gear: b - 2*c
+  nonholonomic:
+    skate: base.vy*cos(a) - base.vx*sin(a)
+inputs:
+  u: {unit: N, joint: d}
+rotor_inertias:
+  c: J/10
+"""
+
+
+def compared(model: Model) -> float:
+    """The largest relative difference of the two forms over a few states off and on the constraints."""
+    generic = genericity(Mechanics(model))
+    found = articulated(model, generic)
+    assert found is not None
+    seen, motion = found
+    mechanics = Mechanics(model)
+    dense = schur_qr(Problem(mechanics, ()))
+    one = Evaluator([*motion.accelerations, *motion.multipliers])
+    other = Evaluator([*dense.accelerations, *dense.multipliers])
+    source = random.Random(model.name)
+    worst = 0.0
+    for _ in range(3):
+        point = dict(parameter_values(mechanics))
+        for c in model.coordinates:
+            point[c.name] = source.uniform(float(c.range[0]), float(c.range[1]))
+            point[c.rate] = source.uniform(-1, 1)
+        point |= {control.name: source.uniform(-1, 1) for control in model.inputs}
+        values, expected = one(point), other(point)
+        size = max(map(abs, expected))
+        worst = max(worst, *(abs(a - b) / size for a, b in zip(values, expected, strict=True)))
+    assert seen.model is model
+    return worst
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_shipped_mechanisms(name: str) -> None:
+    assert compared(shipped.model(name)) < 1e-9
+
+
+def test_joints_of_several_coordinates_gears_and_skates(tmp_path: Path) -> None:
+    path = tmp_path / "joints.yaml"
+    path.write_text(JOINTS, encoding="utf-8")
+    assert compared(load_model(path)) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["gough_stewart", "tilted_four_bar", "skate"])
+def test_systems_without_that_form(name: str) -> None:
+    """G singular along a quaternion, rows that depend on each other, an energy without frames."""
+    model = shipped.model(name)
+    assert articulated(model, genericity(Mechanics(model))) is None
