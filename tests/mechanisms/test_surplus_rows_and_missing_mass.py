@@ -18,6 +18,7 @@ from symgen.model.load import load_text
 from symgen.model.mechanics import default_values
 from symgen.model.model import Model
 from symgen.verify.reference import Reference
+from symgen.verify.states import sample_states
 
 FOUR_BAR = (ROOT / "models" / "tilted_four_bar.yaml").read_text(encoding="utf-8")
 ARM = """\
@@ -152,3 +153,16 @@ def test_a_sleeve_without_mass_passes_its_force_on() -> None:
     qdd = found["forward_dynamics"]
     back = kernels(sleeve, state(sleeve, [*place, angles[1], *q], [*speed, rates[1], *qd], qdd, u))
     assert back["inverse_dynamics"] == pytest.approx(u, rel=1e-11)
+
+
+def test_states_are_found_under_both_wheels_of_an_axle() -> None:
+    """Each wheel holds the axle across; many rows leave the measures of singularity small at every state."""
+    text = (ROOT / "models" / "differential_drive.yaml").read_text(encoding="utf-8")
+    head, _, rest = text.partition("points:")
+    wheels, _, inputs = rest.partition("rolling:")[2].partition("constraints:")
+    right = "  right_tyre: {frame: right_wheel, radius: R}\n"
+    both = f"{head}rolling:{wheels}{right}inputs:{inputs.partition('inputs:')[2]}"
+    reference = Reference(load_text(both, "both.yaml"))
+    assert (reference.model.r, reference.ranks.constraints) == (6, 5)
+    samples = sample_states(reference, ["inverse_dynamics"], 8)
+    assert max(sample.measures[0] for sample in samples) < 1e-3
