@@ -9,7 +9,7 @@ length.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -34,21 +34,31 @@ def default_parameters(model: Model) -> list[Any]:
     return parameters_from(model, {})
 
 
-def parameters_from(model: Model, chosen: dict[str, Any]) -> list[Any]:
+def parameters_from(model: Model, chosen: Mapping[str, Any]) -> list[Any]:
     """Parameter values: the `chosen` ones, and the others from their expressions of earlier parameters."""
-    tape = Tape()
-    algebra = Taylor(tape, 0, 0)
-    names: dict[str, Polynomial] = {}
-    given: list[Any] = []
-    translation = Translation(algebra, names, {}, {})
-    for parameter in model.parameters:
-        if parameter.name in chosen:
-            given.append(ball(chosen[parameter.name]))
-            names[parameter.name] = {CONSTANT: tape.input(len(given) - 1)}
-        else:
-            names[parameter.name] = translation.polynomial(parameter.value)
-    registers = [names[parameter.name].get(CONSTANT, tape.zero) for parameter in model.parameters]
-    return list(replay_of(tape, registers).run(given))
+    return ParameterValues(model, list(chosen))(chosen)
+
+
+class ParameterValues:
+    """The values of all parameters when those named are chosen."""
+
+    def __init__(self, model: Model, names: Collection[str]) -> None:
+        self.model = model
+        self._names = [parameter.name for parameter in model.parameters if parameter.name in names]
+        tape = Tape()
+        known: dict[str, Polynomial] = {}
+        translation = Translation(Taylor(tape, 0, 0), known, {}, {})
+        for parameter in model.parameters:
+            if parameter.name in names:
+                known[parameter.name] = {CONSTANT: tape.input(self._names.index(parameter.name))}
+            else:
+                known[parameter.name] = translation.polynomial(parameter.value)
+        registers = [known[parameter.name].get(CONSTANT, tape.zero) for parameter in model.parameters]
+        self._replay = replay_of(tape, registers)
+
+    def __call__(self, chosen: Mapping[str, Any]) -> list[Any]:
+        """Balls, the `chosen` values among them."""
+        return list(self._replay.run([ball(chosen[name]) for name in self._names]))
 
 
 @dataclass(frozen=True)
