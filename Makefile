@@ -6,9 +6,10 @@ PAPER := skate front_car front_car_wheelset rear_car rapkm_2rrr_rr rapkm_two_dri
 # Given by energies: campaigns take these; those given by bodies are verified with more states by `make mechanisms`.
 CAMPAIGN := $(PAPER) double_pendulum slider_crank
 CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
-MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(wildcard models/*.yaml))
+MODELS := $(wildcard models/*.yaml)
+MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run test generated mechanisms fuzz proof firmware bench stress skipping trig docs lock robots
+.PHONY: run test generated mechanisms fuzz proof firmware bench bench-mechanisms stress skipping trig docs lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -34,6 +35,12 @@ bench: $(VENV)/installed
 	$(BIN)/symgen bench $(BENCHED) --quiet
 	$(BIN)/python tools/bench_pages.py generated $(BENCHED)
 
+# u of mechanisms given by bodies beside peers that walk their frames: docs/bench/mechanisms.md.
+WALKED := front_car_bodies rapkm_bodies delta gough_stewart chain8 chain16 chain32 arm7
+bench-mechanisms: $(VENV)/installed
+	$(BIN)/symgen bench --bodies $(wildcard $(WALKED:%=models/%.yaml)) --quiet --out build/bench
+	$(BIN)/python tools/mechanisms_page.py build/bench $(WALKED)
+
 # The portable sine and cosine at every float32, a few minutes.
 trig: $(VENV)/installed
 	SYMGEN_TRIG_STRIDE=1 $(BIN)/pytest tests/toolchain/test_portable_pair.py -k everywhere
@@ -43,10 +50,10 @@ stress: $(VENV)/installed
 	$(BIN)/symgen stress $(CAMPAIGN_FILES) --quiet; status=$$?; \
 	    $(BIN)/python tools/stress_pages.py generated $(CAMPAIGN_FILES) && exit $$status
 
-# Every model on every emulated core, the goals of cost, the example firmware; about 20 minutes.
+# Every model on every emulated core, the goals of cost, the example firmware.
 firmware: $(VENV)/installed
 	$(BIN)/pytest -m firmware
-	$(BIN)/symgen target $(CAMPAIGN_FILES) --cpu all --quiet
+	$(BIN)/symgen target $(MODELS) --cpu all --quiet
 
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed
@@ -55,17 +62,13 @@ skipping: $(VENV)/installed
 # Every kernel of every model under libFuzzer and the sanitizers, a minute each: raw bits in, see proof/*_fuzz.c.
 FUZZ_SECONDS ?= 60
 fuzz: $(VENV)/installed
-	$(BIN)/symgen $(CAMPAIGN_FILES) --only c,proof --no-verify --quiet --out build/fuzz
-	failed=; for model in $(CAMPAIGN); do (cd build/fuzz/$$model && clang -g -O1 \
-	    -ffp-contract=off -fno-sanitize-recover=all -Ic -fsanitize=fuzzer,address,undefined,float-cast-overflow \
-	    proof/$${model}_fuzz.c c/$$model.c c/$${model}_f.c -lm -o fuzz && \
-	    ./fuzz -max_total_time=$(FUZZ_SECONDS) -max_len=512 -print_final_stats=1) || failed="$$failed $$model"; done; \
-	    test -z "$$failed" || { echo "failed:$$failed"; exit 1; }
+	$(BIN)/symgen $(MODELS) --only c,proof --no-verify --quiet --out build/fuzz
+	$(BIN)/python tools/fuzz_campaign.py build/fuzz $(FUZZ_SECONDS) $(MODELS:models/%.yaml=%)
 
-# u in float32 under Frama-C Eva and Gappa, every model: a table of what is proved and of what remains.
+# u in float32 under Frama-C Eva and Gappa, every model: a table of what is proved, what was measured, what remains.
 proof: $(VENV)/installed
-	$(BIN)/symgen $(CAMPAIGN_FILES) --only c,proof --no-verify --quiet --out build/proof
-	$(BIN)/python tools/proof_table.py build/proof $(CAMPAIGN)
+	$(BIN)/symgen $(MODELS) --only c,proof --no-verify --quiet --out build/proof
+	$(BIN)/python tools/proof_table.py build/proof generated $(MODELS:models/%.yaml=%)
 
 # The marked blocks of README.md and the generated pages of docs/, with times measured on this machine.
 docs: $(VENV)/installed

@@ -1,27 +1,68 @@
-"""A table of what Frama-C Eva and Gappa show of the inverse dynamics in float32: FOLDER MODEL...
+"""A table of what Frama-C Eva and Gappa show of the inverse dynamics in float32: FOLDER OUT MODEL...
 
-Eva's alarms are counted, with the status that it could not prove; Gappa's bounds are the largest absolute ones.  What
-intervals cannot keep from 0 is taken from the page of the proof folder.  The exit status is 1 if a tool fails.
+Eva's alarms are counted, with the status that it could not prove.  Gappa's bounds of the rounding error stand beside
+the errors measured at random states of the same box.  What intervals cannot keep from 0 is taken from the page of the
+proof folder.  OUT/<model>/proof.json gets the same, for the report.  The exit status is 1 if a tool fails.
 """
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
-SECONDS = 300
+SECONDS = 240
+WORKERS = 2
+TOO_LONG, FAILED = "too long", "failed"
 
 
-def main(folder: Path, models: list[str]) -> int:
-    """Print the table; 1 if a tool failed."""
-    rows = [(model, alarms(folder / model, model), bound(folder / model)) for model in models]
-    print("| model | Eva: unproven in u | Gappa: error of u at most | denominators that remain |")
-    print("|---|---|---|---|")
-    for model, unproven, largest in rows:
-        print(f"| {model} | {unproven} | {largest} | {remaining(folder / model)} |")
-    return int(any("failed" in row for row in rows))
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What is shown of one model; `bounds` and `measured` are by entry of u, empty where there is no script."""
+
+    model: str
+    sources: dict[str, str]
+    unproven: str
+    bounds: dict[int, float]
+    measured: dict[int, float]
+    without: str
+    denominators: tuple[str, ...]
+
+
+def main(folder: Path, out: Path, models: list[str]) -> int:
+    """Print the table, write the files; 1 if a tool failed."""
+    print("| model | Eva: unproven in u | Gappa: error of u at most | measured | denominators that remain |")
+    print("|---|---|---|---|---|", flush=True)
+    broken = False
+    with ThreadPoolExecutor(WORKERS) as pool:
+        for row in pool.map(lambda model: examine(folder / model, model), models):
+            print(line(row), flush=True)
+            broken |= FAILED in (row.unproven, row.without)
+            (out / row.model).mkdir(parents=True, exist_ok=True)
+            text = json.dumps(asdict(row), indent=1, ensure_ascii=False) + "\n"
+            (out / row.model / "proof.json").write_text(text, encoding="utf-8")
+    return int(broken)
+
+
+def examine(folder: Path, model: str) -> Row:
+    """Everything about one model."""
+    sources = {
+        name: hashlib.sha256((folder / "c" / name).read_bytes()).hexdigest() for name in (f"{model}.c", f"{model}_f.c")
+    }
+    bounds, measured, without = rounding(folder, model)
+    return Row(model, sources, alarms(folder, model), bounds, measured, without, remaining(folder))
+
+
+def line(row: Row) -> str:
+    """A row of the table."""
+    largest = ", ".join(f"{bound:.2g}" for bound in row.bounds.values()) or row.without
+    found = ", ".join(f"{row.measured[entry]:.2g}" for entry in row.bounds if entry in row.measured) or "–"
+    return f"| {row.model} | {row.unproven} | {largest} | {found} | {'<br>'.join(row.denominators) or 'none'} |"
 
 
 def alarms(folder: Path, model: str) -> str:
@@ -35,25 +76,40 @@ def alarms(folder: Path, model: str) -> str:
     found = re.search(r"(\d+) alarms? generated", told)
     status = re.search(r"Assertions +\d+ valid +(\d+) unknown +(\d+) invalid", told)
     if not found or not status:
-        return told if told == "too long" else "failed"
+        return told if told == TOO_LONG else FAILED
     return str(int(found[1]) + int(status[1]) + int(status[2]))
 
 
-def bound(folder: Path) -> str:
-    """The largest certified bound, or that there is no script."""
+def rounding(folder: Path, model: str) -> tuple[dict[int, float], dict[int, float], str]:
+    """Certified bounds and measured errors by entry of u, or why there are none."""
     scripts = sorted((folder / "proof").glob("*.gappa"))
     if not scripts:
-        return "no script"
+        return {}, {}, "no script"
     told = output(["gappa", str(scripts[0].relative_to(folder))], folder)
-    bounds = [float(upper) for upper in re.findall(r"\{([0-9.e+-]+),", told)]
-    return f"{max(bounds):.3g}" if bounds else told if told == "too long" else "failed"
+    found = {name: float(upper) for name, upper in re.findall(r"\|(\w+) - \w+\| in .*?\{([0-9.e+-]+),", told)}
+    if not found:
+        return {}, {}, told if told == TOO_LONG else FAILED
+    entries = re.findall(r"^# entry (\d+) of the result: (\w+)$", scripts[0].read_text(), re.MULTILINE)
+    bounds = {int(entry): found[name] for entry, name in entries if name in found}
+    measured = measure(folder, model)
+    if len(bounds) != len(entries) or not measured or any(measured[k] > 1.00001 * bound for k, bound in bounds.items()):
+        return {}, {}, FAILED
+    return bounds, measured, ""
 
 
-def remaining(folder: Path) -> str:
+def measure(folder: Path, model: str) -> dict[int, float]:
+    """What the program beside Gappa's script measures, by entry of u; empty if it fails."""
+    sources = [f"proof/{model}_f_inverse_dynamics_error.c", f"c/{model}.c", f"c/{model}_f.c"]
+    made = output(["cc", "-std=c99", "-O2", "-ffp-contract=off", "-Ic", *sources, "-o", "error", "-lm"], folder)
+    told = output(["./error"], folder) if not made else ""
+    return {entry: float(error) for entry, error in enumerate(told.split())}
+
+
+def remaining(folder: Path) -> tuple[str, ...]:
     """The denominators of u that intervals do not keep from 0."""
     page = (folder / "proof" / "README.md").read_text()
     found = re.search(r"^\| inverse_dynamics\([^|]*\| (.*) \|$", page, re.MULTILINE)
-    return found[1] if found else "none"
+    return tuple(found[1].split("<br>")) if found else ()
 
 
 def output(command: list[str], folder: Path) -> str:
@@ -61,9 +117,9 @@ def output(command: list[str], folder: Path) -> str:
     try:
         made = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder, timeout=SECONDS)
     except subprocess.TimeoutExpired:
-        return "too long"
+        return TOO_LONG
     return made.stdout + made.stderr
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
+    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3:]))

@@ -99,7 +99,7 @@ def decisive_angles(kernel: Kernel) -> tuple[Load, ...]:
 
 def _driver(model: Model, program: Program, kernel: Kernel, members: dict[str, str]) -> DriverView:
     ranges = box(model)
-    cut = _slices(program, kernel, ranges)
+    cut = _slices(program, kernel, ranges, model.trig_range == "wide")
     sliced = {view.index for view in cut}
     arrays = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
     places = [(f"{name}[{i}]", ranges[name][i]) for name, size in arrays for i in range(size)]
@@ -115,9 +115,11 @@ def _driver(model: Model, program: Program, kernel: Kernel, members: dict[str, s
     )
 
 
-def _slices(program: Program, kernel: Kernel, ranges: dict[str, tuple[Range, ...]]) -> tuple[SliceView, ...]:
+def _slices(
+    program: Program, kernel: Kernel, ranges: dict[str, tuple[Range, ...]], wide: bool
+) -> tuple[SliceView, ...]:
     """The slices of the decisive angles, none where there would be too many to analyse."""
-    found = {load.index: slices(program.scalar, ranges["q"][load.index]) for load in decisive_angles(kernel)}
+    found = {load.index: slices(program.scalar, ranges["q"][load.index], wide) for load in decisive_angles(kernel)}
     if program.sincos is None or prod(len(cuts) for cuts in found.values()) > MOST_RUNS:
         return ()
     return tuple(

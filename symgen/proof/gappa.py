@@ -1,25 +1,31 @@
 """Scripts for Gappa: a certified bound of what float32 rounding does to the inverse dynamics, over the whole box.
 
 Each statement of the kernel appears twice, rounded and exact; sine and cosine enter with the bound on their absolute
-error that is tested for every float32 argument. Where a denominator may be 0 by intervals there is no bound.
+error that is tested for every float32 argument, and with what the rounding of their argument does to them where that is
+a sum of angles. Where a denominator may be 0 by intervals there is no bound. A program beside the script measures the
+error at random states of the same box, to be read beside the bound.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symgen.emit.literals import round_to
+from symgen.emit.c import c_names
+from symgen.emit.literals import decimal_text, round_to
+from symgen.emit.locals import array_arguments
 from symgen.emit.render import render
-from symgen.ir.kernel import Kernel, Local, Operand, Program, Statement
-from symgen.model.model import Model
+from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
+from symgen.model.model import Model, Range
 from symgen.naming import file_stem
 from symgen.proof.box import box
 from symgen.proof.intervals import Interval, enclose
 
 QUANTITY = "inverse_dynamics"
-TRIG_ERROR = "1b-23"
+TRIG_ERROR = Fraction(1, 2**23)
+POINTS = 1_000_000
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
@@ -33,16 +39,34 @@ class GappaView:
     definitions: tuple[str, ...]
     hypotheses: tuple[str, ...]
     goals: tuple[str, ...]
+    entries: tuple[tuple[int, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorView:
+    """Everything the template of the program that measures prints; `entries` are places with their bounds."""
+
+    stem: str
+    model: str
+    quantity: str
+    points: int
+    arrays: tuple[tuple[str, int], ...]
+    entries: tuple[tuple[str, str, str], ...]
+    members: tuple[str, ...]
+    size: int
 
 
 def emit_gappa(model: Model, program: Program) -> dict[str, str]:
-    """`proof/<model>_f_inverse_dynamics.gappa`, or nothing where the method does not reach."""
+    """`proof/<model>_f_inverse_dynamics.gappa` and `..._error.c`, or nothing where the method does not reach."""
     kernel = next((kernel for kernel in program.kernels if kernel.name == QUANTITY), None)
     if program.scalar != "float32" or kernel is None or obstacle(model, kernel):
         return {}
     stem = f"{file_stem(model.name)}_f"
     view = _view(model, kernel, stem)
-    return {f"proof/{stem}_{QUANTITY}.gappa": render("proof/bound.gappa.jinja", view)}
+    return {
+        f"proof/{stem}_{QUANTITY}.gappa": render("proof/bound.gappa.jinja", view),
+        f"proof/{stem}_{QUANTITY}_error.c": render("proof/error.c.jinja", _measurement(model, program, kernel)),
+    }
 
 
 def obstacle(model: Model, kernel: Kernel) -> str:
@@ -52,10 +76,50 @@ def obstacle(model: Model, kernel: Kernel) -> str:
         return f"it uses {', '.join(foreign)}"
     if not any(isinstance(output, Local) for output in kernel.outputs):
         return "its result is constant"
-    enclosure = enclose(kernel, box(model))
+    enclosure = enclose(kernel, _float_box(model))
+    arguments = [s.operands[0] for s in kernel.statements if s.operation == "sincos"]
+    if any(_argument_error(kernel, argument, enclosure.bounds) is None for argument in arguments):
+        return "it takes the sine of more than a sum of angles"
     if enclosure.doubtful:
         return f"intervals do not keep its denominators {', '.join(enclosure.doubtful)} from 0"
     return ""
+
+
+def _argument_error(kernel: Kernel, argument: Operand, bounds: Mapping[str, Interval]) -> Fraction | None:
+    """How far a sum of inputs is from its exact value at most, by half a unit in the last place of each partial sum.
+
+    None where the argument is something else.
+    """
+    if isinstance(argument, Literal) or argument.name in {load.local for load in kernel.loads}:
+        return Fraction(0)
+    (made,) = (s for s in kernel.statements if argument.name in s.targets)
+    parts = [_argument_error(kernel, operand, bounds) for operand in made.operands]
+    if made.operation not in ("add", "sub", "neg") or None in parts:
+        return None
+    own = Fraction(0)
+    if made.operation != "neg":
+        largest = max(map(abs, bounds[argument.name]))
+        own = Fraction(2) ** (math.frexp(largest)[1] - 25)  # largest < 2^e: half a unit is 2^(e-25)
+    return sum((part for part in parts if part is not None), own)
+
+
+def _measurement(model: Model, program: Program, kernel: Kernel) -> ErrorView:
+    ranges = box(model)
+    members = c_names(model, program).members
+    arrays = array_arguments(kernel)
+    entries = [(f"{a.name}[{i}]", ranges[a.name][i]) for a in arrays for i in range(a.length)]
+    entries += [(f"p.{members[p.name]}", pair) for p, pair in zip(model.parameters, ranges["p"], strict=True)]
+    stem = file_stem(model.name)
+    return ErrorView(
+        stem=stem,
+        model=model.name,
+        quantity=kernel.name,
+        points=POINTS,
+        arrays=tuple((a.name, a.length) for a in arrays),
+        entries=tuple((place, _float_text(low), _float_text(high)) for place, (low, high) in entries),
+        members=tuple(members[p.name] for p in model.parameters),
+        size=len(kernel.outputs),
+    )
 
 
 def _needed(kernel: Kernel) -> tuple[Statement, ...]:
@@ -74,7 +138,7 @@ def _view(model: Model, kernel: Kernel, stem: str) -> GappaView:
     statements = _needed(kernel)
     used = {o.name for s in statements if s.operation != "sincos" for o in s.operands if isinstance(o, Local)}
     used |= {o.name for o in kernel.outputs if isinstance(o, Local)}
-    bounds = enclose(kernel, box(model)).bounds
+    bounds = enclose(kernel, _float_box(model)).bounds
     lines: list[str] = []
     hypotheses: list[str] = []
     for load in kernel.loads:
@@ -84,10 +148,11 @@ def _view(model: Model, kernel: Kernel, stem: str) -> GappaView:
     inputs = {load.local for load in kernel.loads}
     for statement in statements:
         if statement.operation == "sincos":
+            error = TRIG_ERROR + (_argument_error(kernel, statement.operands[0], bounds) or 0)
             for target in (name for name in statement.targets if name in used):
                 lines.append(f"{_rounded(target)} = rnd({_free(target)});")
                 hypotheses.append(_within(_exact(target, inputs), bounds[target]))
-                hypotheses.append(f"|{_rounded(target)} - {_exact(target, inputs)}| <= {TRIG_ERROR}")
+                hypotheses.append(f"|{_rounded(target)} - {_exact(target, inputs)}| <= {_power_text(error)}")
             continue
         (target,) = statement.targets
         rounds = statement.operation not in ("neg", "abs")
@@ -95,15 +160,35 @@ def _view(model: Model, kernel: Kernel, stem: str) -> GappaView:
         lines.append(f"{_rounded(target)} {'rnd' if rounds else ''}= {text};")
         text = _expression(statement, [_operand(o, inputs, exact=True) for o in statement.operands])
         lines.append(f"{_exact(target, inputs)} = {text};")
-    results = dict.fromkeys(o.name for o in kernel.outputs if isinstance(o, Local) and o.name not in inputs)
+    entries = tuple(
+        (k, o.name) for k, o in enumerate(kernel.outputs) if isinstance(o, Local) and o.name not in inputs
+    )
     return GappaView(
         stem=stem,
         model=model.name,
         quantity=kernel.name,
         definitions=tuple(lines),
         hypotheses=tuple(dict.fromkeys(hypotheses)),
-        goals=tuple(f"|{_rounded(name)} - {_exact(name, inputs)}| in ?" for name in results),
+        goals=tuple(f"|{_rounded(n)} - {_exact(n, inputs)}| in ?" for n in dict.fromkeys(n for _, n in entries)),
+        entries=tuple((k, _rounded(name)) for k, name in entries),
     )
+
+
+def _float_text(bound: Fraction) -> str:
+    return decimal_text("float32", bound) + "f"
+
+
+def _float_box(model: Model) -> dict[str, tuple[Range, ...]]:
+    """The box in float32 numbers: a parameter without a range is the float32 number next to its default."""
+    return {
+        name: tuple((Fraction(round_to("float32", low)), Fraction(round_to("float32", high))) for low, high in ranges)
+        for name, ranges in box(model).items()
+    }
+
+
+def _power_text(error: Fraction) -> str:
+    """A dyadic fraction as Gappa writes it."""
+    return f"{error.numerator}b-{error.denominator.bit_length() - 1}"
 
 
 def _rounded(name: str) -> str:
@@ -140,5 +225,6 @@ def _expression(statement: Statement, operands: list[str]) -> str:
 
 
 def _within(name: str, interval: Interval) -> str:
-    low, high = interval
-    return f"{name} in [{low!r}, {high!r}]"
+    """Bounds without rounding: a decimal would exclude the only number of a range that is one point."""
+    low, high = (_power_text(Fraction(bound)) for bound in interval)
+    return f"{name} in [{low}, {high}]"

@@ -16,7 +16,7 @@ from functools import cache
 from symgen.emit.literals import round_to
 from symgen.graph.scalar import PI
 from symgen.ir.kernel import Scalar
-from symgen.ir.sincos import ANGLE_LIMIT, ROUNDER
+from symgen.ir.sincos import ROUNDER, angle_limit
 from symgen.model.model import Range
 
 WIDEST = 0.25
@@ -32,10 +32,13 @@ class Slice:
 
 
 @cache
-def slices(scalar: Scalar, given: Range) -> tuple[Slice, ...]:
-    """The range, rounded to the scalar type, in slices of one quadrant, none much wider than `WIDEST`."""
+def slices(scalar: Scalar, given: Range, wide: bool = False) -> tuple[Slice, ...]:
+    """The range, rounded to the scalar type, in slices of one quadrant, none much wider than `WIDEST`.
+
+    A range that goes beyond the limit of the angles, which is further in models of wide angles, stays whole.
+    """
     low, high = (round_to(scalar, bound) for bound in given)
-    limit = float(ANGLE_LIMIT[scalar])
+    limit = float(angle_limit(scalar, wide))
     if not -limit <= low <= high <= limit:
         return (Slice(low, high),)
     found = []

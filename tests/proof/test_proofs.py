@@ -13,16 +13,27 @@ from pathlib import Path
 import pytest
 from shipped import NAMES, SCALARS, model, programs, sources
 
+from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.c_sc import emit_c_sc
 from symgen.ir.kernel import Scalar
+from symgen.ir.schedule import schedule
+from symgen.model.load import load_text
 from symgen.proof.eva import emit_eva
 from symgen.proof.files import emit_proofs
 from symgen.proof.fuzz import emit_fuzz
 from symgen.proof.gappa import emit_gappa
 from symgen.proof.slices import slices
 
+SUMMED = """
+model: summed
+coordinates: {a: {unit: rad, range: [-3, 3]}, b: {unit: rad, range: [-3, 3]}}
+parameters: {J: {value: 2, unit: kg*m**2}, k: {value: 3, unit: N*m}}
+kinetic_energy: J*(a_dot**2 + b_dot**2)
+potential_energy: k*cos(a + b)
+inputs: {M_a: {unit: N*m, acts_on: {a: 1}}, M_b: {unit: N*m, acts_on: {b: 1}}}
+"""
 SANITIZE = ["-O1", "-std=c99", "-ffp-contract=off", "-fno-sanitize-recover=all", "-DSTANDALONE"]
 
 
@@ -88,14 +99,33 @@ def test_slices_cover_the_range_without_overlap(scalar: Scalar) -> None:
     assert found[0].low == -found[-1].high
 
 
-@pytest.mark.parametrize("name", ["front_car", "skate", "slider_crank"])
-def test_gappa_certifies_a_rounding_bound(tool: Callable[[str], str], tmp_path: Path, name: str) -> None:
-    ((path, text),) = emit_gappa(model(name), programs(name)["float32"]).items()
-    write(tmp_path, {path: text})
-    told = run(tool("gappa"), tmp_path / path)
+@pytest.mark.parametrize("name", ["front_car", "skate", "rolling_disc"])
+def test_gappa_certifies_a_rounding_bound_above_the_measured_error(
+    tool: Callable[[str], str], tmp_path: Path, name: str
+) -> None:
+    files = emit_gappa(model(name), programs(name)["float32"])
+    script = f"proof/{name}_f_inverse_dynamics.gappa"
+    measuring = f"proof/{name}_f_inverse_dynamics_error.c"
+    assert set(files) == {script, measuring}
+    few = {measuring: files[measuring].replace("1000000ul", "20000ul")}
+    write(tmp_path, files | sources(name) | few)
+    told = run(tool("gappa"), tmp_path / script)
     bounds = [float(bound) for bound in re.findall(r"\{([0-9.e+-]+),", told)]
-    assert len(bounds) == text.count(" in ?")
-    assert all(0 < bound < 1e4 for bound in bounds)
+    assert len(bounds) == files[script].count(" in ?")
+    made = [measuring, f"c/{name}.c", f"c/{name}_f.c"]
+    run(tool("gcc"), "-std=c99", "-O1", "-ffp-contract=off", "-Ic", *made, "-o", "error", "-lm", folder=tmp_path)
+    measured = [float(line) for line in run(tmp_path / "error").split()]
+    assert len(measured) == len(bounds)
+    assert all(0 < error <= bound * (1 + 1e-5) < 1e4 for error, bound in zip(measured, bounds, strict=True))
+
+
+def test_gappa_counts_the_rounding_of_a_sum_of_angles() -> None:
+    """Half a unit in the last place of |a + b| < 8 is 2^-22, beside the 2^-23 of the sine."""
+    system = load_text(SUMMED, "summed.yaml")
+    derivations = derive_quantities(system, ("inverse_dynamics",))
+    program = schedule(derivations.mechanics, derivations.quantities, ("float32",))["float32"]
+    script = emit_gappa(system, program)["proof/summed_f_inverse_dynamics.gappa"]
+    assert set(re.findall(r"\| <= (\S+)", script)) == {"3b-23"}
 
 
 # make fuzz takes every kernel, for longer
