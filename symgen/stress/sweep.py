@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
+from symgen.stress.conditions import MASSIVE, Conditions, Measures
 from symgen.stress.families import Family
 from symgen.stress.form_kernels import LABELS, FormKernels
 from symgen.stress.forms import Data, partitioned, projected, switched
@@ -24,9 +25,6 @@ DEEPEST: dict[Scalar, int] = {"float64": 24, "float32": 12}  # half decades belo
 BELOW = (1e-14, 1e-16, 1e-18, 1e-24, 0.0)  # where statuses are tested as well
 PAPER_KINDS = ("parameter", "input", "constraint", "large angles", "mass ratios")
 ANGLE_LIMITS: dict[Scalar, float] = {"float64": 1e5, "float32": 100.0}
-MEASURE_BITS = 256
-GRADED = 1e-2
-MASSIVE = ("forward_dynamics", "multipliers")  # what the condition of G matters for
 RANKS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)  # what the measures of singularity speak of
 
 
@@ -87,6 +85,7 @@ class Sweeper:
         self, reference: Reference, kernels: Kernels, families: Sequence[Family], forms: FormKernels | None = None
     ) -> None:
         self._reference = reference
+        self._conditions = Conditions(reference)
         self._kernels = kernels
         self._families = families
         self._names = tuple(name for name in STRESSED if name in kernels.names)
@@ -146,10 +145,9 @@ class Sweeper:
         if ranks.constraints < system.r or self._families[index].kind not in PAPER_KINDS:
             return None, None
         state = self._families[index].curves[curve](1e-3)
-        near = state and self._reference.matrices(state, ("nullspace_projector",), MEASURE_BITS)["nullspace_projector"]
-        if state is None or near is None:
+        if state is None:
             return None, None
-        N = _floats(near)
+        N = self._conditions.matrix("nullspace_projector", state)
         # a choice that is singular everywhere is no choice
         sizes = {J: float(np.linalg.det(N[np.ix_(J, J)])) for J in combinations(range(system.n), delta)}
         usable = {J: size for J, size in sizes.items() if size > 1e-20}
@@ -157,7 +155,7 @@ class Sweeper:
         coordinates = min(usable, key=lambda J: (J not in family.partitions, usable[J])) if system.r else None
         inputs = None
         if system.m and ranks.actuation == delta:
-            M = N @ _floats(self._reference.matrices(state, ("control_matrix",), MEASURE_BITS)["control_matrix"])
+            M = N @ self._conditions.matrix("control_matrix", state)
             minors = {J: float(np.linalg.det(M[:, J].T @ M[:, J])) for J in combinations(range(system.m), delta)}
             inputs = min(minors, key=lambda J: minors[J])
         return coordinates, inputs
@@ -172,7 +170,7 @@ class Sweeper:
         choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None],
     ) -> None:
         outcomes = {name: self._kernels.run(name, state, scalar) for name in self._names}
-        measures = self._measures(state)
+        measures = self._conditions.measures(state)
         where = f"{self._families[index].kind} {self._families[index].label}, d = {d:.3g}, {scalar}"
         for name, outcome in outcomes.items():
             self._status(name, scalar, state, outcome, measures, where)
@@ -184,8 +182,7 @@ class Sweeper:
                 expected = self._drifted(expected, state, truth)
         except ReferenceValueError:
             return
-        masses = self._condition_of_masses(state)
-        floors = {name: self._floor(name, scalar, measures, masses) for name in self._names}
+        floors = {name: self._conditions.floor(name, scalar, state, measures) for name in self._names}
         for name, outcome in outcomes.items():
             if outcome.status == Status.OK:
                 self._record(index, scalar, name, SYMGEN, d, expected[name], outcome.entries, floors[name])
@@ -227,23 +224,6 @@ class Sweeper:
             error = Error(d, relative, expected.in_units(distance), floor)
         errors = self._found.setdefault((index, scalar, name, form), {})
         errors[d] = errors[d].worse(error) if d in errors else error
-
-    def _floor(self, name: str, scalar: Scalar, measures: tuple[float, float] | None, masses: float) -> float:
-        """eps κ(B) κ(F'M), by 1/κ² ≈ measure; F'M counts for inputs only, κ(G) for accelerations and multipliers."""
-        eps = float(UNIT_ROUNDOFF[scalar])
-        if measures is None:
-            return math.inf
-        product = measures[0] * (measures[1] if name == "inverse_dynamics" else 1.0)
-        if product <= 0:
-            return math.inf
-        return eps / math.sqrt(product) * (masses if name in MASSIVE else 1.0)
-
-    def _condition_of_masses(self, state: State) -> float:
-        """κ(G), to which the loss of q̈ and λ under extreme mass ratios is compared."""
-        name = "mass_matrix"
-        values = np.linalg.eigvalsh(_floats(self._reference.matrices(state, (name,), MEASURE_BITS)[name]))
-        smallest, largest = float(values[0]), float(values[-1])
-        return largest / smallest if smallest > 0 else math.inf
 
     def _paper(
         self, scalar: Scalar, state: State, choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None]
@@ -294,30 +274,13 @@ class Sweeper:
             u=u,
         )
 
-    def _measures(self, state: State) -> tuple[float, float] | None:
-        try:
-            values = self._reference.matrices(state, ("singularity",), MEASURE_BITS)["singularity"].entries()
-        except ReferenceValueError:
-            return None
-        first, second = (float(x) for x in values)
-        return (first, second) if math.isfinite(first) and math.isfinite(second) else None
-
-    def _graded(self, state: State) -> bool:
-        """Whether rows of B differ so much in length that lengths are not O(1), as the statuses assume."""
-        if not self._reference.system.r:
-            return False
-        name = "constraint_jacobian"
-        B = _floats(self._reference.matrices(state, (name,), MEASURE_BITS)[name])
-        lengths = np.linalg.norm(B, axis=1)
-        return bool(lengths.min() < GRADED * lengths.max())
-
     def _status(
         self,
         name: str,
         scalar: Scalar,
         state: State,
         outcome: Outcome,
-        measures: tuple[float, float] | None,
+        measures: Measures | None,
         where: str,
     ) -> None:
         counts = self._counts.setdefault((name, scalar), [0] * 6)
@@ -344,7 +307,7 @@ class Sweeper:
                 self._failures.append(f"{name}, {where}: status 0 at measures {_texts(counting)}, below {low:.2g}")
         elif min(counting) > high and given == (None, None):
             counts[4] += 1
-            if refused and outcome.status in RANKS and not self._graded(state):
+            if refused and outcome.status in RANKS and not self._conditions.graded(state):
                 counts[5] += 1
                 self._failures.append(
                     f"{name}, {where}: status {outcome.status} at measures {_texts(counting)}, above {high:.2g}"
@@ -374,7 +337,3 @@ def _within(series: Sequence[Series], exceeded: Series) -> str:
 
 def _texts(values: Sequence[float]) -> str:
     return ", ".join(f"{x:.2g}" for x in values)
-
-
-def _floats(matrix: Any) -> Any:
-    return np.array([float(x) for x in matrix.entries()]).reshape(matrix.nrows(), matrix.ncols())
