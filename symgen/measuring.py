@@ -20,12 +20,17 @@ def bench(arguments: list[str]) -> int:
     parser.add_argument(
         "--states", metavar="N", type=number_of_states, default=1000, help="admissible states (default: 1000)"
     )
+    parser.add_argument(
+        "--bodies", action="store_true", help="u alone, beside peers that walk frames; for mechanisms of any size"
+    )
     add_quiet(parser)
     given = parser.parse_args(arguments)
 
     def one(path: Path, progress: Progress) -> int:
-        from symgen.bench.command import run_bench
+        from symgen.bench.command import run_bench, run_mechanism_bench
 
+        if given.bodies:
+            return run_mechanism_bench(path, given.out, given.quiet, progress)
         return run_bench(path, given.out, given.states, given.quiet, progress)
 
     return each_file(given.models, given.quiet, one)

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from symgen.bench.build import BuildError
 from symgen.bench.charts import time_against_error
+from symgen.bench.mechanism_pages import table_of
+from symgen.bench.mechanisms import mechanism_benchmark
 from symgen.bench.run import Progress, benchmark
 from symgen.bench.tables import bench_tables
 from symgen.verify.reference import ReferenceValueError
@@ -39,4 +41,21 @@ def run_bench(path: Path, out: Path, states: int, quiet: bool, progress: Progres
         print("written:", *(f"  {file}" for file in written), "", sep="\n")
     for note in result.notes:
         print(f"{path}: {note}", file=sys.stderr)
+    return 0
+
+
+def run_mechanism_bench(path: Path, out: Path, quiet: bool, progress: Progress) -> int:
+    """Writes bench.bodies.json into OUT/<model>/; returns 0, or 1 where a candidate does not compile.
+
+    Raises ModelError for mistakes in the file and WrongUseError without gcc or inputs.
+    """
+    try:
+        result = mechanism_benchmark(path, progress).to_json()
+    except BuildError as fault:
+        print(f"{path}: {fault}", file=sys.stderr)
+        return 1
+    text = json.dumps(result, indent=1, ensure_ascii=False) + "\n"
+    written = write_files(out / result["model"], {"bench.bodies.json": text})
+    if not quiet:
+        print(table_of(result), "written:", *(f"  {file}" for file in written), "", sep="\n")
     return 0

@@ -52,13 +52,6 @@ def differentiate(model: Model) -> Lagrange:
     def column(*expressions: Expression) -> casadi.SX:
         return casadi.densify(casadi.vertcat(casadi.SX(0, 1), *(translate(e, scope) for e in expressions)))
 
-    kinetic, potential = column(model.kinetic_energy), column(model.potential_energy)
-    mass = casadi.densify(casadi.hessian(kinetic, qd)[0])
-    momentum = mass @ qd
-    shift = casadi.jacobian(momentum, q)
-    geometric = column(*(row.expression for row in model.constraints if row.kind == "geometric"))
-    nonholonomic = column(*(row.expression for row in model.constraints if row.kind == "nonholonomic"))
-    jacobian = casadi.vertcat(casadi.jacobian(geometric, q), casadi.jacobian(nonholonomic, qd))
     order = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
     control = casadi.SX.zeros(model.n, model.m)
     for j, actuator in enumerate(model.inputs):
@@ -67,6 +60,32 @@ def differentiate(model: Model) -> Lagrange:
     applied = casadi.SX.zeros(model.n)
     for force in model.applied_forces:
         applied[order[force.coordinate]] += translate(force.expression, scope)
+    return lagrange(
+        (q, qd, qdd, u, p),
+        column(model.kinetic_energy),
+        column(model.potential_energy),
+        column(*(row.expression for row in model.constraints if row.kind == "geometric")),
+        column(*(row.expression for row in model.constraints if row.kind == "nonholonomic")),
+        control,
+        applied,
+    )
+
+
+def lagrange(
+    symbols: tuple[casadi.SX, casadi.SX, casadi.SX, casadi.SX, casadi.SX],
+    kinetic: casadi.SX,
+    potential: casadi.SX,
+    geometric: casadi.SX,
+    nonholonomic: casadi.SX,
+    control: casadi.SX,
+    applied: casadi.SX,
+) -> Lagrange:
+    """All of `Lagrange` from T, U, the columns of rows, M and Q_a; `symbols` are q, qd, qdd, u, p."""
+    q, qd, qdd, u, p = symbols
+    mass = casadi.densify(casadi.hessian(kinetic, qd)[0])
+    momentum = mass @ qd
+    shift = casadi.jacobian(momentum, q)
+    jacobian = casadi.vertcat(casadi.jacobian(geometric, q), casadi.jacobian(nonholonomic, qd))
     return Lagrange(
         q=q,
         qd=qd,

@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 
 import casadi
 
-from symgen.bench.peers.engine import Inputs, Symbol
+from symgen.bench.peers.engine import Engine, Inputs, Symbol
 
 
-class CasadiEngine:
+class CasadiEngine(Engine):
     """Scalars are 1×1 SX; intermediates need no names, because SX shares what is equal."""
 
     tool: ClassVar[str] = "CasADi"
@@ -40,6 +40,15 @@ class CasadiEngine:
 
     def derivative(self, value: Symbol, by: Symbol) -> Symbol:
         return casadi.densify(casadi.jacobian(value, by))
+
+    def gradient(self, value: Symbol, by: Sequence[Symbol]) -> list[Symbol]:
+        found = casadi.densify(casadi.gradient(value, casadi.vertcat(*by)))
+        return [found[i] for i in range(len(by))]
+
+    def rates(self, values: Sequence[Symbol], by: Sequence[Symbol], direction: Sequence[Symbol]) -> list[Symbol]:
+        column = casadi.vertcat(*values)
+        found = casadi.densify(casadi.jtimes(column, casadi.vertcat(*by), casadi.vertcat(*direction)))
+        return [found[i] for i in range(len(values))]
 
     def is_zero(self, value: Symbol) -> bool:
         return bool(value.is_zero())

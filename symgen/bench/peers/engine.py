@@ -43,6 +43,20 @@ class Engine(Protocol):
         """∂value/∂by."""
         ...
 
+    def gradient(self, value: Symbol, by: Sequence[Symbol]) -> list[Symbol]:
+        """The derivatives by each of several symbols, as the tool takes them together."""
+        return [self.derivative(value, x) for x in by]
+
+    def rates(self, values: Sequence[Symbol], by: Sequence[Symbol], direction: Sequence[Symbol]) -> list[Symbol]:
+        """The derivatives of all values along a direction."""
+        found = []
+        for value in values:
+            total = self.number(Fraction(0))
+            for x, step in zip(by, direction, strict=True):
+                total = total + self.derivative(value, x) * step
+            found.append(total)
+        return found
+
     def is_zero(self, value: Symbol) -> bool:
         """Whether the tool itself has found the value to be the constant 0."""
         ...

@@ -25,9 +25,10 @@ FAR_ENOUGH = 1e-4
 MOST_CHOICES = 3000
 MOST_COUNTED = 30
 Choice = tuple[int, ...]
+Route = Callable[[CasadiEngine, Model], Mechanics]
 
 
-def independent_coordinates(model: Model, s: Lagrange, states: Any) -> Choice | None:
+def independent_coordinates(model: Model, s: Lagrange, states: Any, derive: Route = mechanics) -> Choice | None:
     """The δ coordinates F of the form `part` is made from; None where the form does not apply."""
     n, r = model.n, model.r
     if model.m < n - r or comb(n, r) > MOST_CHOICES:
@@ -35,13 +36,13 @@ def independent_coordinates(model: Model, s: Lagrange, states: Any) -> Choice | 
     jacobians = _jacobians(model, s, states)
     choices = list(combinations(range(n), n - r))
     dependent = [[i for i in range(n) if i not in choice] for choice in choices]
-    return _best(choices, [jacobians[:, :, rows] for rows in dependent], lambda e, m, c: part(e, m, c), model)
+    return _best(choices, [jacobians[:, :, rows] for rows in dependent], lambda e, m, c: part(e, m, c), model, derive)
 
 
-def free_multipliers(model: Model, s: Lagrange, states: Any) -> Choice | None:
+def free_multipliers(model: Model, s: Lagrange, states: Any, derive: Route = mechanics) -> Choice | None:
     """The m − δ multipliers the form `range` leaves for last; None where the form does not apply."""
     engine = CasadiEngine()
-    active = selected_rows(engine, mechanics(engine, model).M)
+    active = selected_rows(engine, derive(engine, model).M)
     free = model.m - (model.n - model.r)
     if active is None or free < 0 or comb(model.r, free) > MOST_CHOICES:
         return None
@@ -49,7 +50,7 @@ def free_multipliers(model: Model, s: Lagrange, states: Any) -> Choice | None:
     jacobians = _jacobians(model, s, states)[:, :, passive]
     choices = list(combinations(range(model.r), free))
     bound = [[k for k in range(model.r) if k not in choice] for choice in choices]
-    return _best(choices, [jacobians[:, rows, :] for rows in bound], lambda e, m, c: range_form(e, m, c), model)
+    return _best(choices, [jacobians[:, rows, :] for rows in bound], lambda e, m, c: range_form(e, m, c), model, derive)
 
 
 def _jacobians(model: Model, s: Lagrange, states: Any) -> Any:
@@ -66,6 +67,7 @@ def _best(
     squares: Iterable[Any],
     form: Callable[[CasadiEngine, Mechanics, Choice], list[Symbol]],
     model: Model,
+    derive: Route,
 ) -> Choice | None:
     import numpy as np
 
@@ -77,7 +79,7 @@ def _best(
     costs: dict[int, int] = {}
     for k in far:
         engine = CasadiEngine()
-        s = mechanics(engine, model)
+        s = derive(engine, model)
         try:
             costs[k] = casadi.n_nodes(casadi.cse(casadi.vertcat(*form(engine, s, choices[k]))))
         except DeadPivotError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import casadi
@@ -15,8 +16,15 @@ def user_matrices(s: Lagrange) -> Any:
     return s.mass @ s.qdd + s.coriolis @ s.qd + s.potential_force - s.applied_force
 
 
-def inverse_dynamics(model: Model, s: Lagrange) -> Any:
-    """u = M~⁺ N_B τ (27), M~⁺ by (28) with the first δ inputs as M~1."""
+def direct_balance(s: Lagrange) -> Any:
+    """τ by derivatives along directions, without matrices."""
+    momentum = casadi.gradient(s.kinetic, s.qd)
+    rates = casadi.jtimes(momentum, casadi.vertcat(s.q, s.qd), casadi.vertcat(s.qd, s.qdd))
+    return rates - casadi.gradient(s.kinetic - s.potential, s.q) - s.applied_force
+
+
+def inverse_dynamics(model: Model, s: Lagrange, balance: Callable[[Lagrange], Any] = user_matrices) -> Any:
+    """u = M~⁺ N_B τ (27), M~⁺ by (28) with the first δ inputs as M~1; `balance` gives τ."""
     n, r, m = model.n, model.r, model.m
     delta = n - r
     B = s.jacobian
@@ -29,7 +37,7 @@ def inverse_dynamics(model: Model, s: Lagrange) -> Any:
         R = inverse @ rest
         lower = casadi.inv(casadi.SX.eye(m - delta) + R.T @ R) @ R.T @ inverse
         inverse = casadi.vertcat(inverse - R @ lower, lower)
-    return inverse @ N @ user_matrices(s)
+    return inverse @ N @ balance(s)
 
 
 def forward_dynamics(model: Model, s: Lagrange) -> tuple[Any, Any]:

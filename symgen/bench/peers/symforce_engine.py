@@ -11,14 +11,14 @@ import symforce.symbolic as sf
 from symforce.codegen import CppConfig, codegen_util
 from symforce.values import Values
 
-from symgen.bench.peers.engine import Inputs, Symbol
+from symgen.bench.peers.engine import Engine, Inputs, Symbol
 
 ARRAY_ENTRY = re.compile(r"\b(qdd|qd|q|u|p)_(\d+)\b")
 SQUARE = re.compile(r"std::pow\((\w+), Scalar\(2\)\)")
 _tool: Any = codegen_util
 
 
-class SymforceEngine:
+class SymforceEngine(Engine):
     """Scalars are SymEngine's, as SymForce hands them out."""
 
     tool: ClassVar[str] = "SymForce"

@@ -10,13 +10,13 @@ from typing import Any, ClassVar
 import sympy
 from sympy.printing.c import C99CodePrinter
 
-from symgen.bench.peers.engine import Inputs, Symbol
+from symgen.bench.peers.engine import Engine, Inputs, Symbol
 
 LARGEST_PRODUCT = 8
 ARRAY_ENTRY = re.compile(r"\b(qdd|qd|q|u|p)_(\d+)\b")
 
 
-class SympyEngine:
+class SympyEngine(Engine):
     """Scalars are SymPy expressions; what `name` is told becomes a symbol of its own."""
 
     tool: ClassVar[str] = "SymPy"
@@ -72,6 +72,9 @@ class SympyEngine:
 
 class _Printer(C99CodePrinter):  # type: ignore[misc]  # SymPy has no types
     """Small integer powers as products: `pow` would be a call in every kernel."""
+
+    def _print_Pi(self, expr: Any) -> str:  # noqa: ARG002
+        return "3.14159265358979323846"
 
     def _print_Pow(self, expr: Any) -> str:
         base, exponent = expr.base, expr.exp

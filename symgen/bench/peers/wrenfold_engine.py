@@ -9,13 +9,13 @@ from typing import Any, ClassVar
 
 from wrenfold import code_generation, enumerations, sym, type_info
 
-from symgen.bench.peers.engine import Inputs, Symbol
+from symgen.bench.peers.engine import Engine, Inputs, Symbol
 
 REAL = enumerations.NumberSet.Real
 _tool: Any = code_generation
 
 
-class WrenfoldEngine:
+class WrenfoldEngine(Engine):
     """Scalars are wrenfold expressions; it shares what is equal by itself."""
 
     tool: ClassVar[str] = "wrenfold"
@@ -49,6 +49,7 @@ class WrenfoldEngine:
         text = _generated(name, inputs, outputs)
         body = text[text.index("{") + 1 : text.rindex("}")]
         body = body.replace("static_cast<Scalar>", "(REAL)").replace("std::", "").replace("Scalar", "REAL")
+        body = body.replace("M_PI", "3.14159265358979323846")
         body = re.sub(r"\b(qdd|qd|q|u|p)_(\d+)\b", r"\1[\2]", re.sub(r"//.*", "", body))
         lines = [line.strip() for line in body.splitlines() if line.strip()]
         stores = [line for line in lines if re.match(r"y_\d+ =", line)]

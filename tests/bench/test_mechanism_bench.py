@@ -1,0 +1,73 @@
+"""u of mechanisms beside peers that walk the frames: the same u, honest counts, a page of goals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from shipped import ROOT, model
+
+from symgen.bench import build as build_module
+from symgen.bench import mechanisms
+from symgen.bench.mechanism_goals import GOALS, MECHANISMS, STUDY
+from symgen.bench.mechanism_pages import page, table_of
+from symgen.bench.mechanisms import drawn_states, mechanism_benchmark
+from symgen.bench.peers.casadi_engine import CasadiEngine
+from symgen.bench.peers.frames import mechanics_by_frames
+from symgen.bench.peers.mechanics import mechanics
+from symgen.model.load import load_model
+from symgen.model.model import Model
+
+
+def quiet(_: str) -> None:
+    pass
+
+
+def described(name: str) -> Model:
+    return load_model(ROOT / "tests" / "mechanisms" / f"{name}.yaml") if name == "chain8" else model(name)
+
+
+@pytest.mark.parametrize(("name", "most"), [("arm7", 1700), ("chain8", 800), ("delta", 115), ("gough_stewart", 420)])
+def test_recursion_keeps_what_is_shared(name: str, most: int) -> None:
+    casadi = pytest.importorskip("casadi")
+    s = mechanics_by_frames(CasadiEngine(), described(name))
+    arguments = [casadi.vertcat(*s.inputs[array]) for array in ("q", "qd", "qdd", "p")]
+    function = casadi.Function("f", arguments, [casadi.cse(casadi.vertcat(*s.balance))])
+    assert function.n_instructions() <= most
+
+
+@pytest.mark.parametrize("name", ["rapkm_bodies", "front_car_bodies", "arm7"])
+def test_frames_and_energies_give_the_same_equations(name: str) -> None:
+    casadi = pytest.importorskip("casadi")
+    found = []
+    for derive in (mechanics_by_frames, mechanics):
+        s = derive(CasadiEngine(), described(name))
+        arguments = [casadi.vertcat(*s.inputs[array]) for array in ("q", "qd", "qdd", "p")]
+        rows = [x for row in (*s.B, *s.M) for x in row]
+        function = casadi.Function("f", arguments, [casadi.vertcat(*s.balance, *rows)])
+        n = described(name).n
+        state = drawn_states(described(name), 1)[0]
+        found.append(function(state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]).full())
+    assert found[0] == pytest.approx(found[1], rel=1e-10, abs=1e-10)
+
+
+@pytest.mark.toolchain
+def test_every_peer_computes_u(tool: Callable[[str], str], monkeypatch: pytest.MonkeyPatch) -> None:
+    tool("gcc")
+    monkeypatch.setattr(build_module, "FLAGS", ("-O0", *build_module.FLAGS[1:]))
+    monkeypatch.setattr(mechanisms, "PASSES", 3)
+    monkeypatch.setattr(mechanisms, "find_valgrind", lambda: None)
+    path = ROOT / "models" / "front_car_bodies.yaml"
+    result = mechanism_benchmark(path, quiet).to_json()
+    assert len(result["kernels"]) > 10
+    assert {row["form"]: row["difference"] for row in result["kernels"] if not row["difference"] < 1e-12} == {}
+    text = page({"front_car_bodies": result})
+    assert "symgen range, portable" in text
+    assert "CasADi" in text
+    assert "front_car_bodies" in table_of(result)
+
+
+def test_goals_and_study_have_a_place_for_every_mechanism() -> None:
+    assert all(len(goal.ratios) == len(MECHANISMS) for goal in GOALS)
+    assert all(len(counts) == len(MECHANISMS) for counts in STUDY.values())
+    assert page({}).startswith("# Mechanisms")
