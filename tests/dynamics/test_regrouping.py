@@ -1,0 +1,107 @@
+"""Regrouped products: the same values, fewer operations, and only from what nothing else needs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from symgen.dynamics.common_factors import MOST_TERMS, with_common_factors
+from symgen.dynamics.factoring import Factoring
+from symgen.dynamics.grouping import grouped
+from symgen.dynamics.late_factors import with_late_factors
+from symgen.graph.evaluate import Evaluator
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import cost
+
+NAMES = "a b c f g h k x y z"
+POINT = {name: 0.7 + 0.31 * place for place, name in enumerate(NAMES.split())}
+
+
+@pytest.fixture
+def graph() -> Graph:
+    return Graph()
+
+
+def symbols(graph: Graph, names: str = NAMES) -> list[Scalar]:
+    return [graph.symbol(name) for name in names.split()]
+
+
+def values(outputs: Sequence[Scalar]) -> list[float]:
+    return list(Evaluator(outputs)(POINT))
+
+
+def multiplications(outputs: Sequence[Scalar]) -> int:
+    return cost(outputs).multiplications
+
+
+def test_a_factor_leaves_terms_that_are_no_neighbours(graph: Graph) -> None:
+    a, b, c, f, g, h, *_ = symbols(graph)
+    outputs = [((a * f) * b + g * h) - c * f]
+    found = with_common_factors(graph, outputs)
+    assert multiplications(found) == multiplications(outputs) - 1
+    assert values(found) == pytest.approx(values(outputs))
+
+
+def test_terms_without_a_partner_and_all_signs(graph: Graph) -> None:
+    a, b, c, f, g, *_ = symbols(graph)
+    for outputs in ([graph.neg(a * f) - b * f], [g - a * f - b * f - c], [a * f - (b * f - c * f)]):
+        found = with_common_factors(graph, outputs)
+        assert multiplications(found) < multiplications(outputs)
+        assert values(found) == pytest.approx(values(outputs))
+
+
+def test_a_factor_that_is_a_term_itself_leaves_a_one(graph: Graph) -> None:
+    a, f, g, *_ = symbols(graph)
+    outputs = [(f * a) * g + f * g]
+    found = with_common_factors(graph, outputs)
+    assert multiplications(found) < multiplications(outputs)
+    assert values(found) == pytest.approx(values(outputs))
+
+
+def test_products_that_are_needed_elsewhere_stay(graph: Graph) -> None:
+    a, b, f, x, *_ = symbols(graph)
+    product = a * f
+    outputs = [product + b * f, product * x]
+    assert with_common_factors(graph, outputs) == outputs
+
+
+def test_sums_beyond_the_limit_stay(graph: Graph) -> None:
+    f = graph.symbol("f")
+    terms = [graph.symbol(f"s{k}") * f for k in range(MOST_TERMS + 1)]
+    assert with_common_factors(graph, [graph.sum(terms)]) == [graph.sum(terms)]
+    (shorter,) = with_common_factors(graph, [graph.sum(terms[:-1])])
+    assert multiplications([shorter]) == 1
+
+
+def test_a_factor_of_several_values_is_multiplied_in_once(graph: Graph) -> None:
+    a, b, c, f, g, _, k, x, y, z = symbols(graph)
+    first, second = f * (a + x), f * (b + y)
+    outputs = [z - k * (x * first + y * second), c + k * (second / (x * x + g))]
+    found = with_late_factors(graph, Factoring(graph, [f, k]), outputs)
+    assert multiplications(found) == multiplications(outputs) - 1
+    assert values(found) == pytest.approx(values(outputs))
+
+
+def test_a_factor_stays_where_values_are_added_to_others(graph: Graph) -> None:
+    a, b, _, f, *_ = symbols(graph)
+    outputs = [f * a + b, f * b + a]
+    assert with_late_factors(graph, Factoring(graph, [f]), outputs) == outputs
+
+
+def test_results_and_divisors_get_their_factor_back(graph: Graph) -> None:
+    a, b, c, f, g, _, k, x, y, _ = symbols(graph)
+    first, second, third = f * (a + x), f * (b + y), f * (c + g)
+    outputs = [k * (x * first), k * (y * second), k * third, first, graph.one / second]
+    for regroup in (with_late_factors, grouped):
+        found = regroup(graph, Factoring(graph, [f, k]), outputs)
+        assert cost(found).weight <= cost(outputs).weight
+        assert values(found) == pytest.approx(values(outputs))
+
+
+def test_an_operation_made_twice_counts_once(graph: Graph) -> None:
+    a, b, f, g, *_ = symbols(graph)
+    twin = graph.raw("mul", (f, g))  # before the constructors know it
+    outputs = [a * twin, b * (f * g)]
+    assert multiplications(outputs) == 4
+    assert multiplications(grouped(graph, Factoring(graph, [f, g]), outputs)) == 3
