@@ -11,6 +11,7 @@ from functools import cached_property
 from itertools import combinations
 
 from symgen.dynamics.allocation import InputAllocation
+from symgen.dynamics.driven import driven_minors
 from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
 from symgen.dynamics.exterior import square as multivector_square
 from symgen.dynamics.forms.definiteness import positive_definite
@@ -368,6 +369,9 @@ class Derivation:
         if isinstance(self.space, HouseholderSpace):
             space = reflected(graph, unit_rows, self.n, self.generic.rank, everywhere=True)
             constraint = space.square
+            driven = driven_minors(graph, unit_rows, mechanics.inputs, self.n)
+            if driven is not None and not dependent and self.generic.full_actuation:
+                return constraint, graph.function("ratio_or_zero", (driven[0], constraint * driven[1]))
             seen, _ = space.actuation(mechanics.inputs, self.generic.alpha)
             regular = graph.function("ratio_or_zero", (constraint, constraint))
             actuation = self._actuation_measure(seen.square() * regular)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from itertools import combinations
+from math import comb
 from typing import Any, TypeAlias
 
 from flint import arb, arb_mat
@@ -27,6 +28,8 @@ from symgen.verify.reference_linear import (
 )
 from symgen.verify.reference_manifold import Ranks
 from symgen.verify.reference_system import Configuration, System
+
+MOST_DETERMINANTS = 10
 
 Derivative: TypeAlias = Callable[["Evaluation", Any], Any]
 
@@ -317,6 +320,10 @@ def _actuation_measure(e: Evaluation) -> Any:
 
 
 def _sum_of_minors(gram: Any, size: int) -> Any:
+    """The sum of the principal minors of a size; many of them as a coefficient of the characteristic polynomial."""
+    if comb(gram.nrows(), size) > MOST_DETERMINANTS:
+        coefficient = gram.charpoly()[gram.nrows() - size]
+        return -coefficient if size % 2 else coefficient
     total = arb(0)
     for subset in combinations(range(gram.nrows()), size):
         total += determinant(rows_of(columns_of(gram, subset), subset))
