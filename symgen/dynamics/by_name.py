@@ -12,7 +12,7 @@ from symgen.dynamics.admission.verdict import DECIMALS, Singular, Verdict
 from symgen.dynamics.catalogue import Derived, scalars
 from symgen.dynamics.compared import MOTIONS, quantities_by, why_missing
 from symgen.dynamics.forms.definiteness import Indefinite, indefinite
-from symgen.dynamics.forms.motions import MOTION_NAMES
+from symgen.dynamics.forms.motions import BY_FRAMES, MOTION_NAMES
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.inverse import FormChoice
 from symgen.dynamics.mechanics import Mechanics
@@ -30,6 +30,7 @@ THEOREMS = {
     "schur_ldl": "its pivots are those of G, which is positive definite everywhere, and those of B" + SQUARED,
     "shifted": "its matrix is positive definite where G is so along the constraints" + SQUARED,
     "kkt": "its pivots are those of the whole system",
+    BY_FRAMES: "its pivots are inertias met along the joints, positive where G is definite, and those of B",
 }
 PROJECTOR = {
     "minor": "its denominator is the sum of the squared minors of B",
@@ -68,7 +69,7 @@ def named_form(model: Model, generic: Genericity, quantity: str, name: str) -> N
 
 def forms_compared(model: Model, generic: Genericity, quantity: str, taken: str) -> FormChoice | None:
     """Every form of a quantity by counted cost, with `taken` as the name of what is taken; None without forms."""
-    names = MOTION_NAMES if quantity in MOTIONS else tuple(PROJECTOR)
+    names = (*MOTION_NAMES, BY_FRAMES) if quantity in MOTIONS else tuple(PROJECTOR)
     found = [form for name in names if isinstance(form := named_form(model, generic, quantity, name), NamedForm)]
     if not found:
         return None

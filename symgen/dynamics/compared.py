@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.forms.articulated import articulated
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
-from symgen.dynamics.forms.motions import MOTION_NAMES, MotionName, candidates, motion
+from symgen.dynamics.forms.motion import Motion
+from symgen.dynamics.forms.motions import BY_FRAMES, MOTION_NAMES, MotionName, candidates, motion
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
@@ -24,12 +26,15 @@ def motions_of(model: Model) -> dict[str, tuple[Mechanics, tuple[Derived, ...]]]
     `householder` is a form of N_B only, `minor` of all three where delta is 1 or 2.
     """
     generic = genericity(Mechanics(model))
-    forms = {name: quantities_by(model, generic, name) for name in (*MOTION_NAMES, "householder")}
+    forms = {name: quantities_by(model, generic, name) for name in (*MOTION_NAMES, BY_FRAMES, "householder")}
     return {name: form for name, form in forms.items() if form[1]}
 
 
 def quantities_by(model: Model, generic: Genericity, name: str) -> tuple[Mechanics, tuple[Derived, ...]]:
     """One form: the mechanics it was derived on, and those of q_ddot, lambda and N_B that it has."""
+    if name == BY_FRAMES:
+        found = articulated(model, generic)
+        return (Mechanics(model), ()) if found is None else (found[0], _of_motion(generic, found[1]))
     mechanics = Mechanics(model)
     space = _space(mechanics, generic, name)
     return mechanics, () if space is None else _quantities(mechanics, generic, space, name)
@@ -38,6 +43,8 @@ def quantities_by(model: Model, generic: Genericity, name: str) -> tuple[Mechani
 def why_missing(generic: Genericity, quantity: str, name: str) -> str:
     """The reason for which a system lacks a form of a quantity."""
     by_minors = name == "minor"
+    if name == BY_FRAMES:
+        return "it is for bodies alone with one frame for each coordinate, definite G and independent rows"
     if not generic.r and not (by_minors and quantity in MOTIONS):
         return "there are no constraints"
     if by_minors and generic.minors > MINOR_LIMIT:
@@ -57,17 +64,20 @@ def _space(mechanics: Mechanics, generic: Genericity, name: str) -> NullSpace | 
 
 def _quantities(mechanics: Mechanics, generic: Genericity, space: NullSpace, name: str) -> tuple[Derived, ...]:
     n, r = generic.n, generic.r
-    found: list[Derived] = []
+    found: tuple[Derived, ...] = ()
     if motion_name := _motion_name(generic, space, name):
         # equal functions are one node of a graph: what a form does not need must not be on it
         inertia = Derivation(mechanics, generic, space).inertia if motion_name == "nullspace" else None
-        made = motion(motion_name, mechanics, space, inertia)
-        found.append(Derived("forward_dynamics", (n,), made.accelerations, made.guards))
-        if r:
-            found.append(Derived("multipliers", (r,), made.multipliers, made.guards))
+        found = _of_motion(generic, motion(motion_name, mechanics, space, inertia))
     if r and name in ("minor", "householder"):
-        found.append(Derived("nullspace_projector", (n, n), flatten(space.projector), space.guards))
-    return tuple(found)
+        found += (Derived("nullspace_projector", (n, n), flatten(space.projector), space.guards),)
+    return found
+
+
+def _of_motion(generic: Genericity, made: Motion) -> tuple[Derived, ...]:
+    accelerations = Derived("forward_dynamics", (generic.n,), made.accelerations, made.guards)
+    multipliers = Derived("multipliers", (generic.r,), made.multipliers, made.guards)
+    return (accelerations, multipliers) if generic.r else (accelerations,)
 
 
 def _motion_name(generic: Genericity, space: NullSpace, name: str) -> MotionName | None:

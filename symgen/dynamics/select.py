@@ -24,6 +24,7 @@ from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
 from symgen.dynamics.forms.articulated import articulated
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
+from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.grouping import grouped as grouped_scalars
 from symgen.dynamics.inverse import CANCELLATION_WORTH, FACTORING_LIMIT, FormChoice, InverseDynamics, derived_on, moved
@@ -192,7 +193,8 @@ def derive_quantities(
             if costs["factored"] <= costs[best] * (1 + worth):
                 candidates["factored"], best = shorter, "factored"
         quantities.append(candidates[best])
-        choices.append(Choice(name, best, tuple(costs.items()), _form_along(along.get(best), name)))
+        form = BY_FRAMES if best == ARTICULATED else _form_along(along.get(best), name)
+        choices.append(Choice(name, best, tuple(costs.items()), form))
     grouped = tuple(_with_groups(mechanics, derived) for derived in quantities)
     return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named))
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from symgen.dynamics.compared import motions_of
 from symgen.dynamics.forms.form import FORM_NAMES
-from symgen.dynamics.forms.motions import MOTION_NAMES
+from symgen.dynamics.forms.motions import BY_FRAMES, MOTION_NAMES
 from symgen.dynamics.inverse import forms_of
 from symgen.ir.kernel import Scalar, Status
 from symgen.ir.schedule import schedule
@@ -15,7 +15,7 @@ from symgen.model.model import Model
 from symgen.stress.kernels import SCALARS, Runner
 from symgen.verify.reference import State
 
-LABELS: dict[str, str] = {name: f"form {name}" for name in dict.fromkeys((*FORM_NAMES, *MOTION_NAMES))}
+LABELS: dict[str, str] = {name: f"form {name}" for name in dict.fromkeys((*FORM_NAMES, *MOTION_NAMES, BY_FRAMES))}
 
 
 class FormKernels:

@@ -17,7 +17,7 @@ CAPTIONS = {
 ORDER = tuple(CAPTIONS)
 FORM_NAMES = (
     *("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"),  # of u; some also of q̈, λ and N_B
-    *("schur_qr", "schur_ldl", "shifted"),
+    *("schur_qr", "schur_ldl", "shifted", "articulated"),
 )
 FORMS = (
     *("(9) fixed partition", "(27)+(28) fixed", "(27)+(28) switching", "symgen"),

@@ -72,7 +72,7 @@ def test_the_kernel_is_that_of_the_form(form: str, tmp_path: Path) -> None:
     assert auto["name"] != form
 
 
-@pytest.mark.parametrize("form", FORMS["multipliers"])
+@pytest.mark.parametrize("form", [form for form in FORMS["multipliers"] if form != "articulated"])
 def test_multipliers_by_every_form_are_verified(form: str, tmp_path: Path) -> None:
     asked = ("--form", f"multipliers={form}", "--form", f"forward_dynamics={form}")
     given = ("--outputs", "forward_dynamics,multipliers", "--only", "c", "--scalar", "float64", "--states", "8")
@@ -135,5 +135,10 @@ def test_forms_a_system_lacks_and_forms_of_what_is_not_generated(
     assert main([PENDULUM, *given, "--form", "forward_dynamics=nullspace"]) == 2
     expected = "double_pendulum has no form 'nullspace' of forward_dynamics: there are no constraints"
     assert expected in capsys.readouterr().err
+    assert main([PENDULUM, *given, "--form", "forward_dynamics=articulated"]) == 2
+    assert "no form 'articulated' of forward_dynamics: it is for bodies alone" in capsys.readouterr().err
+    scara = str(ROOT / "models" / "scara.yaml")
+    assert main([scara, *given, "--form", "forward_dynamics=articulated"]) == 0
+    capsys.readouterr()
     assert main([PENDULUM, *given, *FEW[:2], "--form", "forward_dynamics=kkt"]) == 0
     assert "--form forward_dynamics=kkt: forward_dynamics is not generated" in capsys.readouterr().err

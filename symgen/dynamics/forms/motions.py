@@ -24,6 +24,7 @@ from symgen.graph.traverse import cost
 
 MotionName: TypeAlias = Literal["minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt"]
 MOTION_NAMES: tuple[MotionName, ...] = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt")
+BY_FRAMES = "articulated"  # of bodies only, without a null space: forms/articulated.py
 
 
 def candidates(generic: Genericity, space: NullSpace) -> tuple[MotionName, ...]:
@@ -42,8 +43,8 @@ def cheapest(
     """The candidate that counts least, outputs and tested denominators together.
 
     `nullspace` is normwise accurate in the units that B is given in.  For q_ddot that is as good as anything where the
-    coordinates have one unit, and masses that differ a lot cost nothing; else, and for lambda, it is left for systems in
-    which G is definite along the constraints only.
+    coordinates have one unit, and masses that differ a lot cost nothing; else, and for lambda, it is left for systems
+    in which G is definite along the constraints only.
     """
     coordinates = mechanics.model.coordinates
     even = part == "accelerations" and len({(c.unit, c.is_angle) for c in coordinates}) == 1
