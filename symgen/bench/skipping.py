@@ -239,12 +239,13 @@ TABLE
 - *coordinates no constraint touches*, *zeros of B and M*: their zero entries as numbers at run time. *constants*: the
   entries that are numbers other than 0. *forces that vanish*: the zero entries of Q.
 - *τ without G and C*: G q̈ + C q̇ with the matrices G and C instead of the vector by itself, which is the cheaper of
-  two derivations; a product that happens to be shared can make the matrices cheaper by one or two.
+  two derivations.
 - *m = δ*: the sum over choices of inputs where there is one choice.
 - *groups of parameters*: sums and products of parameters alone formed wherever they are used.
 - *sines by addition*: a sine and cosine of its own for each angle.
 - *zeros of G and C*: what stands where they are zero as numbers at run time, against τ by these matrices.
 - *body-fixed axes*: the range form whose rows and multipliers stay in the axes of the model, against the range form.
+- A small minus is a product that happens to be shared; the slider-crank does not take the range form.
 - No shipped model has several blocks of B. For two skates and a rod on one plane (`tests/dynamics/test_blocks.py`)
   B⁺ weighs 87 block by block and 158 taken together.
 """

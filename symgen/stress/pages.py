@@ -35,15 +35,17 @@ HEAD = """# Numerical stability
 Written by `make stress`. Every family of trouble was found by `symgen stress` itself: the zeros of the factored
 determinants of all choices of independent coordinates and of inputs on the constraint manifold, and extremes of
 angles, masses, position drift and rates. d runs from 1 to 1e-12 in float64 and to 1e-6 in float32; in the family
-"large angles" it is one radian over the angle.
+"large angles" it is one radian over the angle. "Near-redundant" is the model with one geometric row more, which
+follows from the others on the constraint manifold and is independent of them by as much as the configuration has
+drifted; "incompatible inputs" are rates and accelerations that violate the constraints by d of their size.
 
 Errors are those of whole kernels against a reference of 50 digits. The unit of error is d + eps |y|, where this d is
 how far the exact result moves when inputs, parameters and literals are rounded; 16 units are allowed. The paper's
 formulas run in NumPy, in the same precision, on B, M, G, C and Q as the generated kernels compute them: (9) with the
 coordinates, and (28) with the inputs, that fail where the family leads. Beside (27) and (28), N_B is (21), and λ and q̈
-are (14) and (15) as corrected. Forms by name are symgen's own, compiled as the generated one is (decisions 8 and 12);
-they answer for the states that the generated kernel accepts. "Breaks" is the largest d at which a form is beyond the
-tolerance.
+are (14) and (15) as corrected. Forms by name are symgen's own, compiled as the generated one is (decisions 8, 12 and
+20; `--form` takes them); they answer for the states that the generated kernel accepts. "Breaks" is the largest d at
+which a form is beyond the tolerance.
 """
 CLAIM = """## The paper's claim
 
