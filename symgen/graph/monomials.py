@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from math import lcm
 from struct import unpack
 from typing import TypeAlias
 
@@ -67,13 +68,17 @@ class Monomials:
 
     def product(self, a: Terms, b: Terms) -> Terms:
         """The product, reduced."""
-        result: Terms = {}
+        (first, below), (second, other) = _whole(a), _whole(b)
+        scale = below * other
+        result: dict[Code, int] = {}
         get = result.get
-        for left, x in a.items():
-            for right, y in b.items():
+        for left, x in first:
+            for right, y in second:
                 key = left + right
                 result[key] = get(key, 0) + x * y
-        return self.reduced({key: value for key, value in result.items() if value})
+        if scale == 1:
+            return self.reduced({key: value for key, value in result.items() if value})
+        return self.reduced({key: _quotient(value, scale) for key, value in result.items() if value})
 
     def reduced(self, terms: Terms) -> Terms:
         """No square of a sine is left, which makes cancellation certain; then squares are put where they save terms."""
@@ -133,6 +138,16 @@ class Monomials:
             top = found.bit_length()
             yield 1 << (top - BITS)
             found ^= 1 << (top - 1)
+
+
+def _whole(terms: Terms) -> tuple[list[tuple[Code, int]], int]:
+    """The terms with whole coefficients, and what they are to be divided by."""
+    scale = lcm(*[value.denominator for value in terms.values()])
+    return [(key, value.numerator * (scale // value.denominator)) for key, value in terms.items()], scale
+
+
+def _quotient(value: int, divisor: int) -> Coefficient:
+    return Fraction(value, divisor) if value % divisor else value // divisor
 
 
 def _put(work: Terms, key: Code, value: Coefficient) -> Code | None:

@@ -100,6 +100,8 @@ def _smallest(mechanics: Mechanics, pivots: list[Scalar]) -> tuple[float, dict[s
             for name, (low, high) in ranges.items():
                 for step in (-1, 1):
                     moved = min(high, max(low, point[name] + step * (high - low) * 0.5**halving))
+                    if moved == point[name]:
+                        continue
                     trial = point | {name: moved}
                     value, pivot = measure(trial)
                     if value < least:

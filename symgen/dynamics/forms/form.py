@@ -7,6 +7,7 @@ Forms are data; one module builds each of them.  Whether a form may be chosen by
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Literal, TypeAlias
 
 from symgen.dynamics.guards import Guard
@@ -37,8 +38,13 @@ class Form:
     @property
     def weight(self) -> int:
         """Counted cost of a regular state, outputs and tested denominators; angles that are sums follow from others."""
-        needed = [*self.outputs, *(guard.denominator for guard in self.guards)]
-        return cost(share_angles(needed[0].graph, needed)).weight if needed else 0
+        needed = (*self.outputs, *(guard.denominator for guard in self.guards))
+        return _weight(needed) if needed else 0
+
+
+@lru_cache(maxsize=16)  # asked for again while forms are compared
+def _weight(needed: tuple[Scalar, ...]) -> int:
+    return cost(share_angles(needed[0].graph, needed)).weight
 
 
 def form(
