@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
+from kernel_growth import grown
 
 from symgen.pipeline import generate
 from symgen.results import Options
@@ -18,9 +20,12 @@ LIMIT = 1_000_000
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
 def test_generated_files_are_current(path: Path) -> None:
     result = generate(path, Options(verify=False), lambda _: None)
-    assert compare(ROOT / "generated" / result.model.name, result.files) == (), (
-        "run `make generated` and look at the change"
-    )
+    folder = ROOT / "generated" / result.model.name
+    assert folder.is_dir(), "a new model: run `make generated`"
+    recorded = json.loads((folder / "derivation.json").read_bytes())
+    costlier = grown(result.model.name, recorded, json.loads(result.files["derivation.json"]))
+    assert not costlier, "kernels grew beyond the counts of derivation.json:\n" + "\n".join(costlier)
+    assert compare(folder, result.files) == (), "run `make generated` and look at the change"
 
 
 def test_every_folder_has_its_model() -> None:
