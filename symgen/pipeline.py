@@ -41,6 +41,10 @@ if TYPE_CHECKING:
     from symgen.report.targets import TargetCore
     from symgen.verify.certificate import Certificate
 
+# Measured on a chain of 16 links: 6336 operations in 45.6 kB with the single precision of a Cortex-M4, gcc -O2.
+BYTES_AN_OPERATION = 7
+LARGEST_CODE = 64_000
+
 Progress = Callable[[str], None]
 
 
@@ -285,6 +289,21 @@ def _summary(derived: _Derived, certificate: Certificate | None) -> Summary:
     worst = [certificate.worst(target) for target in certificate.targets]
     errors = tuple(LargestError(w.target, w.quantity, w.largest, FACTOR) for w in worst)
     return replace(summary, errors=errors)
+
+
+def _size(derived: _Derived, options: Options) -> tuple[Notice, ...]:
+    """How much machine code the C takes, where small targets do not hold it; code is written out, never looped."""
+    counts = {kernel.name: count_operations(kernel.statements).total for kernel in derived.program.kernels}
+    size = BYTES_AN_OPERATION * sum(counts.values())
+    if size <= LARGEST_CODE or "c" not in options.parts:
+        return ()
+    each = ", ".join(f"{name} {round(BYTES_AN_OPERATION * count / 1000)} kB" for name, count in counts.items())
+    return (
+        Notice(
+            f"the C takes about {round(size / 1000)} kB of machine code on a Cortex-M4 ({sum(counts.values())} "
+            f"operations written out: {each}); where that is too much, name fewer with --outputs"
+        ),
+    )
 
 
 def _notices(derived: _Derived, options: Options, certificate: Certificate | None) -> tuple[Notice, ...]:

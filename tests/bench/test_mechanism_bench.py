@@ -15,22 +15,16 @@ from symgen.bench.mechanisms import drawn_states, mechanism_benchmark
 from symgen.bench.peers.casadi_engine import CasadiEngine
 from symgen.bench.peers.frames import mechanics_by_frames
 from symgen.bench.peers.mechanics import mechanics
-from symgen.model.load import load_model
-from symgen.model.model import Model
 
 
 def quiet(_: str) -> None:
     pass
 
 
-def described(name: str) -> Model:
-    return load_model(ROOT / "tests" / "mechanisms" / f"{name}.yaml") if name == "chain8" else model(name)
-
-
 @pytest.mark.parametrize(("name", "most"), [("arm7", 1700), ("chain8", 800), ("delta", 115), ("gough_stewart", 420)])
 def test_recursion_keeps_what_is_shared(name: str, most: int) -> None:
     casadi = pytest.importorskip("casadi")
-    s = mechanics_by_frames(CasadiEngine(), described(name))
+    s = mechanics_by_frames(CasadiEngine(), model(name))
     arguments = [casadi.vertcat(*s.inputs[array]) for array in ("q", "qd", "qdd", "p")]
     function = casadi.Function("f", arguments, [casadi.cse(casadi.vertcat(*s.balance))])
     assert function.n_instructions() <= most
@@ -41,12 +35,12 @@ def test_frames_and_energies_give_the_same_equations(name: str) -> None:
     casadi = pytest.importorskip("casadi")
     found = []
     for derive in (mechanics_by_frames, mechanics):
-        s = derive(CasadiEngine(), described(name))
+        s = derive(CasadiEngine(), model(name))
         arguments = [casadi.vertcat(*s.inputs[array]) for array in ("q", "qd", "qdd", "p")]
         rows = [x for row in (*s.B, *s.M) for x in row]
         function = casadi.Function("f", arguments, [casadi.vertcat(*s.balance, *rows)])
-        n = described(name).n
-        state = drawn_states(described(name), 1)[0]
+        n = model(name).n
+        state = drawn_states(model(name), 1)[0]
         found.append(function(state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]).full())
     assert found[0] == pytest.approx(found[1], rel=1e-10, abs=1e-10)
 
