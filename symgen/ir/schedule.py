@@ -167,13 +167,14 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     outputs = regular[: len(derived.outputs)]
     image = dict(zip(roots, regular[len(outputs) :], strict=True))
     writer = _Writer(mechanics, ARGUMENTS[derived.name])
-    arguments = _angles(regular)
+    order = topological(regular)
+    arguments = _angles_among(order)
     # what only a failure looks at must not decide which angles a regular state evaluates
     causes = list(_causes(tests))
     image |= zip(causes, share_angles(mechanics.graph, causes, arguments), strict=True)
     computed = [argument for argument in arguments if _angles([argument])]
     plain = [argument for argument in arguments if argument not in computed]
-    blocks = [writer.angle_block(plain), Block(tuple(writer.pairs(plain, regular)), ())]
+    blocks = [writer.angle_block(plain), Block(tuple(writer.pairs(plain, order)), ())]
     for test in tests:
         # a test stands before what needs it to pass: nothing is divided by a denominator that may be 0
         blocks += writer.late_angles([image[test.size], image[test.limit]], computed)
@@ -193,7 +194,11 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
 
 
 def _angles(outputs: Sequence[Node]) -> list[Node]:
-    return list(dict.fromkeys(node.args[0] for node in topological(outputs) if node.op in ("sin", "cos")))
+    return _angles_among(topological(outputs))
+
+
+def _angles_among(nodes: Sequence[Node]) -> list[Node]:
+    return list(dict.fromkeys(node.args[0] for node in nodes if node.op in ("sin", "cos")))
 
 
 def _causes(tests: Sequence[_Test]) -> list[Node]:
@@ -243,10 +248,10 @@ class _Writer:
         tests, checks = self.range_checks(arguments)
         return Block((*statements, *tests), checks)
 
-    def pairs(self, arguments: Sequence[Node], outputs: Sequence[Node]) -> list[Statement]:
-        """The sine/cosine pairs of known arguments: calls come first, while few values are alive."""
+    def pairs(self, arguments: Sequence[Node], order: Sequence[Node]) -> list[Statement]:
+        """The sine/cosine pairs of known arguments among nodes: calls come first, while few values are alive."""
         known = set(arguments)
-        return self.write([n for n in topological(outputs) if n.op in ("sin", "cos") and n.args[0] in known])
+        return self.write([n for n in order if n.op in ("sin", "cos") and n.args[0] in known])
 
     def range_checks(self, arguments: Sequence[Node]) -> tuple[tuple[Statement, ...], tuple[Check, ...]]:
         """The tests of the range of angles."""
@@ -257,7 +262,7 @@ class _Writer:
 
     def late_angles(self, outputs: Sequence[Node], computed: Sequence[Node]) -> list[Block]:
         """The blocks of those `computed` arguments that the outputs need and that no earlier block has tested."""
-        needed = set(_angles(outputs))
+        needed = set(_angles(outputs)) if computed else ()
         blocks = []
         for argument in computed:
             if argument in needed and argument not in self._tested:
