@@ -35,8 +35,11 @@ class Progress:
         self._stage = ""
 
     def __call__(self, message: str) -> None:
-        """Shows what starts now."""
+        """Shows what starts now; an empty message makes room for other output."""
         if self._quiet:
+            return
+        if not message:
+            self.done()
             return
         if self._live:
             room = _width(self._stream) - 1  # a line that wraps could not be cleared

@@ -28,6 +28,7 @@ def run_bench(path: Path, out: Path, states: int, quiet: bool, progress: Progres
     try:
         result = benchmark(path, states, progress)
     except (ReferenceValueError, VerificationError, BuildError) as fault:
+        progress("")
         print(f"{path}: {fault}", file=sys.stderr)
         return 1
     progress("drawing")
@@ -35,6 +36,7 @@ def run_bench(path: Path, out: Path, states: int, quiet: bool, progress: Progres
     for comparison in result.comparisons:
         quantity = comparison.task.quantity
         files[SHORT.get(quantity, f"bench.{quantity}.svg")] = time_against_error(comparison)
+    progress("")
     written = write_files(out / result.model, files)
     if not quiet:
         print(bench_tables(result))
@@ -52,9 +54,11 @@ def run_mechanism_bench(path: Path, out: Path, quiet: bool, progress: Progress) 
     try:
         result = mechanism_benchmark(path, progress).to_json()
     except BuildError as fault:
+        progress("")
         print(f"{path}: {fault}", file=sys.stderr)
         return 1
     text = json.dumps(result, indent=1, ensure_ascii=False) + "\n"
+    progress("")
     written = write_files(out / result["model"], {"bench.bodies.json": text})
     if not quiet:
         print(table_of(result), "written:", *(f"  {file}" for file in written), "", sep="\n")

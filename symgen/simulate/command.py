@@ -60,6 +60,7 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
         try:
             start = _start(plant, mechanics, q, qd, chosen=bool(request.start or declared))
         except PlantError as fault:
+            progress("")
             print(f"{path}: no consistent start: {fault}", file=sys.stderr)
             return 1
         motion = integrate(plant, start, u, times, lambda t: progress(f"integrating, {t:.2f} of {times[-1]:g} s"))
@@ -68,6 +69,7 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
     shown = scene(model, parameters, motion.q)
     if shown is not None:
         files["simulation.html"] = animation(model.description or model.name, motion.times, shown)
+    progress("")
     written = write_files(out / model.name, files)
     if not quiet:
         print(*_summary(model, motion), "written:", *(f"  {file}" for file in written), "", sep="\n")

@@ -24,10 +24,12 @@ def run_stress(path: Path, out: Path, steps: int, quiet: bool, progress: Progres
     try:
         result = stress(model, steps, progress)
     except (ReferenceValueError, VerificationError) as fault:
+        progress("")
         print(f"{path}: {fault}", file=sys.stderr)
         return 1
     progress("drawing")
     files = {"stress.json": json_text(result.to_json()), **stress_charts(result)}
+    progress("")
     written = write_files(out / model.name, files)
     if not quiet:
         print(stress_tables(result))

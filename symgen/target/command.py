@@ -31,9 +31,11 @@ def run_target(
     try:
         report = measure(model, cores, progress)
     except (ToolError, ReferenceValueError, VerificationError) as fault:
+        progress("")
         print(f"{path}: {fault}", file=sys.stderr)
         return 1
     text = json.dumps(report.to_json(), indent=1, ensure_ascii=False) + "\n"
+    progress("")
     written = write_files(out / model.name, {"target.json": text})
     if not quiet:
         print(target_tables(report))

@@ -34,6 +34,16 @@ def test_a_terminal_shows_every_step_in_one_line() -> None:
     assert terminal.getvalue().endswith("\r\x1b[K")
 
 
+def test_an_empty_message_makes_room_for_tables() -> None:
+    terminal, log = Terminal(), io.StringIO()
+    for stream in (terminal, log):
+        progress = Progress("car", quiet=False, stream=stream)
+        progress("drawing")
+        progress("")
+    assert terminal.getvalue().endswith("drawing ...\r\x1b[K")
+    assert log.getvalue() == "car: drawing ...\n"
+
+
 def test_a_narrow_terminal_does_not_wrap(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "20")
     terminal = Terminal()
