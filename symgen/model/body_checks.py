@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import acos, cos, pi, sqrt
+from types import MappingProxyType
 
 from symgen.diagnostics import Mistake, Span
 from symgen.model.expression import Expression
@@ -12,10 +13,16 @@ from symgen.model.walk import evaluate, exact_value
 
 # a pair of equal moments comes out with errors of the square root of the rounding unit
 RELATIVE = 1e-7
+NO_TURNING: Mapping[str, tuple[bool, bool, bool]] = MappingProxyType({})
 
 
-def check_bodies(mechanism: Mechanism, defaults: Mapping[str, float]) -> Iterator[Mistake]:
-    """Masses and moments that are negative, inertias that no mass distribution has, axes without a direction."""
+def check_bodies(
+    mechanism: Mechanism, defaults: Mapping[str, float], turning: Mapping[str, tuple[bool, bool, bool]] = NO_TURNING
+) -> Iterator[Mistake]:
+    """Masses and moments that are negative, inertias that no mass distribution has, axes without a direction.
+
+    `turning` says about which of its own axes a frame can turn.
+    """
     for frame in mechanism.frames:
         yield from _check_axes(frame, defaults)
     for body in mechanism.bodies:
@@ -23,7 +30,7 @@ def check_bodies(mechanism: Mechanism, defaults: Mapping[str, float]) -> Iterato
         if mass is not None and mass < 0:
             remedy = "a mass is positive, or 0 for a body without mass"
             yield Mistake(f"the mass of `{body.name}` is {mass:.6g}", remedy, _place(body.mass, body.span))
-        yield from _check_inertia(body, defaults)
+        yield from _check_inertia(body, defaults, turning.get(body.frame, (False, False, False)))
     for rotor in mechanism.rotor_inertias:
         inertia = _value(rotor.inertia, defaults)
         if inertia is not None and inertia < 0:
@@ -40,7 +47,9 @@ def _check_axes(frame: Frame, defaults: Mapping[str, float]) -> Iterator[Mistake
             yield Mistake(f"an axis of the frame `{frame.name}` has length zero", remedy, _first(turn.axis, frame.span))
 
 
-def _check_inertia(body: Body, defaults: Mapping[str, float]) -> Iterator[Mistake]:
+def _check_inertia(
+    body: Body, defaults: Mapping[str, float], turning: tuple[bool, bool, bool]
+) -> Iterator[Mistake]:
     tensor = body.inertia
     given = (tensor.xx, tensor.yy, tensor.zz, tensor.xy, tensor.xz, tensor.yz)
     values = [_value(entry, defaults) for entry in given]
@@ -52,12 +61,17 @@ def _check_inertia(body: Body, defaults: Mapping[str, float]) -> Iterator[Mistak
     if low < -RELATIVE * high:
         remedy = "check signs: xy, xz, yz are elements of the tensor, the negatives of CAD's products of inertia"
         yield Mistake(f"the inertia of `{body.name}` has a negative principal moment, {low:.6g}", remedy, span)
-    elif all(exact_value(entry) != 0 for entry in given[:3]) and low + middle < high * (1 - RELATIVE):
-        # one or two moments alone are how planar mechanisms are written: nothing turns about the others
+    # one or two moments alone are how planar mechanisms are written: nothing turns about the other axes
+    missing = [able for entry, able in zip(given[:3], turning, strict=True) if exact_value(entry) == 0]
+    if low >= -RELATIVE * high and (not missing or any(missing)) and low + middle < high * (1 - RELATIVE):
+        low, middle = (0.0 if abs(moment) <= RELATIVE * high else moment for moment in (low, middle))
+        remedy = "check units, signs of xy, xz, yz, and that the tensor is the one about the centre of mass"
+        if missing:
+            remedy = "give all of xx, yy, zz: what is missing counts as 0, and the body turns about those axes too"
         yield Mistake(
             f"the inertia of `{body.name}` violates the triangle inequality: its principal moments are "
             f"{low:.6g}, {middle:.6g}, {high:.6g}, and no mass distribution has one above the sum of the others",
-            "check units, signs of xy, xz, yz, and that the tensor is the one about the centre of mass",
+            remedy,
             span,
         )
 

@@ -58,7 +58,9 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         model.mechanism,
     )
     before = len(scope.mistakes)
-    _add(scope, check_bodies(model.mechanism, mechanics.defaults))
+    # where frames hang on themselves nothing can be said about their motion
+    turning = mechanics.turning() if whole else {}
+    _add(scope, check_bodies(model.mechanism, mechanics.defaults, turning))
     if kinetic is not None:
         _add(scope, check_domain(mechanics, kinetic, "the kinetic energy"))
     _add(scope, check_domain(mechanics, model.potential_energy, "the potential energy"))

@@ -77,6 +77,10 @@ class FloatKinematics:
         """Coefficients of a component that is a rate."""
         return self._kinematics.component_rate(component(name))
 
+    def turning(self, frame: str) -> tuple[Form, Form, Form]:
+        """The angular velocity of a frame in its own axes, as coefficients of the rates."""
+        return self._kinematics.twist(frame).angular
+
     def mass_matrix(self, n: int) -> Rows:
         """G of the bodies and rotors, n x n."""
         matrix = [[0.0] * n for _ in range(n)]

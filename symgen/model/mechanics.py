@@ -78,6 +78,22 @@ class Mechanics:
             if found == POINTS:
                 return
 
+    def turning(self) -> dict[str, tuple[bool, bool, bool]]:
+        """For the frame of each body, about which of its own axes it can turn: at a few random configurations."""
+        able: dict[str, tuple[bool, bool, bool]] = {}
+        points = self.anywhere(POINTS) if self.mechanism.bodies else ()
+        for q, parameters in points:
+            kinematics = self._kinematics({**parameters, **self._named(q)})
+            for frame in dict.fromkeys(body.frame for body in self.mechanism.bodies):
+                try:
+                    found = [any(abs(x) > RESIDUAL for x in form.values()) for form in kinematics.turning(frame)]
+                except (ArithmeticError, ValueError, KeyError):
+                    continue
+                before = able.get(frame, (False, False, False))
+                x, y, z = (one or other for one, other in zip(before, found, strict=True))
+                able[frame] = x, y, z
+        return able
+
     @property
     def mass_is_sure(self) -> bool:
         """Whether T is that of bodies alone, whose masses and inertias are checked one by one."""
