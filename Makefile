@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run test generated mechanisms fuzz proof firmware bench bench-mechanisms stress skipping trig docs lock robots
+.PHONY: run test generated mechanisms fuzz proof firmware bench bench-mechanisms generation stress skipping trig docs lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -40,6 +40,10 @@ WALKED := front_car_bodies rapkm_bodies delta gough_stewart chain8 chain16 chain
 bench-mechanisms: $(VENV)/installed
 	$(BIN)/symgen bench --bodies $(wildcard $(WALKED:%=models/%.yaml)) --quiet --out build/bench
 	$(BIN)/python tools/mechanisms_page.py build/bench $(WALKED)
+
+# CPU time and memory of cold starts, with their goals: docs/bench/generation.md, measured on this machine.
+generation: $(VENV)/installed
+	$(BIN)/python tools/generation_page.py
 
 # The portable sine and cosine at every float32, a few minutes.
 trig: $(VENV)/installed

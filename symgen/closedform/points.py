@@ -80,7 +80,8 @@ class Point:
         for coefficient, powers in _terms(p):
             term = coefficient
             for position, exponent in powers:
-                term *= self._generators[position] ** exponent
+                value = self._generators[position]
+                term *= value if exponent == 1 else value**exponent
             total += term
         return total
 

@@ -21,6 +21,9 @@ LONGEST_LOAD = 600
 LONGEST_SQUARES = 600
 """Entries of B B^T with more terms than this together are not listed."""
 
+MOST_PRODUCTS = 20 * LONGEST_SQUARES
+"""More products of terms than this are not formed to see how many terms they leave."""
+
 MOST_MINORS = 30
 """More named minors than this are not listed."""
 
@@ -158,6 +161,9 @@ def structured_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[st
     jacobian = exact.mechanics.jacobian
     naming = Naming(speller, taken)
     size = range(len(jacobian))
+    lengths = [[len(entry.numerator) for entry in row] for row in jacobian]
+    if sum(a * b for i in size for j in size[i:] for a, b in zip(lengths[i], lengths[j], strict=True)) > MOST_PRODUCTS:
+        return ()
     try:
         with exact.ring.work.limited("B B^T"):
             entries = {(i, j): dot(exact.ring, jacobian[i], jacobian[j]) for i in size for j in size[i:]}
