@@ -11,7 +11,6 @@ from functools import cached_property
 from symgen.dynamics.bodies import Bodies, Vector3
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.factoring import Factoring
-from symgen.dynamics.newton_euler import newton_euler
 from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
@@ -209,6 +208,8 @@ class Mechanics:
     def _inertial_force_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
         """The same without the energies of the bodies, whose differentiation would undo the recursion."""
         graph = self.graph
+        from symgen.dynamics.newton_euler import newton_euler  # models given by energies start without it
+
         force = newton_euler(self.bodies, self.qd, acceleration, gravity, self.lumped)
         if self._written_energy.is_zero:
             return force

@@ -22,7 +22,6 @@ from symgen.dynamics.catalogue import (
 )
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
-from symgen.dynamics.forms.articulated import articulated
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
 from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.genericity import Genericity, genericity
@@ -107,6 +106,10 @@ def absolute_way(model: Model, generic: Genericity) -> Derivation | None:
 
 def articulated_motion(model: Model, generic: Genericity) -> dict[str, Derived]:
     """q_ddot and lambda by articulated inertias, on a graph of their own; none where the system lacks that form."""
+    if not model.mechanism.has_mass:
+        return {}
+    from symgen.dynamics.forms.articulated import articulated  # models given by energies start without it
+
     found = articulated(model, generic)
     if found is None:
         return {}
