@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from symgen.background import Background, Receive
     from symgen.report.facts import Facts
     from symgen.report.files import ReportFiles
+    from symgen.report.proof import ProofFacts
     from symgen.report.targets import TargetCore
     from symgen.verify.certificate import Certificate
 
@@ -87,6 +88,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
         progress("closed forms and report")
         reporting.send(certificate)
         reporting.send(_targets(derived.model, files, options))
+        reporting.send(_proof(derived.model, files, options))
         report = reporting.answer()
     if report.mistakes:
         raise ModelError(str(path), path.read_text(encoding="utf-8"), report.mistakes)
@@ -246,6 +248,13 @@ def _targets(model: Model, files: dict[str, str | bytes], options: Options) -> t
     from symgen.report.targets import read_targets
 
     return () if options.measured is None else read_targets(options.measured / model.name / "target.json", files)
+
+
+def _proof(model: Model, files: dict[str, str | bytes], options: Options) -> ProofFacts | None:
+    """What was proved about these very files."""
+    from symgen.report.proof import read_proof
+
+    return None if options.measured is None else read_proof(options.measured / model.name / "proof.json", files)
 
 
 def _report(model: Model, receive: Receive, measured: bool) -> ReportFiles:

@@ -11,6 +11,7 @@ from symgen.report.section_equations import equations_of_motion
 from symgen.report.section_freedom import freedom
 from symgen.report.section_inverse import inverse_dynamics
 from symgen.report.section_projection import projection
+from symgen.report.section_proof import proof
 from symgen.report.section_published import published
 from symgen.report.section_singular import singular
 from symgen.report.section_system import system
@@ -32,7 +33,7 @@ def compose(report_input: ReportInput) -> Document:
     ]
     if report_input.operation_counts:
         sections.append(operations(context))
-    sections += [*published(context), *verification(context), *targets(context), *charts(context)]
+    sections += [*published(context), *verification(context), *targets(context), *proof(context), *charts(context)]
     model = report_input.model
     return Document(
         title=text_of(model.description) or model.name,

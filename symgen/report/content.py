@@ -10,6 +10,7 @@ from symgen.closedform.singular import SingularSet
 from symgen.closedform.structure import Integrability, Structure
 from symgen.model.model import Model
 from symgen.records import dataclass
+from symgen.report.proof import ProofFacts
 from symgen.report.targets import TargetCore
 
 
@@ -52,7 +53,9 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class ReportInput:
-    """Everything the report says; without `verification`, `charts`, `targets` a function of model and symgen alone.
+    """Everything the report says.
+
+    Without `verification`, `charts`, `targets`, `proof` a function of model and symgen alone.
 
     `operation_counts`: quantity -> kind of operation (add, mul, div, sqrt, sincos, other) -> number.
     `skipped`: decisions with their reasons, and quantities that do not exist with theirs.
@@ -71,3 +74,4 @@ class ReportInput:
     verification: Verification | None = None
     charts: tuple[Chart, ...] = ()
     targets: tuple[TargetCore, ...] = ()
+    proof: ProofFacts | None = None

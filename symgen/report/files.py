@@ -16,6 +16,7 @@ from symgen.report.gather import gather, path_charts, with_measurements
 from symgen.report.html import render_html
 from symgen.report.latex import render_latex
 from symgen.report.pdf import render_pdf
+from symgen.report.proof import ProofFacts
 from symgen.report.targets import TargetCore
 from symgen.verify.certificate import Certificate
 
@@ -31,7 +32,7 @@ class ReportFiles:
 
 def report_files(model: Model, receive: Callable[[], Any], measured: bool) -> ReportFiles:
     """The files; receives the `Facts` of the derivation, then the certificate or None where nothing was measured,
-    then what was measured on targets.
+    then what was measured on targets, then what was proved.
 
     Charts are drawn while the measurement goes on, if there is one (`measured`).
     """
@@ -60,7 +61,8 @@ def report_files(model: Model, receive: Callable[[], Any], measured: bool) -> Re
         return ReportFiles(files, notices, (error.mistake,))
     certificate: Certificate | None = receive()
     targets: tuple[TargetCore, ...] = receive()
+    proof: ProofFacts | None = receive()
     if certificate is None:
         return ReportFiles(files, notices)
-    pdf = render_pdf(compose(with_measurements(report, certificate, charts, targets)))
+    pdf = render_pdf(compose(with_measurements(report, certificate, charts, targets, proof)))
     return ReportFiles({**files, f"report/{stem}.pdf": pdf}, notices)

@@ -11,6 +11,7 @@ from symgen.closedform.published import decide_published
 from symgen.model.model import Model
 from symgen.report.content import Chart, ErrorRow, ReportInput, Verdict, Verification
 from symgen.report.facts import Facts
+from symgen.report.proof import ProofFacts
 from symgen.report.targets import TargetCore
 from symgen.verify.certificate import Certificate
 
@@ -34,9 +35,13 @@ def gather(model: Model, facts: Facts) -> ReportInput:
 
 
 def with_measurements(
-    report: ReportInput, certificate: Certificate, charts: Sequence[Chart], targets: Sequence[TargetCore] = ()
+    report: ReportInput,
+    certificate: Certificate,
+    charts: Sequence[Chart],
+    targets: Sequence[TargetCore] = (),
+    proof: ProofFacts | None = None,
 ) -> ReportInput:
-    """The same report with what this run measured, and what was measured on targets before."""
+    """The same report with what this run measured, and what was measured on targets and proved before."""
     errors = tuple(
         ErrorRow(
             quantity=record.quantity,
@@ -48,7 +53,7 @@ def with_measurements(
     )
     invariants = tuple((law.target, law.name, f"{law.largest:.2g}") for law in certificate.invariants)
     verification = Verification(certificate.states, errors, invariants, (*certificate.versions, *_notes(certificate)))
-    return replace(report, verification=verification, charts=tuple(charts), targets=tuple(targets))
+    return replace(report, verification=verification, charts=tuple(charts), targets=tuple(targets), proof=proof)
 
 
 def _notes(certificate: Certificate) -> Sequence[tuple[str, str]]:

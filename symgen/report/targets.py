@@ -43,7 +43,7 @@ def read_targets(file: Path, sources: Mapping[str, str | bytes]) -> tuple[Target
     try:
         found = json.loads(file.read_text(encoding="utf-8"))
         measured: Mapping[str, str] = found["sources"]
-        same = all(_digest(sources.get(f"c/{name}")) == digest for name, digest in measured.items())
+        same = all(checksum(sources.get(f"c/{name}")) == expected for name, expected in measured.items())
         if not (found["passed"] and measured and same):
             return ()
         return tuple(_core(core, found["cells"]) for core in found["cores"])
@@ -64,7 +64,8 @@ def _core(core: Mapping[str, Any], cells: list[Mapping[str, Any]]) -> TargetCore
     return TargetCore(str(core["name"]), same, tuple(rows))
 
 
-def _digest(content: str | bytes | None) -> str:
+def checksum(content: str | bytes | None) -> str:
+    """The checksum by which a measurement names a generated file; empty where there is no such file."""
     if content is None:
         return ""
     return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
