@@ -31,6 +31,9 @@ GOALS = (
     Goal(BEST_ANY, "libm", (1.00, 0.66, 0.70, 0.78)),
     Goal(BEST_ANY, "portable", (0.58, 0.36, 0.40, 0.48)),
 )
+# Code and stack of u over those of the best peer, at most, for two models; the library's trigonometry on both sides.
+FOOTPRINT_GOALS = {"code": 0.55, "stack": 0.85}
+FOOTPRINT_MODELS = ("front_car", "rapkm_2rrr_rr")
 # Counts of the study, and the tool and form that gave them.
 STUDY: dict[str, tuple[tuple[int, str], ...]] = {
     AS_WRITTEN: ((262, "CasADi native"), (821, "CasADi native"), (751, "CasADi native"), (3696, "CasADi native")),
