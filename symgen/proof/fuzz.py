@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from symgen.emit.c import c_names
+from symgen.emit.c import c_members
 from symgen.emit.literals import decimal_text
 from symgen.emit.locals import array_arguments
 from symgen.emit.quantities import BATCHED
@@ -69,7 +69,8 @@ def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
     program = programs[0]
     ranges = box(model)
     ready, given = _prepared(programs), _given(program)
-    members = tuple(c_names(model, program).members[parameter.name] for parameter in model.parameters)
+    named_members = c_members(model, program)
+    members = tuple(named_members[parameter.name] for parameter in model.parameters)
     trig = tuple(_members(model, given))
     sizes = (*((name, len(ranges[name])) for name in ARRAYS), ("sc", len(trig)))
     named = [(f"{name}[{index}]", pair) for name in (*ARRAYS, "p") for index, pair in enumerate(ranges[name])]
