@@ -72,8 +72,9 @@ def test_the_kernel_is_that_of_the_form(form: str, tmp_path: Path) -> None:
     assert auto["name"] != form
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS["multipliers"] if form != "articulated"])
-def test_multipliers_by_every_form_are_verified(form: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("form", ["minor", "schur_qr", "shifted", "kkt"])
+def test_multipliers_by_the_form_asked_for_are_verified(form: str, tmp_path: Path) -> None:
+    assert form in FORMS["multipliers"]
     asked = ("--form", f"multipliers={form}", "--form", f"forward_dynamics={form}")
     given = ("--outputs", "forward_dynamics,multipliers", "--only", "c", "--scalar", "float64", "--states", "8")
     assert main([CRANK, *given, *asked, "--quiet", "--out", str(tmp_path)]) == 0

@@ -17,7 +17,7 @@ from symgen.stress.kernels import SCALARS, STRESSED, Kernels, rounded_state
 from symgen.verify.reference import ReferenceValueError, State
 from symgen.verify.states import sample_states
 
-STATES = 60
+STATES = 40
 QUARTER = math.pi / 2
 BITS = 384
 GRADED = 1e-2
