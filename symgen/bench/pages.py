@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
+from symgen.bench.accuracy_pages import accuracy_section
 from symgen.bench.batch_pages import many_section
 from symgen.bench.goals import (
     AS_WRITTEN,
@@ -53,7 +54,7 @@ def page(results: Sequence[Mapping[str, Any]], charts: Mapping[str, Sequence[str
     parts = [HEAD]
     if _counted(measured):
         parts += [_goals(measured), _footprints(measured), _reproduced(measured)]
-    parts.append(many_section(results))
+    parts += [accuracy_section(results), many_section(results)]
     for result in results:
         parts += _model(result, charts.get(result["model"], ()))
     return "\n".join(parts)

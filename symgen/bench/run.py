@@ -18,7 +18,7 @@ from symgen.bench.pareto import pareto_front
 from symgen.bench.peers.roster import in_single, peers, python_peers
 from symgen.bench.python_timing import run_python
 from symgen.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
-from symgen.bench.workload import Errors, Workload, admissible_samples, errors_of, workload
+from symgen.bench.workload import Errors, Workload, admissible_samples, beyond_tolerance, errors_of, workload
 from symgen.ir.kernel import Program, Scalar
 from symgen.model.allocation import without_allocation
 from symgen.model.load import load_model
@@ -40,6 +40,7 @@ Progress = Callable[[str], None]
 class Measured:
     """What one candidate took and how far off it was.
 
+    `beyond` is the number of states at which symgen's generated kernel is beyond the tolerance, None for all others.
     `nanoseconds` is the median of one call (Python: a state of one call for all states), `instructions` the mean of a
     call or None without valgrind, `footprint` is None for Python.
     """
@@ -56,6 +57,7 @@ class Measured:
     errors: Errors
     chosen: bool
     on_front: bool = False
+    beyond: int | None = None
 
     @property
     def label(self) -> str:
@@ -146,7 +148,10 @@ def _compare(
         progress(f"compiling {task.quantity}, {len(candidates)} kernels")
         built = build(Path(folder), model, task, candidates, loads)
         progress(f"running {task.quantity}")
-        measured = _measure(built, Path(folder), task, candidates, loads)
+        measured = _measure(
+            built, Path(folder), task, candidates, loads,
+            lambda scalar, results: beyond_tolerance(reference, task, loads[scalar], results),
+        )
         progress(f"running {task.quantity} on many states")
         chosen = next(iter(programs.values()))
         many = many_states(Path(folder), model, task, chosen, _loops(candidates, measured), loads["float64"])
@@ -184,6 +189,7 @@ def _measure(
     task: Task,
     candidates: Sequence[CCandidate],
     loads: Mapping[Scalar, Workload],
+    beyond: Callable[[Scalar, Any], int],
 ) -> list[Measured]:
     results = results_of(built, folder, candidates, task)
     times = nanoseconds(built, PASSES)
@@ -203,6 +209,7 @@ def _measure(
             operations=c.operations,
             errors=errors_of(loads[c.scalar], results[c.entry]),
             chosen=c.chosen,
+            beyond=beyond(c.scalar, results[c.entry]) if c.chosen else None,
         )
         for c in candidates
     ]

@@ -14,6 +14,8 @@ def bench_tables(result: Benchmark) -> str:
     sections = [result.model]
     for comparison in result.comparisons:
         sections.append(f"{comparison.task.quantity}, {comparison.states} states\n{_table(comparison)}")
+        beyond = sum(m.beyond or 0 for m in comparison.measured)
+        sections += [f"  generated kernels at {beyond} states beyond 16 units"] if beyond else []
         sections += [many_lines(comparison.many)] if comparison.many else []
         lines = [f"  not measured: {name} ({why})" for name, why in comparison.left_out]
         sections += ["\n".join(lines)] if lines else []

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from symgen.bench.candidate import Task
-from symgen.ir.kernel import Scalar
-from symgen.verify.reference import Reference
+from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
+from symgen.verify.reference import Reference, State
 from symgen.verify.states import SAMPLING_BITS, Sample, rounded, sample_states
-from symgen.verify.tolerance import expectations
+from symgen.verify.tolerance import FACTOR, expectations
 
 UNIT_STATES = 48  # of these the unit d + eps |y| is found; it costs 9 reference evaluations a state
 
@@ -106,3 +106,26 @@ def errors_of(load: Workload, results: Any) -> Errors:
         largest_in_units=float(np.max(in_units, initial=0.0)),
         failed=int(np.sum(~np.isfinite(distances))),
     )
+
+
+def beyond_tolerance(reference: Reference, task: Task, load: Workload, results: Any) -> int:
+    """How many states' errors exceed 16 (d + eps |y|); d is only found where eps |y| does not cover the error."""
+    import numpy as np
+
+    given = np.asarray(results, dtype=np.float64)
+    distances = np.linalg.norm((given - load.high) - load.low, axis=1)
+    covered = FACTOR * float(UNIT_ROUNDOFF[load.scalar]) * np.linalg.norm(load.high, axis=1)
+    count = 0
+    for k in np.flatnonzero(~(distances <= covered)).tolist():
+        state = _state(reference, task, load.states[k].tolist())
+        exact = expectations(reference, state, (task.quantity,), load.scalar, f"beyond {k}")[task.quantity]
+        count += not exact.in_units(exact.distance(given[k].tolist())) <= FACTOR
+    return count
+
+
+def _state(reference: Reference, task: Task, row: list[float]) -> State:
+    model = reference.model
+    n, end = model.n, len(row) - len(model.parameters)
+    third = tuple(row[2 * n : end])
+    qdd, u = (third, (0.0,) * model.m) if task.third == "qdd" else ((0.0,) * n, third)
+    return State(tuple(row[:n]), tuple(row[n : 2 * n]), qdd, u, tuple(row[end:]))
