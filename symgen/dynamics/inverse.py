@@ -44,7 +44,7 @@ FACTORING_GAIN = Fraction(1, 3)
 LUMPING_GAIN = Fraction(1, 20)
 RESOLVED_AT = 2
 # Forms that are not taken and count more than this are not derived only to say where they fail.
-LONGEST_EXAMINED = 1000
+LONGEST_EXAMINED = 600
 
 
 @dataclass(frozen=True, slots=True)
