@@ -9,6 +9,7 @@ from symgen.bench.goals import AS_WRITTEN, Goal
 from symgen.bench.mechanism_goals import GOALS, MECHANISMS, STUDY, WRITTEN
 from symgen.terminal import columns
 
+SERIAL_FORM = "AD"  # of peers of mechanisms without loops
 COLUMNS = ("", "instructions", "ns", "code", "stack", "operations", "difference")
 Row = Mapping[str, Any]
 Results = Mapping[str, Mapping[str, Any]]
@@ -32,17 +33,18 @@ def page(results: Results) -> str:
     names = [name for name in MECHANISMS if name in results]
     parts = [HEAD]
     if names:
-        parts += [_goals(results, names), _study(results, names)]
+        parts += [_goals(results, names), _library(results, names), _study(results, names)]
     for name, result in results.items():
         parts.append(f"## {name}\n\n{_table(COLUMNS, _rows(result))}")
-        parts += [f"Not measured: {what} ({why}).\n" for what, why in result["left_out"]]
+        parts += [f"Not measured: {what} ({why}).\n" for what, why in _left_out(result)]
     return "\n".join(parts)
 
 
 def table_of(result: Mapping[str, Any]) -> str:
     """The kernels of one mechanism for a terminal."""
     lines = [result["model"], columns(COLUMNS, _rows(result), "<" + ">" * (len(COLUMNS) - 1))]
-    lines += [f"  not measured: {what} ({why})" for what, why in result["left_out"]]
+    lines += [] if isinstance(result["pinocchio"], str) else [f"  Pinocchio: {_pinocchio(result)}"]
+    lines += [f"  not measured: {what} ({why})" for what, why in _left_out(result)]
     return "\n".join(lines)
 
 
@@ -57,6 +59,34 @@ def _goals(results: Results, names: Sequence[str]) -> str:
         rows.append([f"{goal.against}, symgen with {goal.trig}", *cells])
     text = "## Goals\n\nInstructions of symgen's u over the peer's; in brackets the goal, bold if missed.\n\n"
     return text + _table(["against", *names], rows)
+
+
+def _library(results: Results, names: Sequence[str]) -> str:
+    measured = [name for name in names if not isinstance(results[name]["pinocchio"], str)]
+    if not measured:
+        return ""
+    asked = ["0.25" if SERIAL_FORM in _forms(results[name]) else "0.08" for name in measured]
+    cells = [f"{_pinocchio(results[name])} (goal {goal})" for name, goal in zip(measured, asked, strict=True)]
+    return (
+        "## Pinocchio\n\nTimes of symgen's u with portable sine and cosine over those of Pinocchio, in a program of "
+        "its own: RNEA, and for loops the Jacobians of their points and Eigen's reflections of B^T. Its parameters are "
+        "fixed when its model is built.\n\n" + _table(["", *measured], [["time", *cells]])
+    )
+
+
+def _pinocchio(result: Mapping[str, Any]) -> str:
+    time, difference = result["pinocchio"]
+    mine = float(_own(result["kernels"], "portable")["nanoseconds"])
+    return f"{mine / time:.2f}: {mine:.0f} / {time:.0f} ns, difference {difference:.0e}"
+
+
+def _forms(result: Mapping[str, Any]) -> set[str]:
+    return {row["form"] for row in result["kernels"]}
+
+
+def _left_out(result: Mapping[str, Any]) -> list[tuple[str, str]]:
+    absent = [("Pinocchio", result["pinocchio"])] if isinstance(result["pinocchio"], str) else []
+    return [*result["left_out"], *absent]
 
 
 def _ratio(rows: Sequence[Row], goal: Goal, wanted: float | None) -> str:

@@ -19,6 +19,7 @@ from symgen.bench.build import TIMED_STATES, Footprint, build, find_gcc, nanosec
 from symgen.bench.callgrind import count_instructions, find_valgrind
 from symgen.bench.candidate import Task
 from symgen.bench.peers.mechanism_roster import mechanism_peers
+from symgen.bench.peers.pinocchio_program import Timed, pinocchio_time
 from symgen.bench.symgen_kernels import symgen_candidates
 from symgen.bench.workload import Workload
 from symgen.dynamics.select import derive_quantities
@@ -50,12 +51,13 @@ class Kernel:
 
 @dataclass(frozen=True, slots=True)
 class MechanismBenchmark:
-    """The kernels of one mechanism."""
+    """The kernels of one mechanism; `pinocchio` is its nanoseconds and difference, or why there are none."""
 
     model: str
     form: str
     kernels: tuple[Kernel, ...]
     left_out: tuple[tuple[str, str], ...]
+    pinocchio: tuple[float, float] | str
 
     def to_json(self) -> dict[str, Any]:
         """A JSON-able form."""
@@ -105,7 +107,13 @@ def mechanism_benchmark(path: Path, progress: Progress) -> MechanismBenchmark:
             )
             for c in candidates
         ]
-    return MechanismBenchmark(model.name, form, tuple(kernels), left_out)
+    progress("running Pinocchio")
+    timed = pinocchio_time(model, states)
+    if isinstance(timed, Timed):
+        return MechanismBenchmark(
+            model.name, form, tuple(kernels), left_out, (timed.nanoseconds, _difference(np.array(timed.u), exact))
+        )
+    return MechanismBenchmark(model.name, form, tuple(kernels), left_out, timed)
 
 
 def drawn_states(model: Model, count: int) -> list[list[float]]:

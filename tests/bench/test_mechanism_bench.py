@@ -15,6 +15,7 @@ from symgen.bench.mechanisms import drawn_states, mechanism_benchmark
 from symgen.bench.peers.casadi_engine import CasadiEngine
 from symgen.bench.peers.frames import mechanics_by_frames
 from symgen.bench.peers.mechanics import mechanics
+from symgen.bench.peers.pinocchio_program import pinocchio_time, tree_text
 
 
 def quiet(_: str) -> None:
@@ -51,6 +52,7 @@ def test_every_peer_computes_u(tool: Callable[[str], str], monkeypatch: pytest.M
     monkeypatch.setattr(build_module, "FLAGS", ("-O0", *build_module.FLAGS[1:]))
     monkeypatch.setattr(mechanisms, "PASSES", 3)
     monkeypatch.setattr(mechanisms, "find_valgrind", lambda: None)
+    monkeypatch.setattr(mechanisms, "pinocchio_time", lambda *_: "not asked for")
     path = ROOT / "models" / "front_car_bodies.yaml"
     result = mechanism_benchmark(path, quiet).to_json()
     assert len(result["kernels"]) > 10
@@ -65,3 +67,18 @@ def test_goals_and_study_have_a_place_for_every_mechanism() -> None:
     assert all(len(goal.ratios) == len(MECHANISMS) for goal in GOALS)
     assert all(len(counts) == len(MECHANISMS) for counts in STUDY.values())
     assert page({}).startswith("# Mechanisms")
+
+
+@pytest.mark.parametrize(("name", "joints", "rows"), [("arm7", 7, 0), ("rapkm_bodies", 6, 4), ("chain8", 8, 2)])
+def test_tree_for_pinocchio(name: str, joints: int, rows: int) -> None:
+    one = model(name)
+    lines = tree_text(one, drawn_states(one, 3)).splitlines()
+    assert lines[0].split() == [str(x) for x in (one.n, rows, one.m, len(one.mechanism.bodies), 3)]
+    parents = [int(line.split()[0]) for line in lines[2 : 2 + joints]]
+    assert all(parent <= k for k, parent in enumerate(parents))
+    assert {line.split()[1] for line in lines[2 : 2 + joints]} == {"z"}
+    assert all(len(line.split()) == 3 * one.n for line in lines[-3:])
+
+
+def test_mechanisms_that_are_no_tree_are_left_out_by_name() -> None:
+    assert pinocchio_time(model("delta"), []) == "its rows are not sums of places of points"
