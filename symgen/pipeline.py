@@ -213,7 +213,8 @@ def _failing_forms(derived: _Derived) -> tuple[tuple[str, str], ...]:
     if form is not None and form.verdict.admitted:
         others = InverseDynamics(derived.model, derivations.generic).failing() or form.failed
         told += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
-    moving = [choice.quantity for choice in derivations.choices if choice.form]
+    # articulated inertias are taken only where G is definite, and then no form fails
+    moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]
     if moving:
         from symgen.dynamics.by_name import failing_motions
 
