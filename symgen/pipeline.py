@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.dynamics.catalogue import BY_NAME
+from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.inverse import FormChoice, InverseDynamics
 from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities
 from symgen.dynamics.structure import Structure, analyse
