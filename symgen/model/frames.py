@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from symgen.model.expression import Number
 from symgen.model.mechanism import AXES, NO_VECTOR, WORLD, ZERO, Frame, Point, Quaternion, Turn, Vector3
 from symgen.model.names import did_you_mean
@@ -23,7 +25,7 @@ def read_frames(scope: Scope, tree: MappingNode, joints: tuple[Frame, ...]) -> t
 
 
 def parents_first(scope: Scope, found: dict[str, Frame]) -> tuple[Frame, ...]:
-    """The frames in an order in which each one's parent stands before it; circles are mistakes."""
+    """The frames in an order in which each one's parent stands before it; circles are mistakes, and cut open."""
     ordered: dict[str, Frame] = {}
     for name in found:
         line: list[str] = []
@@ -31,6 +33,7 @@ def parents_first(scope: Scope, found: dict[str, Frame]) -> tuple[Frame, ...]:
             if name in line:
                 circle = [*line[line.index(name) :], name]
                 _report_circle(scope, found, circle)
+                found[circle[0]] = replace(found[circle[0]], parent=WORLD)
                 break
             line.append(name)
             name = found[name].parent

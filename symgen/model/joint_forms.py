@@ -88,8 +88,11 @@ def read_joints(
         axis = _axis(scope, member(node, "axis"), what, defaults)
         fixed = read_rotation(scope, member(node, "rotation"), what)
         child = text_of(member(node, "child")) or key.value
-        # both are mistakes that have been reported
-        if len(names) != len(JOINTS.get(kind, ())) or isinstance(fixed, Quaternion):
+        # mistakes that have been reported: the frame stays, at rest, for those that hang on it
+        if isinstance(fixed, Quaternion):
+            fixed = ()
+        if len(names) != len(JOINTS.get(kind, ())) or not _all_coordinates(scope, node):
+            frames.append(Frame(child, parent, at, fixed, "", key.span))
             continue
         shift, rotation = _motion(kind, names, axis)
         base = Frame(f"{child}.base", parent, at, fixed, "", key.span)
@@ -112,6 +115,10 @@ def _coordinates(node: Node) -> list[ScalarNode]:
     single = member(node, "coordinate")
     given = (single,) if single is not None else items(member(node, "coordinates"))
     return [item for item in given if isinstance(item, ScalarNode)]
+
+
+def _all_coordinates(scope: Scope, node: Node) -> bool:
+    return all(scope.kinds.get(item.value) == "coordinate" for item in _coordinates(node))
 
 
 def _motion(kind: str, names: list[Expression], axis: Vector3) -> tuple[Vector3, tuple[Turn, ...] | Quaternion]:

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from symgen.verify.reference_linear import (
+    RANK_NOISE,
     column,
+    columns_of,
     identity,
     norm,
     numerical_rank,
@@ -115,5 +117,11 @@ def _ranks_at(system: System, q: Sequence[Any], parameters: Sequence[Any], liter
         return None
     inverse = right_pseudoinverse(at.constraints, constraints)
     projected = at.control - inverse * (at.constraints * at.control)
-    actuation = numerical_rank(projected) if system.m else 0
+    # an input that only loads the constraints leaves rounding alone, which is no direction of motion
+    moving = [j for j in range(system.m) if _size(projected, j) > _size(at.control, j) * 2.0**RANK_NOISE]
+    actuation = numerical_rank(columns_of(projected, moving)) if moving else 0
     return None if actuation is None else Ranks(constraints, geometric, actuation)
+
+
+def _size(matrix: Any, column: int) -> float:
+    return max((abs(float(matrix[i, column])) for i in range(matrix.nrows())), default=0.0)

@@ -336,6 +336,11 @@ def heavy(inertia: str) -> str:
 
 BODIES = {
     "loop_in_the_frame_tree": arm(frames=FRAMES.replace("{rotation", "{parent: lower, rotation")),
+    "loop_in_the_frame_tree_of_a_machine": arm(
+        frames=FRAMES.replace("{rotation", "{parent: lower, rotation"),
+        more="loops: {cut: {type: revolute, between: [lower, upper]}}\n"
+        "rolling: {tyre: {frame: lower, radius: l}}\nconstraints: {geometric: {c: tip.x - l, d: tip.u}}\n",
+    ),
     "unknown_parent": arm(frames=FRAMES.replace("parent: upper", "parent: uper")),
     "frame_without_a_turn": turned("[z, a]"),
     "axis_of_zero_length": turned("[[[0, 0, 0], a]]"),
@@ -382,6 +387,14 @@ BODIES = {
 ELEMENTS = {
     "unknown_joint": arm(more="joints: {wrist: {type: hinge, parent: lower, coordinate: c}}\n"),
     "joint_of_too_few_coordinates": arm(more="joints: {wrist: {type: planar, parent: lower, coordinates: [c, d]}}\n"),
+    "joint_coordinates_that_are_no_names": arm(
+        more="joints: {wrist: {type: planar, parent: lower, coordinates: [t, m, while]}}\n"
+        "loops: {cut: {type: revolute, between: [wrist, upper]}}\n"
+    ),
+    "joint_without_its_coordinates_in_a_loop": arm(
+        more="joints: {wrist: {type: planar, parent: lower, coordinates: [c, d]}}\n"
+        "loops: {cut: {type: revolute, between: [wrist, upper]}}\n"
+    ),
     "joint_axis_of_zero_length": arm(
         more="joints: {wrist: {type: revolute, parent: lower, axis: [0, 0, 0], coordinate: c}}\n"
     ),

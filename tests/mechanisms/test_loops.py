@@ -151,3 +151,26 @@ gravity: [0, 0, -10]
     found = Reference(model).matrices(state, ["mass_matrix", "forward_dynamics"])
     assert float(found["mass_matrix"][0, 0]) == pytest.approx(2, abs=1e-14)
     assert float(found["forward_dynamics"][0, 0]) == pytest.approx(-8, abs=1e-13)
+
+
+def test_an_input_that_only_loads_a_loop_moves_nothing() -> None:
+    """The slide is locked by the line that the arm's tip is held on; what is left is a spin of the rod."""
+    model = load_text(
+        """\
+model: locked
+joints:
+  rail: {type: prismatic, axis: [0, 3, 4], coordinate: s, rotation: [[z, 0.2]]}
+  arm:  {type: revolute, parent: rail, axis: z, coordinate: a, at: [0.1, 0, 0]}
+  rod:  {type: spherical, parent: arm, at: [0.5, 0, 0], coordinates: [e_0, e_1, e_2, e_3]}
+frames:
+  guide: {translation: [0.5, 0.5, 0.1], rotation: [[x, 0.3]]}
+  end: {parent: rod, translation: [0.4, 0, 0]}
+bodies: {rod: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}, arm: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}}
+gravity: [0, 0, -9.81]
+loops: {close: {type: cylindrical, between: [end, guide], axis: x}}
+inputs: {f: {unit: N, joint: s}}
+""",
+        "locked.yaml",
+    )
+    ranks = Reference(model).ranks
+    assert (model.n - ranks.constraints, ranks.actuation) == (1, 0)
