@@ -323,4 +323,5 @@ def _notices(derived: _Derived, options: Options, certificate: Certificate | Non
     absent = [Notice(f"{n} is not generated: {why}") for n, why in derived.derivations.absent if n in asked]
     kernels = {kernel.name for kernel in derived.program.kernels}
     idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
-    return (*absent, *idle, *(Notice(note) for note in (() if certificate is None else certificate.notes)))
+    unverified = () if certificate is None else certificate.notes
+    return (*absent, *_size(derived, options), *idle, *map(Notice, unverified))

@@ -10,6 +10,8 @@ from chains import chain
 from symgen.dynamics.select import ABSOLUTE, ARTICULATED, Derivations, derive_quantities
 from symgen.graph.traverse import topological
 from symgen.model.load import load_model
+from symgen.pipeline import generate
+from symgen.results import Options
 
 
 def derived(links: int, folder: Path, *outputs: str) -> Derivations:
@@ -49,3 +51,16 @@ def test_energies_written_out_are_derived_in_absolute_angles(tmp_path: Path) -> 
         symbols = {str(x.payload) for x in topological([*quantity.outputs, *guards]) if x.op == "symbol"}
         assert known <= symbols
         assert not [name for name in symbols if "absolute" in name]
+
+
+def test_the_size_of_long_code_is_told(tmp_path: Path) -> None:
+    def notices(links: int) -> list[str]:
+        path = tmp_path / f"chain{links}.yaml"
+        path.write_text(chain(links), encoding="utf-8")
+        options = Options(parts=("c",), scalars=("float64",), verify=False)
+        return [notice.message for notice in generate(path, options, lambda _: None).notices]
+
+    assert notices(4) == []
+    (told,) = notices(32)
+    assert "kB of machine code on a Cortex-M4" in told
+    assert "inverse_dynamics 1" in told
