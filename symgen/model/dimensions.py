@@ -80,7 +80,9 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
             if force_unit and input_unit and found and input_unit.times(found) != force_unit:
                 what = f"the force of `{column.name}` on `{coordinate}`"
                 needed = f"the generalized force of `{coordinate}`"
-                mistakes.append(_clash(what, input_unit.times(found), needed, force_unit, coefficient))
+                clash = _clash(what, input_unit.times(found), needed, force_unit, coefficient)
+                # `joint: a` has no coefficient of its own in the file
+                mistakes.append(replace(clash, span=clash.span or column.span))
         if column.velocity is not None:
             pace, declared = inference.of(column.velocity), units.get(column.name)
             if energy and pace and declared and declared.times(pace) != energy.times(SECOND, -1):

@@ -91,7 +91,7 @@ def read_joints(
         # mistakes that have been reported: the frame stays, at rest, for those that hang on it
         if isinstance(fixed, Quaternion):
             fixed = ()
-        if len(names) != len(JOINTS.get(kind, ())) or not _all_coordinates(scope, node):
+        if kind not in JOINTS or len(names) != len(JOINTS[kind]) or not _all_coordinates(scope, node):
             frames.append(Frame(child, parent, at, fixed, "", key.span))
             continue
         shift, rotation = _motion(kind, names, axis)

@@ -380,12 +380,14 @@ BODIES = {
     "torque_on_a_point": arm(more="inputs: {u: {torque_on: tip, direction: [0, 0, 1]}}\n"),
     "unknown_axes": arm(more="inputs: {u: {point: tip, direction: [1, 0, 0], axes: hand}}\n"),
     "force_in_newton_metres": arm(more="inputs: {u: {unit: N*m, point: tip, direction: [1, 0, 0]}}\n"),
+    "force_in_a_revolute_joint": arm(more="inputs: {u: {unit: N, joint: a}}\n"),
     "loop_that_cannot_close": arm(more="constraints: {geometric: {far: tip.x - 3*l}}\n"),
     "no_freedom_left": arm(more="constraints: {geometric: {c: tip.x - l, d: tip.y}}\n"),
 }
 
 ELEMENTS = {
     "unknown_joint": arm(more="joints: {wrist: {type: hinge, parent: lower, coordinate: c}}\n"),
+    "unknown_joint_without_coordinates": arm(more="joints: {wrist: {type: ball, parent: lower}}\n"),
     "joint_of_too_few_coordinates": arm(more="joints: {wrist: {type: planar, parent: lower, coordinates: [c, d]}}\n"),
     "joint_coordinates_that_are_no_names": arm(
         more="joints: {wrist: {type: planar, parent: lower, coordinates: [t, m, while]}}\n"

@@ -64,7 +64,7 @@ def outcome(text: str) -> ModelError | None:
     return None
 
 
-@pytest.mark.parametrize("name", ["skate", "front_car", "slider_crank"])
+@pytest.mark.parametrize("name", ["skate", "front_car", "slider_crank", "scara", "rolling_disc"])
 def test_damage_is_survived(name: str) -> None:
     text = (FOLDER / f"{name}.yaml").read_text(encoding="utf-8")
     generator = random.Random(name)
