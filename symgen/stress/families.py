@@ -67,20 +67,22 @@ class Search:
     failing: int = 0
 
 
-def search(reference: Reference) -> Search:
-    """All families of a model, in a fixed order."""
+def search(reference: Reference, most: int | None = None) -> Search:
+    """All families of a model, in a fixed order; with `most` only that many determinants of each kind are looked at."""
     known = choices(reference)
-    singular, nowhere = _singularities(reference, known)
+    singular, nowhere = _singularities(reference, known, most)
     partitions = {*known.partitions, *(subset for trouble in known.troubles for subset in trouble.partitions)}
     failing = {subset for family in singular for subset in family.partitions}
     families = (*singular, *_extremes(reference))
     return Search(families, known.factored, nowhere, len(partitions), len(failing))
 
 
-def _singularities(reference: Reference, known: Choices) -> tuple[list[Family], tuple[str, ...]]:
+def _singularities(
+    reference: Reference, known: Choices, most: int | None
+) -> tuple[list[Family], tuple[str, ...]]:
     found: list[Family] = []
     nowhere: list[str] = []
-    for trouble in known.troubles:
+    for trouble in known.troubles[:most]:
         at = [(_kind(reference, place), place) for place in _places(reference, trouble)]
         if at:
             # a choice may also fail where more goes wrong; what it shows elsewhere is its own
@@ -91,7 +93,7 @@ def _singularities(reference: Reference, known: Choices) -> tuple[list[Family], 
     together = list(common_troubles(known)) if known.factored else list(joint_troubles(reference))
     for kind in ORDER[:2]:
         candidates = [trouble for its_kind, trouble in together if its_kind == kind]
-        for trouble in candidates[:MOST_JOINT]:
+        for trouble in candidates[: most or MOST_JOINT]:
             if sum(family.kind == kind for family in found) == FAMILIES_OF_KIND:
                 break
             wanted = [place for place in _places(reference, trouble) if _kind(reference, place) == kind]

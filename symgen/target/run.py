@@ -45,8 +45,7 @@ FAST, SMALL = "-O2", "-Os"  # the levels at which instructions and stack are mea
 BASE: tuple[Compiler, str] = ("gcc", "-O2")
 # With these every kernel is built; elsewhere u and what has not more operations, for the time that compilers take.
 WITH_ALL: tuple[tuple[Compiler, str], ...] = (BASE, ("gcc", "-Os"), ("clang", "-O2"))
-MOST_OPERATIONS = 300
-ALWAYS = "inverse_dynamics"
+MOST_OPERATIONS, MOST_OF_U = 300, 2000
 BESIDE = 1024  # bytes of stack that a kernel may take beside its own frames, for functions of the libraries
 CHOICES = ("ratio_or_zero", "copysign")
 PROCESSES = 2
@@ -228,11 +227,11 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
 
 
 def _small(program: Program) -> Program:
-    """The program without its largest kernels; u stays."""
-    kept = tuple(
-        k for k in program.kernels if k.name == ALWAYS or count_operations(k.statements).total <= MOST_OPERATIONS
-    )
-    return replace(program, kernels=kept)
+    """The program without its largest kernels; one at least stays."""
+    sizes = {k.name: count_operations(k.statements).total for k in program.kernels}
+    most = {name: MOST_OF_U if name == "inverse_dynamics" else MOST_OPERATIONS for name in sizes}
+    kept = [k for k in program.kernels if sizes[k.name] <= most[k.name]]
+    return replace(program, kernels=tuple(kept or [min(program.kernels, key=lambda k: sizes[k.name])]))
 
 
 def _builds(cores: Sequence[Core]) -> list[_Build]:

@@ -15,6 +15,9 @@ from symgen.verify.reference import Reference, State
 from symgen.verify.states import sample_states
 
 FEWEST = 256
+# Zeros of determinants are looked for in models of so many coordinates; beyond, one determinant takes ten seconds.
+SEARCHED = 8
+MOST_DETERMINANTS = 2  # of each kind
 SINGULAR_KINDS = ("constraint", "input", "parameter")
 NEAR = (0.0, 1e-8)  # distances from a singular configuration
 FAR = (1e-3, 1e-6)  # angles of a thousand and a million
@@ -40,7 +43,7 @@ class Vectors:
 def vectors_of(reference: Reference) -> Vectors:
     """Seeded and deterministic; raises VerificationError where hardly any state is found."""
     regular = tuple(sample.state for sample in sample_states(reference, (), FEWEST, seed=2))
-    return Vectors(regular, tuple(_singular(reference)), tuple(_odd(regular[0])))
+    return Vectors(regular, (*_singular(reference), *_degenerate(regular[0])), tuple(_odd(regular[0])))
 
 
 def perturbed(states: tuple[State, ...], scalar: Scalar) -> tuple[State, ...]:
@@ -56,10 +59,19 @@ def perturbed(states: tuple[State, ...], scalar: Scalar) -> tuple[State, ...]:
 
 
 def _singular(reference: Reference) -> Iterator[State]:
-    for family in search(reference).families:
+    if reference.model.n > SEARCHED:
+        return
+    for family in search(reference, MOST_DETERMINANTS).families:
         distances = NEAR if family.kind in SINGULAR_KINDS else FAR if family.kind == "large angles" else ()
         for curve in family.curves:
             yield from (state for d in distances if (state := curve(d)) is not None)
+
+
+def _degenerate(state: State) -> Iterator[State]:
+    """Every coordinate 0, where mechanisms are stretched; and every parameter 0 in turn, such as a length or a mass."""
+    yield replace(state, q=(0.0,) * len(state.q))
+    for place in range(len(state.parameters)):
+        yield replace(state, parameters=(*state.parameters[:place], 0.0, *state.parameters[place + 1 :]))
 
 
 def _odd(state: State) -> Iterator[State]:
