@@ -113,7 +113,7 @@ def _notices(robot: Robot, span: Span) -> list[Notice]:
             notices.append(Notice(f"`{tag}` of the URDF takes no part ({listed}){why}", span))
     efforts = _listed(robot, "effort")
     if efforts:
-        message = f"effort limits of the URDF bound no input ({efforts}): `limits` of `allocation` may"
+        message = f"effort limits of the URDF bound no input ({efforts}): `limits` under `allocation` can"
         notices.append(Notice(message, span))
     still = [name for name, joint in robot.joints.items() if _is_zero(joint.limits.get("velocity"))]
     if still:

@@ -76,7 +76,7 @@ def test_what_takes_no_part_is_told_by_name(tmp_path: Path) -> None:
         "joints",
         "`gazebo` of the URDF takes no part (upper): it is for a simulator",
         "`material` of the URDF takes no part (red)",
-        "effort limits of the URDF bound no input (shoulder 50): `limits` of `allocation` may",
+        "effort limits of the URDF bound no input (shoulder 50): `limits` under `allocation` can",
     ]
 
 
