@@ -67,7 +67,7 @@ skipping: $(VENV)/installed
 FUZZ_SECONDS ?= 60
 fuzz: $(VENV)/installed
 	$(BIN)/symgen $(MODELS) --only c,proof --no-verify --quiet --out build/fuzz
-	$(BIN)/python tools/fuzz_campaign.py build/fuzz $(FUZZ_SECONDS) $(MODELS:models/%.yaml=%)
+	$(BIN)/python tools/fuzz_campaign.py build/fuzz $(FUZZ_SECONDS) $(CAMPAIGN) --counted $(MECHANISMS:models/%.yaml=%)
 
 # u in float32 under Frama-C Eva and Gappa, every model: a table of what is proved, what was measured, what remains.
 proof: $(VENV)/installed
