@@ -68,7 +68,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t160, t211, t258, t297, t303, t344, t350, t416, t422, t512, t518, t618, t624. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t98, t240, t247, t327, t333, t372, t378, t422, t428, t511, t612. */
 void eva_forward_dynamics(void) {
     double q[7];
     double qd[7];
@@ -112,7 +112,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t160, t211, t258, t328, t324, t424, t500, t587, t666, t429, t502, t589, t662. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t98, t240, t378, t247, t374, t463, t513, t465, t515, t591, t645. */
 void eva_multipliers(void) {
     double q[7];
     double qd[7];

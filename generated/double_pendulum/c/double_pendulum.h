@@ -40,7 +40,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                  6     16      0      0      1      0
- * actuator_bias                         9     22      0      0      2      0
+ * actuator_bias                         9     21      0      0      2      0
  * forward_dynamics                     29     56      1      0      2      0
  * energy                                9     24      0      0      2      0
  * singularity                           0      0      0      0      0      0

@@ -187,7 +187,7 @@ size_t double_pendulum_inverse_dynamics_batch(size_t count, size_t stride, const
             const double t59 = t58 + t49;
             const double t60 = t59 + t18;
             const double t61 = t55 + t60;
-            double rest = (t54 - t54) + (t61 - t61);
+            double rest = (t54 - t54) * t61;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             flag[k] = rest;
@@ -379,7 +379,7 @@ size_t double_pendulum_forward_dynamics_batch(size_t count, size_t stride, const
             const double t98 = t74 * t97;
             const double t99 = t91 + t98;
             const double t100 = t46 * t99;
-            double rest = (t90 - t90) + (t100 - t100);
+            double rest = (t90 - t90) * t100;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += t23 > t45 ? 0.0 : 1.0;

@@ -179,7 +179,7 @@ size_t double_pendulum_inverse_dynamics_batch_f(size_t count, size_t stride, con
             const float t59 = t58 + t49;
             const float t60 = t59 + t18;
             const float t61 = t55 + t60;
-            float rest = (t54 - t54) + (t61 - t61);
+            float rest = (t54 - t54) * t61;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             flag[k] = rest;
@@ -371,7 +371,7 @@ size_t double_pendulum_forward_dynamics_batch_f(size_t count, size_t stride, con
             const float t98 = t74 * t97;
             const float t99 = t91 + t98;
             const float t100 = t46 * t99;
-            float rest = (t90 - t90) + (t100 - t100);
+            float rest = (t90 - t90) * t100;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += t23 > t45 ? 0.0f : 1.0f;

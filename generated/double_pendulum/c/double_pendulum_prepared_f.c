@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define DOUBLE_PENDULUM_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define DOUBLE_PENDULUM_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define DOUBLE_PENDULUM_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define DOUBLE_PENDULUM_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -189,10 +198,10 @@ double_pendulum_status double_pendulum_inverse_dynamics_prepared_f(const float q
     const float t1 = fabsf(q_1);
     const float q_2 = q[1];
     const float t2 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const float angle[4] = {q_1, q_2, q_2, q_2};
@@ -252,9 +261,8 @@ double_pendulum_status double_pendulum_inverse_dynamics_prepared_f(const float q
     const float t59 = t58 + t49;
     const float t60 = t59 + t18;
     const float t61 = t55 + t60;
-    float rest = t54 - t54;
-    rest += t61 - t61;
-    if (isnan(rest) != 0) {
+    float rest = (t54 - t54) * t61;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     u[0] = t54;
@@ -267,10 +275,10 @@ double_pendulum_status double_pendulum_forward_dynamics_prepared_f(const float q
     const float t1 = fabsf(q_2);
     const float q_1 = q[0];
     const float t2 = fabsf(q_1);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const float angle[4] = {q_2, q_1, q_1, q_1};
@@ -295,7 +303,7 @@ double_pendulum_status double_pendulum_forward_dynamics_prepared_f(const float q
     const float t22 = t19 + t21;
     const float t23 = fabsf(t22);
     const float t45 = p->value[14];
-    if (!(t23 > t45)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(t23 > t45))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }
     const float t46 = 1.0f / t22;
@@ -353,9 +361,8 @@ double_pendulum_status double_pendulum_forward_dynamics_prepared_f(const float q
     const float t98 = t74 * t97;
     const float t99 = t91 + t98;
     const float t100 = t46 * t99;
-    float rest = t90 - t90;
-    rest += t100 - t100;
-    if (isnan(rest) != 0) {
+    float rest = (t90 - t90) * t100;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd[0] = t90;

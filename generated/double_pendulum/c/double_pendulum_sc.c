@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define DOUBLE_PENDULUM_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define DOUBLE_PENDULUM_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define DOUBLE_PENDULUM_RARELY(condition) (condition)
+#endif
+
 double_pendulum_status double_pendulum_inverse_dynamics_sc(const double_pendulum_trig *sc, const double q[2], const double qd[2], const double qdd[2], const double_pendulum_params *p, double u[2]) {
     (void)q;
     const double q_1_dot = qd[0];
@@ -92,9 +101,8 @@ double_pendulum_status double_pendulum_inverse_dynamics_sc(const double_pendulum
     const double t59 = t58 + t49;
     const double t60 = t59 + t18;
     const double t61 = t55 + t60;
-    double rest = t54 - t54;
-    rest += t61 - t61;
-    if (isnan(rest) != 0) {
+    double rest = (t54 - t54) * t61;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     u[0] = t54;
@@ -151,7 +159,7 @@ double_pendulum_status double_pendulum_forward_dynamics_sc(const double_pendulum
     const double t43 = t38 * t42;
     const double t44 = t41 + t43;
     const double t45 = t44 * 1.7763568394002505e-15;
-    if (!(t23 > t45)) {
+    if (DOUBLE_PENDULUM_RARELY(!(t23 > t45))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }
     const double t46 = 1.0 / t22;
@@ -220,9 +228,8 @@ double_pendulum_status double_pendulum_forward_dynamics_sc(const double_pendulum
     const double t98 = t74 * t97;
     const double t99 = t91 + t98;
     const double t100 = t46 * t99;
-    double rest = t90 - t90;
-    rest += t100 - t100;
-    if (isnan(rest) != 0) {
+    double rest = (t90 - t90) * t100;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd[0] = t90;

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define DOUBLE_PENDULUM_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define DOUBLE_PENDULUM_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define DOUBLE_PENDULUM_RARELY_F(condition) (condition)
+#endif
+
 double_pendulum_status double_pendulum_inverse_dynamics_sc_f(const double_pendulum_trig_f *sc, const float q[2], const float qd[2], const float qdd[2], const double_pendulum_params_f *p, float u[2]) {
     (void)q;
     const float q_1_dot = qd[0];
@@ -92,9 +101,8 @@ double_pendulum_status double_pendulum_inverse_dynamics_sc_f(const double_pendul
     const float t59 = t58 + t49;
     const float t60 = t59 + t18;
     const float t61 = t55 + t60;
-    float rest = t54 - t54;
-    rest += t61 - t61;
-    if (isnan(rest) != 0) {
+    float rest = (t54 - t54) * t61;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     u[0] = t54;
@@ -151,7 +159,7 @@ double_pendulum_status double_pendulum_forward_dynamics_sc_f(const double_pendul
     const float t43 = t38 * t42;
     const float t44 = t41 + t43;
     const float t45 = t44 * 9.536743e-07f;
-    if (!(t23 > t45)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(t23 > t45))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }
     const float t46 = 1.0f / t22;
@@ -220,9 +228,8 @@ double_pendulum_status double_pendulum_forward_dynamics_sc_f(const double_pendul
     const float t98 = t74 * t97;
     const float t99 = t91 + t98;
     const float t100 = t46 * t99;
-    float rest = t90 - t90;
-    rest += t100 - t100;
-    if (isnan(rest) != 0) {
+    float rest = (t90 - t90) * t100;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd[0] = t90;

@@ -38,7 +38,7 @@ inverse_dynamics                     20     36      0      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     0      0      0      0      0      0
 actuator_mass_matrix                  6     16      0      0      1      0
-actuator_bias                         9     22      0      0      2      0
+actuator_bias                         9     21      0      0      2      0
 forward_dynamics                     29     56      1      0      2      0
 energy                                9     24      0      0      2      0
 singularity                           0      0      0      0      0      0
@@ -1040,46 +1040,45 @@ def actuator_bias(q, qd, p=PARAMETERS):
         g = np.float64(p.g)
         d_1 = np.float64(p.d_1)
         d_2 = np.float64(p.d_2)
-        t1 = np.abs(q_2)
-        t2 = np.abs(q_1)
+        t1 = np.abs(q_1)
+        t2 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(q_2)
-        t5, t6 = _sincos(q_1)
-        t7 = g * t6
-        t8 = 2.0 * q_1_dot
-        t9 = q_2_dot + t8
-        t10 = l_1 * t9
-        t11 = q_2_dot * t10
-        t12 = t7 - t11
-        t13 = t3 * t12
-        t14 = t4 * t5
-        t15 = g * t14
-        t16 = t13 + t15
-        t17 = m_2 * t16
-        t18 = c_2 * t17
-        t19 = q_1_dot * d_1
-        t20 = c_1 * m_1
-        t21 = l_1 * m_2
-        t22 = t20 + t21
+        t3, t4 = _sincos(q_1)
+        t5, t6 = _sincos(q_2)
+        t7 = q_1_dot * d_1
+        t8 = c_1 * m_1
+        t9 = l_1 * m_2
+        t10 = t8 + t9
+        t11 = g * t10
+        t12 = t3 * t11
+        t13 = t7 + t12
+        t14 = c_2 * m_2
+        t15 = g * t4
+        t16 = 2.0 * q_1_dot
+        t17 = q_2_dot + t16
+        t18 = l_1 * t17
+        t19 = q_2_dot * t18
+        t20 = t15 - t19
+        t21 = t5 * t20
+        t22 = t6 * t3
         t23 = g * t22
-        t24 = t5 * t23
-        t25 = t19 + t24
-        t26 = t18 + t25
+        t24 = t21 + t23
+        t25 = t14 * t24
+        t26 = t13 + t25
         t27 = q_2_dot * d_2
         t28 = q_1_dot * q_1_dot
-        t29 = t28 * t3
+        t29 = t28 * t5
         t30 = l_1 * t29
-        t31 = t3 * t6
-        t32 = t14 + t31
+        t31 = t5 * t4
+        t32 = t22 + t31
         t33 = g * t32
         t34 = t30 + t33
-        t35 = m_2 * t34
-        t36 = c_2 * t35
-        t37 = t27 + t36
+        t35 = t14 * t34
+        t36 = t27 + t35
         entries = (
             t26,
-            t37,
+            t36,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
 
@@ -1246,28 +1245,28 @@ def energy(q, qd, p=PARAMETERS):
         t5, t6 = _sincos(q_1)
         turn_2 = q_1_dot + q_2_dot
         t7 = turn_2 * turn_2
-        t8 = c_2 * c_2
-        t9 = t7 * t8
-        t10 = q_1_dot * l_1
-        t11 = c_2 * turn_2
-        t12 = t4 * t11
-        t13 = 2.0 * t12
-        t14 = t10 + t13
-        t15 = t10 * t14
+        t8 = J_2 * t7
+        t9 = 0.5 * t8
+        t10 = q_1_dot * q_1_dot
+        t11 = c_1 * m_1
+        t12 = c_1 * t11
+        t13 = J_1 + t12
+        t14 = t10 * t13
+        t15 = 0.5 * t14
         t16 = t9 + t15
-        t17 = m_2 * t16
-        t18 = 0.5 * t17
-        t19 = J_2 * t7
-        t20 = 0.5 * t19
-        t21 = q_1_dot * q_1_dot
-        t22 = c_1 * m_1
-        t23 = c_1 * t22
-        t24 = J_1 + t23
-        t25 = t21 * t24
-        t26 = 0.5 * t25
-        t27 = t20 + t26
-        t28 = t18 + t27
-        t29 = t22 * t6
+        t17 = c_2 * c_2
+        t18 = t7 * t17
+        t19 = q_1_dot * l_1
+        t20 = c_2 * turn_2
+        t21 = t4 * t20
+        t22 = 2.0 * t21
+        t23 = t19 + t22
+        t24 = t19 * t23
+        t25 = t18 + t24
+        t26 = m_2 * t25
+        t27 = 0.5 * t26
+        t28 = t16 + t27
+        t29 = t11 * t6
         t30 = l_1 * t6
         t31 = t4 * t6
         t32 = t3 * t5

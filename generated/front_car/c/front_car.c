@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define FRONT_CAR_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define FRONT_CAR_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define FRONT_CAR_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define FRONT_CAR_INLINE static inline __attribute__((always_inline))
 #else
@@ -132,7 +141,7 @@ front_car_params front_car_default_params(void) {
 front_car_status front_car_mass_matrix(const double q[4], const front_car_params *p, double G[16]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -150,12 +159,9 @@ front_car_status front_car_mass_matrix(const double q[4], const front_car_params
     const double Theta_1 = p->Theta_1;
     const double t10 = Theta_1 + t9;
     const double Theta_2 = p->Theta_2;
-    double rest = t4 - t4;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    rest += t10 - t10;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t7 * t8;
+    rest += (t10 - t10) * Theta_2;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     G[0] = t4;
@@ -180,7 +186,7 @@ front_car_status front_car_mass_matrix(const double q[4], const front_car_params
 front_car_status front_car_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C[16]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -195,9 +201,8 @@ front_car_status front_car_coriolis_matrix(const double q[4], const double qd[4]
     const double t7 = -t6;
     const double t8 = t2 * t5;
     const double t9 = -t8;
-    double rest = t7 - t7;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    double rest = (t7 - t7) * t9;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     C[0] = 0.0;
@@ -222,7 +227,7 @@ front_car_status front_car_coriolis_matrix(const double q[4], const double qd[4]
 front_car_status front_car_coriolis_force(const double q[4], const double qd[4], const front_car_params *p, double C_qd[4]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -239,9 +244,8 @@ front_car_status front_car_coriolis_force(const double q[4], const double qd[4],
     const double t9 = theta_dot * t2;
     const double t10 = t5 * t9;
     const double t11 = -t10;
-    double rest = t8 - t8;
-    rest += t11 - t11;
-    if (isnan(rest) != 0) {
+    double rest = (t8 - t8) * t11;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -277,10 +281,10 @@ front_car_status front_car_constraint_jacobian(const double q[4], const front_ca
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -302,12 +306,9 @@ front_car_status front_car_constraint_jacobian(const double q[4], const front_ca
     const double L = p->L;
     const double t15 = L * t6;
     const double t16 = -t15;
-    double rest = t3 - t3;
-    rest += t7 - t7;
-    rest += t10 - t10;
-    rest += t14 - t14;
-    rest += t16 - t16;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t7 * t10;
+    rest += (t14 - t14) * t16;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     B[0] = t3;
@@ -326,10 +327,10 @@ front_car_status front_car_constraint_jacobian_dot(const double q[4], const doub
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -356,12 +357,9 @@ front_car_status front_car_constraint_jacobian_dot(const double q[4], const doub
     const double t18 = phi_dot * t5;
     const double L = p->L;
     const double t19 = L * t18;
-    double rest = t7 - t7;
-    rest += t8 - t8;
-    rest += t13 - t13;
-    rest += t17 - t17;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    double rest = (t7 - t7) * t8 * t13;
+    rest += (t17 - t17) * t19;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -380,10 +378,10 @@ front_car_status front_car_constraint_pseudoinverse(const double q[4], const fro
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -406,7 +404,7 @@ front_car_status front_car_constraint_pseudoinverse(const double q[4], const fro
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t18 = 1.0 / t14;
@@ -432,13 +430,9 @@ front_car_status front_car_constraint_pseudoinverse(const double q[4], const fro
     const double t38 = t36 * t37;
     const double t39 = t4 * t36;
     const double t40 = -t39;
-    double rest = t25 - t25;
-    rest += t27 - t27;
-    rest += t34 - t34;
-    rest += t35 - t35;
-    rest += t38 - t38;
-    rest += t40 - t40;
-    if (isnan(rest) != 0) {
+    double rest = (t25 - t25) * t27 * t34;
+    rest += (t35 - t35) * t38 * t40;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -457,10 +451,10 @@ front_car_status front_car_nullspace_projector(const double q[4], const front_ca
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -483,7 +477,7 @@ front_car_status front_car_nullspace_projector(const double q[4], const front_ca
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t18 = 1.0 / t14;
@@ -496,13 +490,9 @@ front_car_status front_car_nullspace_projector(const double q[4], const front_ca
     const double t25 = t5 * t9;
     const double t26 = t18 * t25;
     const double t27 = t7 * t18;
-    double rest = t19 - t19;
-    rest += t21 - t21;
-    rest += t23 - t23;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    rest += t27 - t27;
-    if (isnan(rest) != 0) {
+    double rest = (t19 - t19) * t21 * t23;
+    rest += (t24 - t24) * t26 * t27;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -529,10 +519,10 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -555,7 +545,7 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -627,13 +617,9 @@ front_car_status front_car_nullspace_projector_dot(const double q[4], const doub
     const double t82 = t3 * t81;
     const double t83 = t20 * t82;
     const double t84 = 2.0 * t83;
-    double rest = t34 - t34;
-    rest += t52 - t52;
-    rest += t63 - t63;
-    rest += t70 - t70;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    double rest = (t34 - t34) * t52 * t63;
+    rest += (t70 - t70) * t80 * t84;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -660,10 +646,10 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -686,7 +672,7 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -714,67 +700,62 @@ front_car_status front_car_weighted_pseudoinverse(const double q[4], const front
     const double t36 = fabs(m_1);
     const double t37 = t36 + t28;
     const double t38 = t37 * t33;
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t26 > t42))) {
         return FRONT_CAR_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * Theta_2;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t45 * t51;
-    const double t53 = t8 * t52;
-    const double t54 = t6 * t4;
-    const double t55 = t5 * t3;
-    const double t56 = t54 - t55;
-    const double t57 = m_2 * t19;
-    const double t58 = Theta_1 + t57;
-    const double t59 = Theta_2 * t58;
-    const double t60 = t3 * t59;
-    const double t61 = t56 * t60;
-    const double t62 = t53 - t61;
-    const double t63 = t44 * t62;
-    const double t64 = t59 / t25;
-    const double t65 = t48 * t64;
-    const double t66 = m_1 * t54;
-    const double t67 = m_2 * t56;
-    const double t68 = t66 + t67;
-    const double t69 = t45 * t68;
-    const double t70 = t8 * t69;
-    const double t71 = t49 * t60;
-    const double t72 = t70 + t71;
-    const double t73 = t44 * t72;
-    const double t74 = -t73;
-    const double t75 = t55 * t64;
-    const double t76 = t45 / t25;
-    const double t77 = t22 * t76;
-    const double t78 = m_1 + m_2;
-    const double t79 = t4 * t78;
-    const double t80 = t79 * t76;
-    const double t81 = -t80;
-    double rest = t63 - t63;
-    rest += t65 - t65;
-    rest += t74 - t74;
-    rest += t75 - t75;
-    rest += t77 - t77;
-    rest += t81 - t81;
-    if (isnan(rest) != 0) {
+    const double t43 = 1.0 / t25;
+    const double t44 = L * Theta_2;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t44 * t50;
+    const double t52 = t8 * t51;
+    const double t53 = t6 * t4;
+    const double t54 = t5 * t3;
+    const double t55 = t53 - t54;
+    const double t56 = m_2 * t19;
+    const double t57 = Theta_1 + t56;
+    const double t58 = Theta_2 * t57;
+    const double t59 = t3 * t58;
+    const double t60 = t55 * t59;
+    const double t61 = t52 - t60;
+    const double t62 = t43 * t61;
+    const double t63 = t58 / t25;
+    const double t64 = t47 * t63;
+    const double t65 = m_1 * t53;
+    const double t66 = m_2 * t55;
+    const double t67 = t65 + t66;
+    const double t68 = t44 * t67;
+    const double t69 = t8 * t68;
+    const double t70 = t48 * t59;
+    const double t71 = t69 + t70;
+    const double t72 = t43 * t71;
+    const double t73 = -t72;
+    const double t74 = t54 * t63;
+    const double t75 = t44 / t25;
+    const double t76 = t22 * t75;
+    const double t77 = m_1 + m_2;
+    const double t78 = t4 * t77;
+    const double t79 = t78 * t75;
+    const double t80 = -t79;
+    double rest = (t62 - t62) * t64 * t73;
+    rest += (t74 - t74) * t76 * t80;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    B_G_pinv[0] = t63;
-    B_G_pinv[1] = t65;
-    B_G_pinv[2] = t74;
-    B_G_pinv[3] = t75;
-    B_G_pinv[4] = t77;
-    B_G_pinv[5] = t81;
+    B_G_pinv[0] = t62;
+    B_G_pinv[1] = t64;
+    B_G_pinv[2] = t73;
+    B_G_pinv[3] = t74;
+    B_G_pinv[4] = t76;
+    B_G_pinv[5] = t80;
     B_G_pinv[6] = 0.0;
     B_G_pinv[7] = 0.0;
     return FRONT_CAR_OK;
@@ -785,10 +766,10 @@ front_car_status front_car_weighted_nullspace_projector(const double q[4], const
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -811,7 +792,7 @@ front_car_status front_car_weighted_nullspace_projector(const double q[4], const
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -839,76 +820,69 @@ front_car_status front_car_weighted_nullspace_projector(const double q[4], const
     const double t36 = fabs(m_1);
     const double t37 = t36 + t28;
     const double t38 = t37 * t33;
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t26 > t42))) {
         return FRONT_CAR_MASS_RANK;
     }
-    const double t44 = t4 * t6;
-    const double t45 = m_1 * t44;
-    const double t46 = t3 * t5;
-    const double t47 = t44 - t46;
-    const double t48 = m_2 * t47;
-    const double t49 = t45 + t48;
-    const double t50 = t44 * t49;
-    const double t51 = Theta_2 * t19;
-    const double t52 = t51 / t25;
-    const double t53 = t50 * t52;
-    const double t54 = t3 * t6;
-    const double t55 = m_1 * t54;
-    const double t56 = t4 * t5;
-    const double t57 = t54 + t56;
-    const double t58 = m_2 * t57;
-    const double t59 = t55 + t58;
-    const double t60 = t44 * t59;
-    const double t61 = t52 * t60;
-    const double t62 = t5 * t44;
-    const double t63 = m_2 * t19;
-    const double t64 = Theta_1 + t63;
-    const double t65 = L * Theta_2;
-    const double t66 = t64 * t65;
-    const double t67 = t66 / t25;
-    const double t68 = t62 * t67;
-    const double t69 = t54 * t49;
-    const double t70 = t52 * t69;
-    const double t71 = t54 * t59;
-    const double t72 = t71 * t52;
-    const double t73 = t5 * t54;
-    const double t74 = t73 * t67;
-    const double t75 = t65 / t25;
-    const double t76 = t5 * t49;
-    const double t77 = t75 * t76;
-    const double t78 = t5 * t59;
-    const double t79 = t75 * t78;
-    const double t80 = Theta_2 * t64;
-    const double t81 = t80 / t25;
-    const double t82 = t7 * t81;
-    double rest = t53 - t53;
-    rest += t61 - t61;
-    rest += t68 - t68;
-    rest += t70 - t70;
-    rest += t72 - t72;
-    rest += t74 - t74;
-    rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t82 - t82;
-    if (isnan(rest) != 0) {
+    const double t43 = t4 * t6;
+    const double t44 = m_1 * t43;
+    const double t45 = t3 * t5;
+    const double t46 = t43 - t45;
+    const double t47 = m_2 * t46;
+    const double t48 = t44 + t47;
+    const double t49 = t43 * t48;
+    const double t50 = Theta_2 * t19;
+    const double t51 = t50 / t25;
+    const double t52 = t49 * t51;
+    const double t53 = t3 * t6;
+    const double t54 = m_1 * t53;
+    const double t55 = t4 * t5;
+    const double t56 = t53 + t55;
+    const double t57 = m_2 * t56;
+    const double t58 = t54 + t57;
+    const double t59 = t43 * t58;
+    const double t60 = t51 * t59;
+    const double t61 = t5 * t43;
+    const double t62 = m_2 * t19;
+    const double t63 = Theta_1 + t62;
+    const double t64 = L * Theta_2;
+    const double t65 = t63 * t64;
+    const double t66 = t65 / t25;
+    const double t67 = t61 * t66;
+    const double t68 = t53 * t48;
+    const double t69 = t51 * t68;
+    const double t70 = t53 * t58;
+    const double t71 = t70 * t51;
+    const double t72 = t5 * t53;
+    const double t73 = t72 * t66;
+    const double t74 = t64 / t25;
+    const double t75 = t5 * t48;
+    const double t76 = t74 * t75;
+    const double t77 = t5 * t58;
+    const double t78 = t74 * t77;
+    const double t79 = Theta_2 * t63;
+    const double t80 = t79 / t25;
+    const double t81 = t7 * t80;
+    double rest = (t52 - t52) * t60 * t67;
+    rest += (t69 - t69) * t71 * t73;
+    rest += (t76 - t76) * t78 * t81;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    N_BG[0] = t53;
-    N_BG[1] = t61;
-    N_BG[2] = t68;
+    N_BG[0] = t52;
+    N_BG[1] = t60;
+    N_BG[2] = t67;
     N_BG[3] = 0.0;
-    N_BG[4] = t70;
-    N_BG[5] = t72;
-    N_BG[6] = t74;
+    N_BG[4] = t69;
+    N_BG[5] = t71;
+    N_BG[6] = t73;
     N_BG[7] = 0.0;
-    N_BG[8] = t77;
-    N_BG[9] = t79;
-    N_BG[10] = t82;
+    N_BG[8] = t76;
+    N_BG[9] = t78;
+    N_BG[10] = t81;
     N_BG[11] = 0.0;
     N_BG[12] = 0.0;
     N_BG[13] = 0.0;
@@ -923,10 +897,10 @@ front_car_status front_car_control_matrix(const double q[4], const front_car_par
     const double t1 = theta + phi;
     const double t2 = fabs(t1);
     const double t3 = fabs(phi);
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t3)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t3))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {t1, phi};
@@ -938,10 +912,8 @@ front_car_status front_car_control_matrix(const double q[4], const front_car_par
     const double t8 = L * t6;
     const double t5 = cosine[0];
     const double t4 = sine[0];
-    double rest = t5 - t5;
-    rest += t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    double rest = (t5 - t5) * t4 * t8;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     M[0] = t5;
@@ -960,10 +932,10 @@ front_car_status front_car_projected_control_matrix(const double q[4], const fro
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -986,7 +958,7 @@ front_car_status front_car_projected_control_matrix(const double q[4], const fro
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -998,10 +970,8 @@ front_car_status front_car_projected_control_matrix(const double q[4], const fro
     const double t24 = t23 / t14;
     const double t25 = L * t3;
     const double t26 = t25 / t14;
-    double rest = t21 - t21;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    if (isnan(rest) != 0) {
+    double rest = (t21 - t21) * t24 * t26;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_tilde[0] = t21;
@@ -1020,10 +990,10 @@ front_car_status front_car_projected_control_pseudoinverse(const double q[4], co
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -1036,7 +1006,7 @@ front_car_status front_car_projected_control_pseudoinverse(const double q[4], co
     const double t6 = cosine[1];
     const double t3 = sine[0];
     const double t4 = cosine[0];
-    if (!(t7 > 0.0)) {
+    if (FRONT_CAR_RARELY(!(t7 > 0.0))) {
         const double t8 = t5 * t5;
         const double t9 = L * t6;
         const double t10 = t3 * t9;
@@ -1056,10 +1026,8 @@ front_car_status front_car_projected_control_pseudoinverse(const double q[4], co
     const double t19 = t4 * t6;
     const double t20 = t3 * t6;
     const double t21 = t5 / L;
-    double rest = t19 - t19;
-    rest += t20 - t20;
-    rest += t21 - t21;
-    if (isnan(rest) != 0) {
+    double rest = (t19 - t19) * t20 * t21;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_tilde_pinv[0] = t19;
@@ -1078,10 +1046,10 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -1099,7 +1067,7 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
     const double t12 = t11 * 1.262177448353619e-29;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_RARELY(!(t9 > t12))) {
         const double t13 = t5 * t5;
         const double t14 = t3 * t7;
         const double t15 = t14 * t14;
@@ -1112,9 +1080,8 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
     }
     const double t18 = t3 / t4;
     const double t19 = t5 / t8;
-    double rest = t18 - t18;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    double rest = (t18 - t18) * t19;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0;
@@ -1133,10 +1100,10 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1159,7 +1126,7 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -1211,14 +1178,10 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     const double t61 = t52 + t60;
     const double t62 = t61 / t19;
     const double Theta_2 = p->Theta_2;
-    double rest = t31 - t31;
-    rest += t36 - t36;
-    rest += t41 - t41;
-    rest += t46 - t46;
-    rest += t50 - t50;
-    rest += t62 - t62;
+    double rest = (t31 - t31) * t36 * t41;
+    rest += (t46 - t46) * t50 * t62;
     rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     G_tilde[0] = t31;
@@ -1245,10 +1208,10 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1271,7 +1234,7 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -1542,16 +1505,10 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     const double t276 = t275 * t141;
     const double t277 = t4 * t276;
     const double t278 = t22 * t277;
-    double rest = t86 - t86;
-    rest += t132 - t132;
-    rest += t145 - t145;
-    rest += t180 - t180;
-    rest += t182 - t182;
-    rest += t185 - t185;
-    rest += t232 - t232;
-    rest += t273 - t273;
-    rest += t278 - t278;
-    if (isnan(rest) != 0) {
+    double rest = (t86 - t86) * t132 * t145;
+    rest += (t180 - t180) * t182 * t185;
+    rest += (t232 - t232) * t273 * t278;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     C_tilde[0] = t86;
@@ -1599,10 +1556,10 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1620,7 +1577,7 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
     const double t12 = t11 * 1.262177448353619e-29;
     const double t3 = sine[0];
     const double t5 = sine[1];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_RARELY(!(t9 > t12))) {
         const double t13 = t3 * t3;
         const double t14 = t5 * t7;
         const double t15 = t14 * t14;
@@ -1644,9 +1601,8 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
     const double t25 = t22 + t24;
     const double t26 = t25 / t9;
     const double Theta_2 = p->Theta_2;
-    double rest = t26 - t26;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t26 - t26) * Theta_2;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     G_bar[0] = t26;
@@ -1661,10 +1617,10 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1687,10 +1643,10 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    if (!(t13 > t17)) {
+    if (FRONT_CAR_RARELY(!(t13 > t17))) {
         if (!(t14 > t17)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
@@ -1741,7 +1697,7 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     const double t55 = t14 * t54;
     const double t56 = t48 / t55;
     double rest = t56 - t56;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     C_bar[0] = t56;
@@ -1773,10 +1729,10 @@ front_car_status front_car_minimal_control_matrix(const double q[4], const front
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -1794,7 +1750,7 @@ front_car_status front_car_minimal_control_matrix(const double q[4], const front
     const double t12 = t11 * 1.262177448353619e-29;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_RARELY(!(t9 > t12))) {
         const double t13 = t5 * t5;
         const double t14 = t3 * t7;
         const double t15 = t14 * t14;
@@ -1808,7 +1764,7 @@ front_car_status front_car_minimal_control_matrix(const double q[4], const front
     const double t18 = t4 * t6;
     const double t19 = 1.0 / t18;
     double rest = t19 - t19;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_bar[0] = t19;
@@ -1823,10 +1779,10 @@ front_car_status front_car_admissible_velocity(const double q[4], const double q
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1849,7 +1805,7 @@ front_car_status front_car_admissible_velocity(const double q[4], const double q
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L / t14;
@@ -1872,11 +1828,9 @@ front_car_status front_car_admissible_velocity(const double q[4], const double q
     const double t32 = t3 * t25;
     const double t33 = t32 / t14;
     const double phi_dot = qd[3];
-    double rest = t28 - t28;
-    rest += t31 - t31;
-    rest += t33 - t33;
+    double rest = (t28 - t28) * t31 * t33;
     rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     qd_admissible[0] = t28;
@@ -1891,10 +1845,10 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1917,7 +1871,7 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double y_ddot = qdd[1];
@@ -2011,11 +1965,9 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t99 = t95 + t98;
     const double t100 = t99 / t56;
     const double phi_ddot = qdd[3];
-    double rest = t59 - t59;
-    rest += t88 - t88;
-    rest += t100 - t100;
+    double rest = (t59 - t59) * t88 * t100;
     rest += phi_ddot - phi_ddot;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
@@ -2031,11 +1983,9 @@ front_car_status front_car_projected_configuration(const double q[4], const fron
     const double y = q[1];
     const double theta = q[2];
     const double phi = q[3];
-    double rest = x - x;
-    rest += y - y;
-    rest += theta - theta;
+    double rest = (x - x) * y * theta;
     rest += phi - phi;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2050,10 +2000,10 @@ front_car_status front_car_inverse_dynamics(const double q[4], const double qd[4
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2096,9 +2046,8 @@ front_car_status front_car_inverse_dynamics(const double q[4], const double qd[4
     const double phi_ddot = qdd[3];
     const double Theta_2 = p->Theta_2;
     const double t28 = phi_ddot * Theta_2;
-    double rest = t27 - t27;
-    rest += t28 - t28;
-    if (isnan(rest) != 0) {
+    double rest = (t27 - t27) * t28;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     u[0] = t27;
@@ -2124,10 +2073,10 @@ front_car_status front_car_actuator_velocity(const double q[4], const double qd[
     const double t1 = theta + phi;
     const double t2 = fabs(t1);
     const double t3 = fabs(phi);
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t3)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t3))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {t1, phi};
@@ -2148,9 +2097,8 @@ front_car_status front_car_actuator_velocity(const double q[4], const double qd[
     const double t12 = theta_dot * t11;
     const double t13 = t10 + t12;
     const double phi_dot = qd[3];
-    double rest = t13 - t13;
-    rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    double rest = (t13 - t13) * phi_dot;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     nu[0] = t13;
@@ -2161,7 +2109,7 @@ front_car_status front_car_actuator_velocity(const double q[4], const double qd[
 front_car_status front_car_actuator_mass_matrix(const double q[4], const front_car_params *p, double G_nu[4]) {
     const double phi = q[3];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -2170,7 +2118,7 @@ front_car_status front_car_actuator_mass_matrix(const double q[4], const front_c
     const double L = p->L;
     const double t4 = fabs(L);
     const double theta = q[2];
-    if (!(t4 > 0.0)) {
+    if (FRONT_CAR_RARELY(!(t4 > 0.0))) {
         const double t5 = t2 * t2;
         double t6;
         double t7;
@@ -2207,9 +2155,8 @@ front_car_status front_car_actuator_mass_matrix(const double q[4], const front_c
     const double t26 = t20 + t25;
     const double t27 = t26 / t21;
     const double Theta_2 = p->Theta_2;
-    double rest = t27 - t27;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t27 - t27) * Theta_2;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     G_nu[0] = t27;
@@ -2224,10 +2171,10 @@ front_car_status front_car_actuator_bias(const double q[4], const double qd[4], 
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2250,11 +2197,11 @@ front_car_status front_car_actuator_bias(const double q[4], const double qd[4], 
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t18 = fabs(L);
-    if (!(t18 > 0.0)) {
+    if (FRONT_CAR_RARELY(!(t18 > 0.0))) {
         if (!(t14 > t17)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
@@ -2296,7 +2243,7 @@ front_car_status front_car_actuator_bias(const double q[4], const double qd[4], 
     const double t45 = t20 * t44;
     const double t46 = t45 / t21;
     double rest = t46 - t46;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     bias_nu[0] = t46;
@@ -2305,200 +2252,14 @@ front_car_status front_car_actuator_bias(const double q[4], const double qd[4], 
 }
 
 front_car_status front_car_forward_dynamics(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double qdd[4]) {
-    const double theta = q[2];
-    const double t1 = fabs(theta);
-    const double phi = q[3];
-    const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    if (!(100000.0 >= t2)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    const double angle[2] = {theta, phi};
-    double sine[2];
-    double cosine[2];
-    front_car_sincos_group(2, angle, sine, cosine);
-    const double t5 = sine[1];
-    const double t7 = t5 * t5;
-    const double L = p->L;
-    const double t6 = cosine[1];
-    const double t8 = L * t6;
-    const double t3 = sine[0];
-    const double t9 = t3 * t8;
-    const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
-    const double t4 = cosine[0];
-    const double t12 = t4 * t8;
-    const double t13 = t12 * t12;
-    const double t14 = t11 + t13;
-    const double t15 = t8 * t8;
-    const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_CONSTRAINT_RANK;
-    }
-    const double Theta_1 = p->Theta_1;
-    const double t18 = Theta_1 * t7;
-    const double t19 = L * L;
-    const double t20 = t6 * t6;
-    const double m_1 = p->m_1;
-    const double t21 = m_1 * t20;
-    const double m_2 = p->m_2;
-    const double t22 = m_2 + t21;
-    const double t23 = t19 * t22;
-    const double t24 = t18 + t23;
-    const double Theta_2 = p->Theta_2;
-    const double t25 = Theta_2 * t24;
-    const double t26 = fabs(t25);
-    const double t27 = fabs(Theta_1);
-    const double t28 = fabs(m_2);
-    const double t29 = fabs(L);
-    const double t30 = t29 * t29;
-    const double t31 = t28 * t30;
-    const double t32 = t27 + t31;
-    const double t33 = fabs(Theta_2);
-    const double t34 = t32 * t33;
-    const double t35 = t7 * t34;
-    const double t36 = fabs(m_1);
-    const double t37 = t36 + t28;
-    const double t38 = t37 * t33;
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
-        return FRONT_CAR_MASS_RANK;
-    }
-    const double t44 = L * t5;
-    const double K_f = u[0];
-    const double t45 = K_f * t44;
-    const double t46 = t5 * t45;
-    const double t47 = L * m_2;
-    const double theta_dot = qd[2];
-    const double t48 = theta_dot * t47;
-    const double t49 = theta_dot * t4;
-    const double t50 = t48 * t49;
-    const double t51 = t4 * t6;
-    const double t52 = t3 * t5;
-    const double t53 = t51 - t52;
-    const double t54 = K_f * t53;
-    const double t55 = t50 + t54;
-    const double t56 = t12 * t55;
-    const double t57 = theta_dot * t3;
-    const double t58 = t48 * t57;
-    const double t59 = t3 * t6;
-    const double t60 = t4 * t5;
-    const double t61 = t59 + t60;
-    const double t62 = K_f * t61;
-    const double t63 = t58 + t62;
-    const double t64 = t9 * t63;
-    const double t65 = t56 + t64;
-    const double t66 = t46 + t65;
-    const double t67 = Theta_2 * t66;
-    const double t68 = t12 * t67;
-    const double t69 = 1.0 / t25;
-    const double t70 = t68 * t69;
-    const double y_dot = qd[1];
-    const double t71 = y_dot * t57;
-    const double x_dot = qd[0];
-    const double t72 = x_dot * t49;
-    const double t73 = t71 + t72;
-    const double t74 = t8 * t73;
-    const double t75 = L * Theta_2;
-    const double t76 = m_1 * t59;
-    const double t77 = m_2 * t61;
-    const double t78 = t76 + t77;
-    const double t79 = t75 * t78;
-    const double t80 = t74 * t79;
-    const double phi_dot = qd[3];
-    const double t81 = phi_dot * t5;
-    const double t82 = L * t81;
-    const double t83 = theta_dot * t82;
-    const double t84 = theta_dot + phi_dot;
-    const double t85 = t84 * t53;
-    const double t86 = x_dot * t85;
-    const double t87 = t84 * t61;
-    const double t88 = y_dot * t87;
-    const double t89 = t86 + t88;
-    const double t90 = t83 + t89;
-    const double t91 = t4 * t90;
-    const double t92 = t73 * t53;
-    const double t93 = t91 - t92;
-    const double t94 = L * t47;
-    const double t95 = Theta_1 + t94;
-    const double t96 = t5 * t95;
-    const double t97 = Theta_2 * t96;
-    const double t98 = t93 * t97;
-    const double t99 = t80 + t98;
-    const double t100 = t69 * t99;
-    const double t101 = t70 - t100;
-    const double t102 = t9 * t67;
-    const double t103 = t102 * t69;
-    const double t104 = t3 * t90;
-    const double t105 = t73 * t61;
-    const double t106 = t104 - t105;
-    const double t107 = t106 * t97;
-    const double t108 = m_1 * t51;
-    const double t109 = m_2 * t53;
-    const double t110 = t108 + t109;
-    const double t111 = t75 * t110;
-    const double t112 = t74 * t111;
-    const double t113 = t107 - t112;
-    const double t114 = t69 * t113;
-    const double t115 = t103 - t114;
-    const double t116 = t5 * t67;
-    const double t117 = t116 * t69;
-    const double t118 = t92 - t91;
-    const double t119 = t111 * t118;
-    const double t120 = t79 * t106;
-    const double t121 = t119 - t120;
-    const double t122 = t121 * t69;
-    const double t123 = t117 - t122;
-    const double t124 = m_1 + m_2;
-    const double T = u[1];
-    const double t125 = T * t12;
-    const double t126 = t124 * t125;
-    const double t127 = t3 * t47;
-    const double t128 = T * t5;
-    const double t129 = t127 * t128;
-    const double t130 = t126 - t129;
-    const double t131 = t12 * t130;
-    const double t132 = T * t9;
-    const double t133 = t124 * t132;
-    const double t134 = t4 * t47;
-    const double t135 = t134 * t128;
-    const double t136 = t133 + t135;
-    const double t137 = t9 * t136;
-    const double t138 = t131 + t137;
-    const double t139 = t128 * t95;
-    const double t140 = t5 * t139;
-    const double t141 = t138 + t140;
-    const double t142 = t69 * t141;
-    double rest = t101 - t101;
-    rest += t115 - t115;
-    rest += t123 - t123;
-    rest += t142 - t142;
-    if (isnan(rest) != 0) {
-        return FRONT_CAR_NOT_FINITE;
-    }
-    qdd[0] = t101;
-    qdd[1] = t115;
-    qdd[2] = t123;
-    qdd[3] = t142;
-    return FRONT_CAR_OK;
-}
-
-front_car_status front_car_multipliers(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]) {
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2521,7 +2282,7 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -2549,132 +2310,308 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t36 = fabs(m_1);
     const double t37 = t36 + t28;
     const double t38 = t37 * t33;
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t26 > t42))) {
         return FRONT_CAR_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * Theta_2;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t45 * t51;
-    const double t53 = L * m_2;
-    const double theta_dot = qd[2];
-    const double t54 = theta_dot * t53;
-    const double t55 = theta_dot * t6;
-    const double t56 = t54 * t55;
-    const double t57 = t6 * t4;
-    const double t58 = t5 * t3;
-    const double t59 = t57 - t58;
+    const double t43 = 1.0 / t25;
+    const double t44 = L * t3;
     const double K_f = u[0];
-    const double t60 = K_f * t59;
-    const double t61 = t56 + t60;
-    const double t62 = m_1 + m_2;
-    const double t63 = theta_dot * t5;
+    const double t45 = K_f * t44;
+    const double t46 = t3 * t45;
+    const double t47 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t48 = theta_dot * t47;
+    const double t49 = theta_dot * t6;
+    const double t50 = t48 * t49;
+    const double t51 = t6 * t4;
+    const double t52 = t5 * t3;
+    const double t53 = t51 - t52;
+    const double t54 = K_f * t53;
+    const double t55 = t50 + t54;
+    const double t56 = t12 * t55;
+    const double t57 = theta_dot * t5;
+    const double t58 = t48 * t57;
+    const double t59 = t5 * t4;
+    const double t60 = t6 * t3;
+    const double t61 = t59 + t60;
+    const double t62 = K_f * t61;
+    const double t63 = t58 + t62;
+    const double t64 = t9 * t63;
+    const double t65 = t56 + t64;
+    const double t66 = t46 + t65;
+    const double t67 = Theta_2 * t66;
+    const double t68 = t12 * t67;
     const double y_dot = qd[1];
-    const double t64 = y_dot * t63;
+    const double t69 = y_dot * t57;
     const double x_dot = qd[0];
-    const double t65 = x_dot * t55;
-    const double t66 = t64 + t65;
-    const double t67 = t8 * t66;
-    const double t68 = t67 * t52;
+    const double t70 = x_dot * t49;
+    const double t71 = t69 + t70;
+    const double t72 = t8 * t71;
+    const double t73 = L * Theta_2;
+    const double t74 = m_1 * t59;
+    const double t75 = m_2 * t61;
+    const double t76 = t74 + t75;
+    const double t77 = t73 * t76;
+    const double t78 = t72 * t77;
+    const double t79 = L * t47;
+    const double t80 = Theta_1 + t79;
+    const double t81 = t3 * t80;
+    const double t82 = Theta_2 * t81;
     const double phi_dot = qd[3];
-    const double t69 = phi_dot * t3;
-    const double t70 = L * t69;
-    const double t71 = theta_dot * t70;
-    const double t72 = theta_dot + phi_dot;
-    const double t73 = t72 * t59;
-    const double t74 = x_dot * t73;
-    const double t75 = t72 * t49;
-    const double t76 = y_dot * t75;
-    const double t77 = t74 + t76;
-    const double t78 = t71 + t77;
-    const double t79 = t6 * t78;
-    const double t80 = t66 * t59;
-    const double t81 = t79 - t80;
-    const double t82 = L * t53;
-    const double t83 = Theta_1 + t82;
-    const double t84 = t3 * t83;
-    const double t85 = Theta_2 * t84;
-    const double t86 = t81 * t85;
-    const double t87 = t68 + t86;
-    const double t88 = t44 * t87;
-    const double t89 = t62 * t88;
-    const double t90 = t5 * t53;
-    const double t91 = m_1 * t57;
-    const double t92 = m_2 * t59;
-    const double t93 = t91 + t92;
-    const double t94 = t45 * t93;
-    const double t95 = t80 - t79;
-    const double t96 = t94 * t95;
-    const double t97 = t5 * t78;
-    const double t98 = t66 * t49;
-    const double t99 = t97 - t98;
-    const double t100 = t52 * t99;
-    const double t101 = t96 - t100;
-    const double t102 = t101 * t44;
-    const double t103 = t90 * t102;
-    const double t104 = t89 - t103;
-    const double t105 = t61 + t104;
-    const double t106 = t52 * t105;
-    const double t107 = t54 * t63;
-    const double t108 = K_f * t49;
-    const double t109 = t107 + t108;
-    const double t110 = t99 * t85;
-    const double t111 = t67 * t94;
-    const double t112 = t110 - t111;
-    const double t113 = t44 * t112;
-    const double t114 = t62 * t113;
-    const double t115 = t6 * t53;
-    const double t116 = t115 * t102;
-    const double t117 = t114 + t116;
-    const double t118 = t109 + t117;
-    const double t119 = t94 * t118;
-    const double t120 = t106 - t119;
-    const double t121 = t8 * t120;
-    const double t122 = t85 * t105;
-    const double t123 = L * t3;
-    const double t124 = K_f * t123;
-    const double t125 = t83 * t102;
-    const double t126 = t53 * t66;
-    const double t127 = t125 - t126;
-    const double t128 = t124 + t127;
-    const double t129 = t94 * t128;
-    const double t130 = t122 - t129;
-    const double t131 = t59 * t130;
-    const double t132 = t121 - t131;
-    const double t133 = t85 * t118;
-    const double t134 = t52 * t128;
-    const double t135 = t133 - t134;
-    const double t136 = t49 * t135;
-    const double t137 = t132 - t136;
-    const double t138 = t44 * t137;
-    const double t139 = t6 * t130;
-    const double t140 = t5 * t135;
-    const double t141 = t139 + t140;
-    const double t142 = t44 * t141;
-    double rest = t138 - t138;
-    rest += t142 - t142;
-    if (isnan(rest) != 0) {
+    const double t83 = phi_dot * t3;
+    const double t84 = L * t83;
+    const double t85 = theta_dot * t84;
+    const double t86 = theta_dot + phi_dot;
+    const double t87 = x_dot * t53;
+    const double t88 = y_dot * t61;
+    const double t89 = t87 + t88;
+    const double t90 = t86 * t89;
+    const double t91 = t85 + t90;
+    const double t92 = t6 * t91;
+    const double t93 = t71 * t53;
+    const double t94 = t92 - t93;
+    const double t95 = t82 * t94;
+    const double t96 = t78 + t95;
+    const double t97 = t68 - t96;
+    const double t98 = t43 * t97;
+    const double t99 = t9 * t67;
+    const double t100 = t5 * t91;
+    const double t101 = t71 * t61;
+    const double t102 = t100 - t101;
+    const double t103 = t82 * t102;
+    const double t104 = m_1 * t51;
+    const double t105 = m_2 * t53;
+    const double t106 = t104 + t105;
+    const double t107 = t73 * t106;
+    const double t108 = t72 * t107;
+    const double t109 = t103 - t108;
+    const double t110 = t99 - t109;
+    const double t111 = t43 * t110;
+    const double t112 = t3 * t67;
+    const double t113 = t93 - t92;
+    const double t114 = t107 * t113;
+    const double t115 = t77 * t102;
+    const double t116 = t114 - t115;
+    const double t117 = t112 - t116;
+    const double t118 = t43 * t117;
+    const double t119 = m_1 + m_2;
+    const double T = u[1];
+    const double t120 = T * t12;
+    const double t121 = t119 * t120;
+    const double t122 = t5 * t47;
+    const double t123 = T * t3;
+    const double t124 = t122 * t123;
+    const double t125 = t121 - t124;
+    const double t126 = t12 * t125;
+    const double t127 = T * t9;
+    const double t128 = t119 * t127;
+    const double t129 = t6 * t47;
+    const double t130 = t129 * t123;
+    const double t131 = t128 + t130;
+    const double t132 = t9 * t131;
+    const double t133 = t126 + t132;
+    const double t134 = t123 * t80;
+    const double t135 = t3 * t134;
+    const double t136 = t133 + t135;
+    const double t137 = t43 * t136;
+    double rest = (t98 - t98) * t111 * t118;
+    rest += t137 - t137;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t138;
-    lambda_B[1] = t142;
+    qdd[0] = t98;
+    qdd[1] = t111;
+    qdd[2] = t118;
+    qdd[3] = t137;
+    return FRONT_CAR_OK;
+}
+
+front_car_status front_car_multipliers(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]) {
+    const double phi = q[3];
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
+    const double t7 = t3 * t3;
+    const double L = p->L;
+    const double t4 = cosine[0];
+    const double t8 = L * t4;
+    const double t5 = sine[1];
+    const double t9 = t5 * t8;
+    const double t10 = t9 * t9;
+    const double t11 = t7 + t10;
+    const double t6 = cosine[1];
+    const double t12 = t6 * t8;
+    const double t13 = t12 * t12;
+    const double t14 = t11 + t13;
+    const double t15 = t8 * t8;
+    const double t16 = 1.0 + t15;
+    const double t17 = t16 * 1.262177448353619e-29;
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const double Theta_1 = p->Theta_1;
+    const double t18 = Theta_1 * t7;
+    const double t19 = L * L;
+    const double t20 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t21 = m_1 * t20;
+    const double m_2 = p->m_2;
+    const double t22 = m_2 + t21;
+    const double t23 = t19 * t22;
+    const double t24 = t18 + t23;
+    const double Theta_2 = p->Theta_2;
+    const double t25 = Theta_2 * t24;
+    const double t26 = fabs(t25);
+    const double t27 = fabs(Theta_1);
+    const double t28 = fabs(m_2);
+    const double t29 = fabs(L);
+    const double t30 = t29 * t29;
+    const double t31 = t28 * t30;
+    const double t32 = t27 + t31;
+    const double t33 = fabs(Theta_2);
+    const double t34 = t32 * t33;
+    const double t35 = t7 * t34;
+    const double t36 = fabs(m_1);
+    const double t37 = t36 + t28;
+    const double t38 = t37 * t33;
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t26 > t42))) {
+        return FRONT_CAR_MASS_RANK;
+    }
+    const double t43 = 1.0 / t25;
+    const double t44 = L * Theta_2;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t44 * t50;
+    const double t52 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t53 = theta_dot * t52;
+    const double t54 = theta_dot * t6;
+    const double t55 = t53 * t54;
+    const double t56 = t6 * t4;
+    const double t57 = t5 * t3;
+    const double t58 = t56 - t57;
+    const double K_f = u[0];
+    const double t59 = K_f * t58;
+    const double t60 = t55 + t59;
+    const double t61 = m_1 + m_2;
+    const double t62 = theta_dot * t5;
+    const double y_dot = qd[1];
+    const double t63 = y_dot * t62;
+    const double x_dot = qd[0];
+    const double t64 = x_dot * t54;
+    const double t65 = t63 + t64;
+    const double t66 = t8 * t65;
+    const double t67 = t66 * t51;
+    const double t68 = L * t52;
+    const double t69 = Theta_1 + t68;
+    const double t70 = t3 * t69;
+    const double t71 = Theta_2 * t70;
+    const double phi_dot = qd[3];
+    const double t72 = phi_dot * t3;
+    const double t73 = L * t72;
+    const double t74 = theta_dot * t73;
+    const double t75 = theta_dot + phi_dot;
+    const double t76 = x_dot * t58;
+    const double t77 = y_dot * t48;
+    const double t78 = t76 + t77;
+    const double t79 = t75 * t78;
+    const double t80 = t74 + t79;
+    const double t81 = t6 * t80;
+    const double t82 = t65 * t58;
+    const double t83 = t81 - t82;
+    const double t84 = t71 * t83;
+    const double t85 = t67 + t84;
+    const double t86 = t43 * t85;
+    const double t87 = t61 * t86;
+    const double t88 = t5 * t52;
+    const double t89 = m_1 * t56;
+    const double t90 = m_2 * t58;
+    const double t91 = t89 + t90;
+    const double t92 = t44 * t91;
+    const double t93 = t82 - t81;
+    const double t94 = t92 * t93;
+    const double t95 = t5 * t80;
+    const double t96 = t65 * t48;
+    const double t97 = t95 - t96;
+    const double t98 = t51 * t97;
+    const double t99 = t94 - t98;
+    const double t100 = t43 * t99;
+    const double t101 = t88 * t100;
+    const double t102 = t87 - t101;
+    const double t103 = t60 + t102;
+    const double t104 = t51 * t103;
+    const double t105 = t53 * t62;
+    const double t106 = K_f * t48;
+    const double t107 = t105 + t106;
+    const double t108 = t71 * t97;
+    const double t109 = t66 * t92;
+    const double t110 = t108 - t109;
+    const double t111 = t43 * t110;
+    const double t112 = t61 * t111;
+    const double t113 = t6 * t52;
+    const double t114 = t113 * t100;
+    const double t115 = t112 + t114;
+    const double t116 = t107 + t115;
+    const double t117 = t92 * t116;
+    const double t118 = t104 - t117;
+    const double t119 = t8 * t118;
+    const double t120 = t71 * t103;
+    const double t121 = L * t3;
+    const double t122 = K_f * t121;
+    const double t123 = t69 * t100;
+    const double t124 = t52 * t65;
+    const double t125 = t123 - t124;
+    const double t126 = t122 + t125;
+    const double t127 = t92 * t126;
+    const double t128 = t120 - t127;
+    const double t129 = t58 * t128;
+    const double t130 = t119 - t129;
+    const double t131 = t71 * t116;
+    const double t132 = t51 * t126;
+    const double t133 = t131 - t132;
+    const double t134 = t48 * t133;
+    const double t135 = t130 - t134;
+    const double t136 = t43 * t135;
+    const double t137 = t6 * t128;
+    const double t138 = t5 * t133;
+    const double t139 = t137 + t138;
+    const double t140 = t43 * t139;
+    double rest = (t136 - t136) * t140;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
+        return FRONT_CAR_NOT_FINITE;
+    }
+    lambda_B[0] = t136;
+    lambda_B[1] = t140;
     return FRONT_CAR_OK;
 }
 
 front_car_status front_car_energy(const double q[4], const double qd[4], const front_car_params *p, double T_U[2]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -2712,7 +2649,7 @@ front_car_status front_car_energy(const double q[4], const double qd[4], const f
     const double t24 = theta_dot * t23;
     const double t25 = t13 + t24;
     double rest = t25 - t25;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     T_U[0] = t25;
@@ -2725,10 +2662,10 @@ front_car_status front_car_singularity(const double q[4], const front_car_params
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2786,9 +2723,8 @@ front_car_status front_car_singularity(const double q[4], const front_car_params
     const double t50 = t34 * t34;
     const double t51 = 1.0 + t50;
     const double t52 = ((t51 != 0.0) ? t49 : 0.0) / ((t51 != 0.0) ? t51 : 1.0);
-    double rest = t33 - t33;
-    rest += t52 - t52;
-    if (isnan(rest) != 0) {
+    double rest = (t33 - t33) * t52;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     measure[0] = t33;

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define FRONT_CAR_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define FRONT_CAR_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define FRONT_CAR_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define FRONT_CAR_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -124,7 +133,7 @@ front_car_params_f front_car_default_params_f(void) {
 front_car_status front_car_mass_matrix_f(const float q[4], const front_car_params_f *p, float G[16]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -142,12 +151,9 @@ front_car_status front_car_mass_matrix_f(const float q[4], const front_car_param
     const float Theta_1 = p->Theta_1;
     const float t10 = Theta_1 + t9;
     const float Theta_2 = p->Theta_2;
-    float rest = t4 - t4;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    rest += t10 - t10;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t4 - t4) * t7 * t8;
+    rest += (t10 - t10) * Theta_2;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     G[0] = t4;
@@ -172,7 +178,7 @@ front_car_status front_car_mass_matrix_f(const float q[4], const front_car_param
 front_car_status front_car_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C[16]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -187,9 +193,8 @@ front_car_status front_car_coriolis_matrix_f(const float q[4], const float qd[4]
     const float t7 = -t6;
     const float t8 = t2 * t5;
     const float t9 = -t8;
-    float rest = t7 - t7;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    float rest = (t7 - t7) * t9;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     C[0] = 0.0f;
@@ -214,7 +219,7 @@ front_car_status front_car_coriolis_matrix_f(const float q[4], const float qd[4]
 front_car_status front_car_coriolis_force_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_qd[4]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -231,9 +236,8 @@ front_car_status front_car_coriolis_force_f(const float q[4], const float qd[4],
     const float t9 = theta_dot * t2;
     const float t10 = t5 * t9;
     const float t11 = -t10;
-    float rest = t8 - t8;
-    rest += t11 - t11;
-    if (isnan(rest) != 0) {
+    float rest = (t8 - t8) * t11;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -269,10 +273,10 @@ front_car_status front_car_constraint_jacobian_f(const float q[4], const front_c
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -294,12 +298,9 @@ front_car_status front_car_constraint_jacobian_f(const float q[4], const front_c
     const float L = p->L;
     const float t15 = L * t6;
     const float t16 = -t15;
-    float rest = t3 - t3;
-    rest += t7 - t7;
-    rest += t10 - t10;
-    rest += t14 - t14;
-    rest += t16 - t16;
-    if (isnan(rest) != 0) {
+    float rest = (t3 - t3) * t7 * t10;
+    rest += (t14 - t14) * t16;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     B[0] = t3;
@@ -318,10 +319,10 @@ front_car_status front_car_constraint_jacobian_dot_f(const float q[4], const flo
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -348,12 +349,9 @@ front_car_status front_car_constraint_jacobian_dot_f(const float q[4], const flo
     const float t18 = phi_dot * t5;
     const float L = p->L;
     const float t19 = L * t18;
-    float rest = t7 - t7;
-    rest += t8 - t8;
-    rest += t13 - t13;
-    rest += t17 - t17;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    float rest = (t7 - t7) * t8 * t13;
+    rest += (t17 - t17) * t19;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -372,10 +370,10 @@ front_car_status front_car_constraint_pseudoinverse_f(const float q[4], const fr
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -398,7 +396,7 @@ front_car_status front_car_constraint_pseudoinverse_f(const float q[4], const fr
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = 1.0f / t14;
@@ -424,13 +422,9 @@ front_car_status front_car_constraint_pseudoinverse_f(const float q[4], const fr
     const float t38 = t36 * t37;
     const float t39 = t4 * t36;
     const float t40 = -t39;
-    float rest = t25 - t25;
-    rest += t27 - t27;
-    rest += t34 - t34;
-    rest += t35 - t35;
-    rest += t38 - t38;
-    rest += t40 - t40;
-    if (isnan(rest) != 0) {
+    float rest = (t25 - t25) * t27 * t34;
+    rest += (t35 - t35) * t38 * t40;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -449,10 +443,10 @@ front_car_status front_car_nullspace_projector_f(const float q[4], const front_c
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -475,7 +469,7 @@ front_car_status front_car_nullspace_projector_f(const float q[4], const front_c
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = 1.0f / t14;
@@ -488,13 +482,9 @@ front_car_status front_car_nullspace_projector_f(const float q[4], const front_c
     const float t25 = t5 * t9;
     const float t26 = t18 * t25;
     const float t27 = t7 * t18;
-    float rest = t19 - t19;
-    rest += t21 - t21;
-    rest += t23 - t23;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    rest += t27 - t27;
-    if (isnan(rest) != 0) {
+    float rest = (t19 - t19) * t21 * t23;
+    rest += (t24 - t24) * t26 * t27;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -521,10 +511,10 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -547,7 +537,7 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -619,13 +609,9 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     const float t82 = t3 * t81;
     const float t83 = t20 * t82;
     const float t84 = 2.0f * t83;
-    float rest = t34 - t34;
-    rest += t52 - t52;
-    rest += t63 - t63;
-    rest += t70 - t70;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    float rest = (t34 - t34) * t52 * t63;
+    rest += (t70 - t70) * t80 * t84;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -652,10 +638,10 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -678,7 +664,7 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -706,67 +692,62 @@ front_car_status front_car_weighted_pseudoinverse_f(const float q[4], const fron
     const float t36 = fabsf(m_1);
     const float t37 = t36 + t28;
     const float t38 = t37 * t33;
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * Theta_2;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t45 * t51;
-    const float t53 = t8 * t52;
-    const float t54 = t6 * t4;
-    const float t55 = t5 * t3;
-    const float t56 = t54 - t55;
-    const float t57 = m_2 * t19;
-    const float t58 = Theta_1 + t57;
-    const float t59 = Theta_2 * t58;
-    const float t60 = t3 * t59;
-    const float t61 = t56 * t60;
-    const float t62 = t53 - t61;
-    const float t63 = t44 * t62;
-    const float t64 = t59 / t25;
-    const float t65 = t48 * t64;
-    const float t66 = m_1 * t54;
-    const float t67 = m_2 * t56;
-    const float t68 = t66 + t67;
-    const float t69 = t45 * t68;
-    const float t70 = t8 * t69;
-    const float t71 = t49 * t60;
-    const float t72 = t70 + t71;
-    const float t73 = t44 * t72;
-    const float t74 = -t73;
-    const float t75 = t55 * t64;
-    const float t76 = t45 / t25;
-    const float t77 = t22 * t76;
-    const float t78 = m_1 + m_2;
-    const float t79 = t4 * t78;
-    const float t80 = t79 * t76;
-    const float t81 = -t80;
-    float rest = t63 - t63;
-    rest += t65 - t65;
-    rest += t74 - t74;
-    rest += t75 - t75;
-    rest += t77 - t77;
-    rest += t81 - t81;
-    if (isnan(rest) != 0) {
+    const float t43 = 1.0f / t25;
+    const float t44 = L * Theta_2;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t44 * t50;
+    const float t52 = t8 * t51;
+    const float t53 = t6 * t4;
+    const float t54 = t5 * t3;
+    const float t55 = t53 - t54;
+    const float t56 = m_2 * t19;
+    const float t57 = Theta_1 + t56;
+    const float t58 = Theta_2 * t57;
+    const float t59 = t3 * t58;
+    const float t60 = t55 * t59;
+    const float t61 = t52 - t60;
+    const float t62 = t43 * t61;
+    const float t63 = t58 / t25;
+    const float t64 = t47 * t63;
+    const float t65 = m_1 * t53;
+    const float t66 = m_2 * t55;
+    const float t67 = t65 + t66;
+    const float t68 = t44 * t67;
+    const float t69 = t8 * t68;
+    const float t70 = t48 * t59;
+    const float t71 = t69 + t70;
+    const float t72 = t43 * t71;
+    const float t73 = -t72;
+    const float t74 = t54 * t63;
+    const float t75 = t44 / t25;
+    const float t76 = t22 * t75;
+    const float t77 = m_1 + m_2;
+    const float t78 = t4 * t77;
+    const float t79 = t78 * t75;
+    const float t80 = -t79;
+    float rest = (t62 - t62) * t64 * t73;
+    rest += (t74 - t74) * t76 * t80;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    B_G_pinv[0] = t63;
-    B_G_pinv[1] = t65;
-    B_G_pinv[2] = t74;
-    B_G_pinv[3] = t75;
-    B_G_pinv[4] = t77;
-    B_G_pinv[5] = t81;
+    B_G_pinv[0] = t62;
+    B_G_pinv[1] = t64;
+    B_G_pinv[2] = t73;
+    B_G_pinv[3] = t74;
+    B_G_pinv[4] = t76;
+    B_G_pinv[5] = t80;
     B_G_pinv[6] = 0.0f;
     B_G_pinv[7] = 0.0f;
     return FRONT_CAR_OK;
@@ -777,10 +758,10 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -803,7 +784,7 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -831,76 +812,69 @@ front_car_status front_car_weighted_nullspace_projector_f(const float q[4], cons
     const float t36 = fabsf(m_1);
     const float t37 = t36 + t28;
     const float t38 = t37 * t33;
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_MASS_RANK;
     }
-    const float t44 = t4 * t6;
-    const float t45 = m_1 * t44;
-    const float t46 = t3 * t5;
-    const float t47 = t44 - t46;
-    const float t48 = m_2 * t47;
-    const float t49 = t45 + t48;
-    const float t50 = t44 * t49;
-    const float t51 = Theta_2 * t19;
-    const float t52 = t51 / t25;
-    const float t53 = t50 * t52;
-    const float t54 = t3 * t6;
-    const float t55 = m_1 * t54;
-    const float t56 = t4 * t5;
-    const float t57 = t54 + t56;
-    const float t58 = m_2 * t57;
-    const float t59 = t55 + t58;
-    const float t60 = t44 * t59;
-    const float t61 = t52 * t60;
-    const float t62 = t5 * t44;
-    const float t63 = m_2 * t19;
-    const float t64 = Theta_1 + t63;
-    const float t65 = L * Theta_2;
-    const float t66 = t64 * t65;
-    const float t67 = t66 / t25;
-    const float t68 = t62 * t67;
-    const float t69 = t54 * t49;
-    const float t70 = t52 * t69;
-    const float t71 = t54 * t59;
-    const float t72 = t71 * t52;
-    const float t73 = t5 * t54;
-    const float t74 = t73 * t67;
-    const float t75 = t65 / t25;
-    const float t76 = t5 * t49;
-    const float t77 = t75 * t76;
-    const float t78 = t5 * t59;
-    const float t79 = t75 * t78;
-    const float t80 = Theta_2 * t64;
-    const float t81 = t80 / t25;
-    const float t82 = t7 * t81;
-    float rest = t53 - t53;
-    rest += t61 - t61;
-    rest += t68 - t68;
-    rest += t70 - t70;
-    rest += t72 - t72;
-    rest += t74 - t74;
-    rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t82 - t82;
-    if (isnan(rest) != 0) {
+    const float t43 = t4 * t6;
+    const float t44 = m_1 * t43;
+    const float t45 = t3 * t5;
+    const float t46 = t43 - t45;
+    const float t47 = m_2 * t46;
+    const float t48 = t44 + t47;
+    const float t49 = t43 * t48;
+    const float t50 = Theta_2 * t19;
+    const float t51 = t50 / t25;
+    const float t52 = t49 * t51;
+    const float t53 = t3 * t6;
+    const float t54 = m_1 * t53;
+    const float t55 = t4 * t5;
+    const float t56 = t53 + t55;
+    const float t57 = m_2 * t56;
+    const float t58 = t54 + t57;
+    const float t59 = t43 * t58;
+    const float t60 = t51 * t59;
+    const float t61 = t5 * t43;
+    const float t62 = m_2 * t19;
+    const float t63 = Theta_1 + t62;
+    const float t64 = L * Theta_2;
+    const float t65 = t63 * t64;
+    const float t66 = t65 / t25;
+    const float t67 = t61 * t66;
+    const float t68 = t53 * t48;
+    const float t69 = t51 * t68;
+    const float t70 = t53 * t58;
+    const float t71 = t70 * t51;
+    const float t72 = t5 * t53;
+    const float t73 = t72 * t66;
+    const float t74 = t64 / t25;
+    const float t75 = t5 * t48;
+    const float t76 = t74 * t75;
+    const float t77 = t5 * t58;
+    const float t78 = t74 * t77;
+    const float t79 = Theta_2 * t63;
+    const float t80 = t79 / t25;
+    const float t81 = t7 * t80;
+    float rest = (t52 - t52) * t60 * t67;
+    rest += (t69 - t69) * t71 * t73;
+    rest += (t76 - t76) * t78 * t81;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    N_BG[0] = t53;
-    N_BG[1] = t61;
-    N_BG[2] = t68;
+    N_BG[0] = t52;
+    N_BG[1] = t60;
+    N_BG[2] = t67;
     N_BG[3] = 0.0f;
-    N_BG[4] = t70;
-    N_BG[5] = t72;
-    N_BG[6] = t74;
+    N_BG[4] = t69;
+    N_BG[5] = t71;
+    N_BG[6] = t73;
     N_BG[7] = 0.0f;
-    N_BG[8] = t77;
-    N_BG[9] = t79;
-    N_BG[10] = t82;
+    N_BG[8] = t76;
+    N_BG[9] = t78;
+    N_BG[10] = t81;
     N_BG[11] = 0.0f;
     N_BG[12] = 0.0f;
     N_BG[13] = 0.0f;
@@ -915,10 +889,10 @@ front_car_status front_car_control_matrix_f(const float q[4], const front_car_pa
     const float t1 = theta + phi;
     const float t2 = fabsf(t1);
     const float t3 = fabsf(phi);
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t3)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t3))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {t1, phi, phi, phi};
@@ -930,10 +904,8 @@ front_car_status front_car_control_matrix_f(const float q[4], const front_car_pa
     const float t8 = L * t6;
     const float t5 = cosine[0];
     const float t4 = sine[0];
-    float rest = t5 - t5;
-    rest += t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    float rest = (t5 - t5) * t4 * t8;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     M[0] = t5;
@@ -952,10 +924,10 @@ front_car_status front_car_projected_control_matrix_f(const float q[4], const fr
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -978,7 +950,7 @@ front_car_status front_car_projected_control_matrix_f(const float q[4], const fr
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -990,10 +962,8 @@ front_car_status front_car_projected_control_matrix_f(const float q[4], const fr
     const float t24 = t23 / t14;
     const float t25 = L * t3;
     const float t26 = t25 / t14;
-    float rest = t21 - t21;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    if (isnan(rest) != 0) {
+    float rest = (t21 - t21) * t24 * t26;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_tilde[0] = t21;
@@ -1012,10 +982,10 @@ front_car_status front_car_projected_control_pseudoinverse_f(const float q[4], c
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1028,7 +998,7 @@ front_car_status front_car_projected_control_pseudoinverse_f(const float q[4], c
     const float t6 = cosine[1];
     const float t3 = sine[0];
     const float t4 = cosine[0];
-    if (!(t7 > 0.0f)) {
+    if (FRONT_CAR_RARELY_F(!(t7 > 0.0f))) {
         const float t8 = t5 * t5;
         const float t9 = L * t6;
         const float t10 = t3 * t9;
@@ -1048,10 +1018,8 @@ front_car_status front_car_projected_control_pseudoinverse_f(const float q[4], c
     const float t19 = t4 * t6;
     const float t20 = t3 * t6;
     const float t21 = t5 / L;
-    float rest = t19 - t19;
-    rest += t20 - t20;
-    rest += t21 - t21;
-    if (isnan(rest) != 0) {
+    float rest = (t19 - t19) * t20 * t21;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_tilde_pinv[0] = t19;
@@ -1070,10 +1038,10 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1091,7 +1059,7 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
     const float t12 = t11 * 3.637979e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_RARELY_F(!(t9 > t12))) {
         const float t13 = t5 * t5;
         const float t14 = t3 * t7;
         const float t15 = t14 * t14;
@@ -1104,9 +1072,8 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
     }
     const float t18 = t3 / t4;
     const float t19 = t5 / t8;
-    float rest = t18 - t18;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    float rest = (t18 - t18) * t19;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0f;
@@ -1125,10 +1092,10 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1151,7 +1118,7 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -1203,14 +1170,10 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t61 = t52 + t60;
     const float t62 = t61 / t19;
     const float Theta_2 = p->Theta_2;
-    float rest = t31 - t31;
-    rest += t36 - t36;
-    rest += t41 - t41;
-    rest += t46 - t46;
-    rest += t50 - t50;
-    rest += t62 - t62;
+    float rest = (t31 - t31) * t36 * t41;
+    rest += (t46 - t46) * t50 * t62;
     rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     G_tilde[0] = t31;
@@ -1237,10 +1200,10 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1263,7 +1226,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -1534,16 +1497,10 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t276 = t275 * t141;
     const float t277 = t4 * t276;
     const float t278 = t22 * t277;
-    float rest = t86 - t86;
-    rest += t132 - t132;
-    rest += t145 - t145;
-    rest += t180 - t180;
-    rest += t182 - t182;
-    rest += t185 - t185;
-    rest += t232 - t232;
-    rest += t273 - t273;
-    rest += t278 - t278;
-    if (isnan(rest) != 0) {
+    float rest = (t86 - t86) * t132 * t145;
+    rest += (t180 - t180) * t182 * t185;
+    rest += (t232 - t232) * t273 * t278;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     C_tilde[0] = t86;
@@ -1591,10 +1548,10 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1612,7 +1569,7 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
     const float t12 = t11 * 3.637979e-12f;
     const float t3 = sine[0];
     const float t5 = sine[1];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_RARELY_F(!(t9 > t12))) {
         const float t13 = t3 * t3;
         const float t14 = t5 * t7;
         const float t15 = t14 * t14;
@@ -1636,9 +1593,8 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
     const float t25 = t22 + t24;
     const float t26 = t25 / t9;
     const float Theta_2 = p->Theta_2;
-    float rest = t26 - t26;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t26 - t26) * Theta_2;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     G_bar[0] = t26;
@@ -1653,10 +1609,10 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1679,10 +1635,10 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    if (!(t13 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t13 > t17))) {
         if (!(t14 > t17)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
@@ -1733,7 +1689,7 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     const float t55 = t14 * t54;
     const float t56 = t48 / t55;
     float rest = t56 - t56;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     C_bar[0] = t56;
@@ -1765,10 +1721,10 @@ front_car_status front_car_minimal_control_matrix_f(const float q[4], const fron
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1786,7 +1742,7 @@ front_car_status front_car_minimal_control_matrix_f(const float q[4], const fron
     const float t12 = t11 * 3.637979e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_RARELY_F(!(t9 > t12))) {
         const float t13 = t5 * t5;
         const float t14 = t3 * t7;
         const float t15 = t14 * t14;
@@ -1800,7 +1756,7 @@ front_car_status front_car_minimal_control_matrix_f(const float q[4], const fron
     const float t18 = t4 * t6;
     const float t19 = 1.0f / t18;
     float rest = t19 - t19;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     M_bar[0] = t19;
@@ -1815,10 +1771,10 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1841,7 +1797,7 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L / t14;
@@ -1864,11 +1820,9 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
     const float t32 = t3 * t25;
     const float t33 = t32 / t14;
     const float phi_dot = qd[3];
-    float rest = t28 - t28;
-    rest += t31 - t31;
-    rest += t33 - t33;
+    float rest = (t28 - t28) * t31 * t33;
     rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     qd_admissible[0] = t28;
@@ -1883,10 +1837,10 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1909,7 +1863,7 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float y_ddot = qdd[1];
@@ -2003,11 +1957,9 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t99 = t95 + t98;
     const float t100 = t99 / t56;
     const float phi_ddot = qdd[3];
-    float rest = t59 - t59;
-    rest += t88 - t88;
-    rest += t100 - t100;
+    float rest = (t59 - t59) * t88 * t100;
     rest += phi_ddot - phi_ddot;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
@@ -2023,11 +1975,9 @@ front_car_status front_car_projected_configuration_f(const float q[4], const fro
     const float y = q[1];
     const float theta = q[2];
     const float phi = q[3];
-    float rest = x - x;
-    rest += y - y;
-    rest += theta - theta;
+    float rest = (x - x) * y * theta;
     rest += phi - phi;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2042,10 +1992,10 @@ front_car_status front_car_inverse_dynamics_f(const float q[4], const float qd[4
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2088,9 +2038,8 @@ front_car_status front_car_inverse_dynamics_f(const float q[4], const float qd[4
     const float phi_ddot = qdd[3];
     const float Theta_2 = p->Theta_2;
     const float t28 = phi_ddot * Theta_2;
-    float rest = t27 - t27;
-    rest += t28 - t28;
-    if (isnan(rest) != 0) {
+    float rest = (t27 - t27) * t28;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     u[0] = t27;
@@ -2116,10 +2065,10 @@ front_car_status front_car_actuator_velocity_f(const float q[4], const float qd[
     const float t1 = theta + phi;
     const float t2 = fabsf(t1);
     const float t3 = fabsf(phi);
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t3)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t3))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {t1, phi, phi, phi};
@@ -2140,9 +2089,8 @@ front_car_status front_car_actuator_velocity_f(const float q[4], const float qd[
     const float t12 = theta_dot * t11;
     const float t13 = t10 + t12;
     const float phi_dot = qd[3];
-    float rest = t13 - t13;
-    rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    float rest = (t13 - t13) * phi_dot;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     nu[0] = t13;
@@ -2153,7 +2101,7 @@ front_car_status front_car_actuator_velocity_f(const float q[4], const float qd[
 front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_car_params_f *p, float G_nu[4]) {
     const float phi = q[3];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -2162,7 +2110,7 @@ front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_
     const float L = p->L;
     const float t4 = fabsf(L);
     const float theta = q[2];
-    if (!(t4 > 0.0f)) {
+    if (FRONT_CAR_RARELY_F(!(t4 > 0.0f))) {
         const float t5 = t2 * t2;
         float t6;
         float t7;
@@ -2199,9 +2147,8 @@ front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_
     const float t26 = t20 + t25;
     const float t27 = t26 / t21;
     const float Theta_2 = p->Theta_2;
-    float rest = t27 - t27;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t27 - t27) * Theta_2;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     G_nu[0] = t27;
@@ -2216,10 +2163,10 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2242,11 +2189,11 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = fabsf(L);
-    if (!(t18 > 0.0f)) {
+    if (FRONT_CAR_RARELY_F(!(t18 > 0.0f))) {
         if (!(t14 > t17)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
@@ -2288,7 +2235,7 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
     const float t45 = t20 * t44;
     const float t46 = t45 / t21;
     float rest = t46 - t46;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     bias_nu[0] = t46;
@@ -2297,200 +2244,14 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
 }
 
 front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float qdd[4]) {
-    const float theta = q[2];
-    const float t1 = fabsf(theta);
-    const float phi = q[3];
-    const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    if (!(100.0f >= t2)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    const float angle[4] = {theta, phi, phi, phi};
-    float sine[4];
-    float cosine[4];
-    front_car_sincos_group_f(2, angle, sine, cosine);
-    const float t5 = sine[1];
-    const float t7 = t5 * t5;
-    const float L = p->L;
-    const float t6 = cosine[1];
-    const float t8 = L * t6;
-    const float t3 = sine[0];
-    const float t9 = t3 * t8;
-    const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
-    const float t4 = cosine[0];
-    const float t12 = t4 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_CONSTRAINT_RANK;
-    }
-    const float Theta_1 = p->Theta_1;
-    const float t18 = Theta_1 * t7;
-    const float t19 = L * L;
-    const float t20 = t6 * t6;
-    const float m_1 = p->m_1;
-    const float t21 = m_1 * t20;
-    const float m_2 = p->m_2;
-    const float t22 = m_2 + t21;
-    const float t23 = t19 * t22;
-    const float t24 = t18 + t23;
-    const float Theta_2 = p->Theta_2;
-    const float t25 = Theta_2 * t24;
-    const float t26 = fabsf(t25);
-    const float t27 = fabsf(Theta_1);
-    const float t28 = fabsf(m_2);
-    const float t29 = fabsf(L);
-    const float t30 = t29 * t29;
-    const float t31 = t28 * t30;
-    const float t32 = t27 + t31;
-    const float t33 = fabsf(Theta_2);
-    const float t34 = t32 * t33;
-    const float t35 = t7 * t34;
-    const float t36 = fabsf(m_1);
-    const float t37 = t36 + t28;
-    const float t38 = t37 * t33;
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
-        return FRONT_CAR_MASS_RANK;
-    }
-    const float t44 = L * t5;
-    const float K_f = u[0];
-    const float t45 = K_f * t44;
-    const float t46 = t5 * t45;
-    const float t47 = L * m_2;
-    const float theta_dot = qd[2];
-    const float t48 = theta_dot * t47;
-    const float t49 = theta_dot * t4;
-    const float t50 = t48 * t49;
-    const float t51 = t4 * t6;
-    const float t52 = t3 * t5;
-    const float t53 = t51 - t52;
-    const float t54 = K_f * t53;
-    const float t55 = t50 + t54;
-    const float t56 = t12 * t55;
-    const float t57 = theta_dot * t3;
-    const float t58 = t48 * t57;
-    const float t59 = t3 * t6;
-    const float t60 = t4 * t5;
-    const float t61 = t59 + t60;
-    const float t62 = K_f * t61;
-    const float t63 = t58 + t62;
-    const float t64 = t9 * t63;
-    const float t65 = t56 + t64;
-    const float t66 = t46 + t65;
-    const float t67 = Theta_2 * t66;
-    const float t68 = t12 * t67;
-    const float t69 = 1.0f / t25;
-    const float t70 = t68 * t69;
-    const float y_dot = qd[1];
-    const float t71 = y_dot * t57;
-    const float x_dot = qd[0];
-    const float t72 = x_dot * t49;
-    const float t73 = t71 + t72;
-    const float t74 = t8 * t73;
-    const float t75 = L * Theta_2;
-    const float t76 = m_1 * t59;
-    const float t77 = m_2 * t61;
-    const float t78 = t76 + t77;
-    const float t79 = t75 * t78;
-    const float t80 = t74 * t79;
-    const float phi_dot = qd[3];
-    const float t81 = phi_dot * t5;
-    const float t82 = L * t81;
-    const float t83 = theta_dot * t82;
-    const float t84 = theta_dot + phi_dot;
-    const float t85 = t84 * t53;
-    const float t86 = x_dot * t85;
-    const float t87 = t84 * t61;
-    const float t88 = y_dot * t87;
-    const float t89 = t86 + t88;
-    const float t90 = t83 + t89;
-    const float t91 = t4 * t90;
-    const float t92 = t73 * t53;
-    const float t93 = t91 - t92;
-    const float t94 = L * t47;
-    const float t95 = Theta_1 + t94;
-    const float t96 = t5 * t95;
-    const float t97 = Theta_2 * t96;
-    const float t98 = t93 * t97;
-    const float t99 = t80 + t98;
-    const float t100 = t69 * t99;
-    const float t101 = t70 - t100;
-    const float t102 = t9 * t67;
-    const float t103 = t102 * t69;
-    const float t104 = t3 * t90;
-    const float t105 = t73 * t61;
-    const float t106 = t104 - t105;
-    const float t107 = t106 * t97;
-    const float t108 = m_1 * t51;
-    const float t109 = m_2 * t53;
-    const float t110 = t108 + t109;
-    const float t111 = t75 * t110;
-    const float t112 = t74 * t111;
-    const float t113 = t107 - t112;
-    const float t114 = t69 * t113;
-    const float t115 = t103 - t114;
-    const float t116 = t5 * t67;
-    const float t117 = t116 * t69;
-    const float t118 = t92 - t91;
-    const float t119 = t111 * t118;
-    const float t120 = t79 * t106;
-    const float t121 = t119 - t120;
-    const float t122 = t121 * t69;
-    const float t123 = t117 - t122;
-    const float t124 = m_1 + m_2;
-    const float T = u[1];
-    const float t125 = T * t12;
-    const float t126 = t124 * t125;
-    const float t127 = t3 * t47;
-    const float t128 = T * t5;
-    const float t129 = t127 * t128;
-    const float t130 = t126 - t129;
-    const float t131 = t12 * t130;
-    const float t132 = T * t9;
-    const float t133 = t124 * t132;
-    const float t134 = t4 * t47;
-    const float t135 = t134 * t128;
-    const float t136 = t133 + t135;
-    const float t137 = t9 * t136;
-    const float t138 = t131 + t137;
-    const float t139 = t128 * t95;
-    const float t140 = t5 * t139;
-    const float t141 = t138 + t140;
-    const float t142 = t69 * t141;
-    float rest = t101 - t101;
-    rest += t115 - t115;
-    rest += t123 - t123;
-    rest += t142 - t142;
-    if (isnan(rest) != 0) {
-        return FRONT_CAR_NOT_FINITE;
-    }
-    qdd[0] = t101;
-    qdd[1] = t115;
-    qdd[2] = t123;
-    qdd[3] = t142;
-    return FRONT_CAR_OK;
-}
-
-front_car_status front_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]) {
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2513,7 +2274,7 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -2541,132 +2302,308 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t36 = fabsf(m_1);
     const float t37 = t36 + t28;
     const float t38 = t37 * t33;
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * Theta_2;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t45 * t51;
-    const float t53 = L * m_2;
-    const float theta_dot = qd[2];
-    const float t54 = theta_dot * t53;
-    const float t55 = theta_dot * t6;
-    const float t56 = t54 * t55;
-    const float t57 = t6 * t4;
-    const float t58 = t5 * t3;
-    const float t59 = t57 - t58;
+    const float t43 = 1.0f / t25;
+    const float t44 = L * t3;
     const float K_f = u[0];
-    const float t60 = K_f * t59;
-    const float t61 = t56 + t60;
-    const float t62 = m_1 + m_2;
-    const float t63 = theta_dot * t5;
+    const float t45 = K_f * t44;
+    const float t46 = t3 * t45;
+    const float t47 = L * m_2;
+    const float theta_dot = qd[2];
+    const float t48 = theta_dot * t47;
+    const float t49 = theta_dot * t6;
+    const float t50 = t48 * t49;
+    const float t51 = t6 * t4;
+    const float t52 = t5 * t3;
+    const float t53 = t51 - t52;
+    const float t54 = K_f * t53;
+    const float t55 = t50 + t54;
+    const float t56 = t12 * t55;
+    const float t57 = theta_dot * t5;
+    const float t58 = t48 * t57;
+    const float t59 = t5 * t4;
+    const float t60 = t6 * t3;
+    const float t61 = t59 + t60;
+    const float t62 = K_f * t61;
+    const float t63 = t58 + t62;
+    const float t64 = t9 * t63;
+    const float t65 = t56 + t64;
+    const float t66 = t46 + t65;
+    const float t67 = Theta_2 * t66;
+    const float t68 = t12 * t67;
     const float y_dot = qd[1];
-    const float t64 = y_dot * t63;
+    const float t69 = y_dot * t57;
     const float x_dot = qd[0];
-    const float t65 = x_dot * t55;
-    const float t66 = t64 + t65;
-    const float t67 = t8 * t66;
-    const float t68 = t67 * t52;
+    const float t70 = x_dot * t49;
+    const float t71 = t69 + t70;
+    const float t72 = t8 * t71;
+    const float t73 = L * Theta_2;
+    const float t74 = m_1 * t59;
+    const float t75 = m_2 * t61;
+    const float t76 = t74 + t75;
+    const float t77 = t73 * t76;
+    const float t78 = t72 * t77;
+    const float t79 = L * t47;
+    const float t80 = Theta_1 + t79;
+    const float t81 = t3 * t80;
+    const float t82 = Theta_2 * t81;
     const float phi_dot = qd[3];
-    const float t69 = phi_dot * t3;
-    const float t70 = L * t69;
-    const float t71 = theta_dot * t70;
-    const float t72 = theta_dot + phi_dot;
-    const float t73 = t72 * t59;
-    const float t74 = x_dot * t73;
-    const float t75 = t72 * t49;
-    const float t76 = y_dot * t75;
-    const float t77 = t74 + t76;
-    const float t78 = t71 + t77;
-    const float t79 = t6 * t78;
-    const float t80 = t66 * t59;
-    const float t81 = t79 - t80;
-    const float t82 = L * t53;
-    const float t83 = Theta_1 + t82;
-    const float t84 = t3 * t83;
-    const float t85 = Theta_2 * t84;
-    const float t86 = t81 * t85;
-    const float t87 = t68 + t86;
-    const float t88 = t44 * t87;
-    const float t89 = t62 * t88;
-    const float t90 = t5 * t53;
-    const float t91 = m_1 * t57;
-    const float t92 = m_2 * t59;
-    const float t93 = t91 + t92;
-    const float t94 = t45 * t93;
-    const float t95 = t80 - t79;
-    const float t96 = t94 * t95;
-    const float t97 = t5 * t78;
-    const float t98 = t66 * t49;
-    const float t99 = t97 - t98;
-    const float t100 = t52 * t99;
-    const float t101 = t96 - t100;
-    const float t102 = t101 * t44;
-    const float t103 = t90 * t102;
-    const float t104 = t89 - t103;
-    const float t105 = t61 + t104;
-    const float t106 = t52 * t105;
-    const float t107 = t54 * t63;
-    const float t108 = K_f * t49;
-    const float t109 = t107 + t108;
-    const float t110 = t99 * t85;
-    const float t111 = t67 * t94;
-    const float t112 = t110 - t111;
-    const float t113 = t44 * t112;
-    const float t114 = t62 * t113;
-    const float t115 = t6 * t53;
-    const float t116 = t115 * t102;
-    const float t117 = t114 + t116;
-    const float t118 = t109 + t117;
-    const float t119 = t94 * t118;
-    const float t120 = t106 - t119;
-    const float t121 = t8 * t120;
-    const float t122 = t85 * t105;
-    const float t123 = L * t3;
-    const float t124 = K_f * t123;
-    const float t125 = t83 * t102;
-    const float t126 = t53 * t66;
-    const float t127 = t125 - t126;
-    const float t128 = t124 + t127;
-    const float t129 = t94 * t128;
-    const float t130 = t122 - t129;
-    const float t131 = t59 * t130;
-    const float t132 = t121 - t131;
-    const float t133 = t85 * t118;
-    const float t134 = t52 * t128;
-    const float t135 = t133 - t134;
-    const float t136 = t49 * t135;
-    const float t137 = t132 - t136;
-    const float t138 = t44 * t137;
-    const float t139 = t6 * t130;
-    const float t140 = t5 * t135;
-    const float t141 = t139 + t140;
-    const float t142 = t44 * t141;
-    float rest = t138 - t138;
-    rest += t142 - t142;
-    if (isnan(rest) != 0) {
+    const float t83 = phi_dot * t3;
+    const float t84 = L * t83;
+    const float t85 = theta_dot * t84;
+    const float t86 = theta_dot + phi_dot;
+    const float t87 = x_dot * t53;
+    const float t88 = y_dot * t61;
+    const float t89 = t87 + t88;
+    const float t90 = t86 * t89;
+    const float t91 = t85 + t90;
+    const float t92 = t6 * t91;
+    const float t93 = t71 * t53;
+    const float t94 = t92 - t93;
+    const float t95 = t82 * t94;
+    const float t96 = t78 + t95;
+    const float t97 = t68 - t96;
+    const float t98 = t43 * t97;
+    const float t99 = t9 * t67;
+    const float t100 = t5 * t91;
+    const float t101 = t71 * t61;
+    const float t102 = t100 - t101;
+    const float t103 = t82 * t102;
+    const float t104 = m_1 * t51;
+    const float t105 = m_2 * t53;
+    const float t106 = t104 + t105;
+    const float t107 = t73 * t106;
+    const float t108 = t72 * t107;
+    const float t109 = t103 - t108;
+    const float t110 = t99 - t109;
+    const float t111 = t43 * t110;
+    const float t112 = t3 * t67;
+    const float t113 = t93 - t92;
+    const float t114 = t107 * t113;
+    const float t115 = t77 * t102;
+    const float t116 = t114 - t115;
+    const float t117 = t112 - t116;
+    const float t118 = t43 * t117;
+    const float t119 = m_1 + m_2;
+    const float T = u[1];
+    const float t120 = T * t12;
+    const float t121 = t119 * t120;
+    const float t122 = t5 * t47;
+    const float t123 = T * t3;
+    const float t124 = t122 * t123;
+    const float t125 = t121 - t124;
+    const float t126 = t12 * t125;
+    const float t127 = T * t9;
+    const float t128 = t119 * t127;
+    const float t129 = t6 * t47;
+    const float t130 = t129 * t123;
+    const float t131 = t128 + t130;
+    const float t132 = t9 * t131;
+    const float t133 = t126 + t132;
+    const float t134 = t123 * t80;
+    const float t135 = t3 * t134;
+    const float t136 = t133 + t135;
+    const float t137 = t43 * t136;
+    float rest = (t98 - t98) * t111 * t118;
+    rest += t137 - t137;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t138;
-    lambda_B[1] = t142;
+    qdd[0] = t98;
+    qdd[1] = t111;
+    qdd[2] = t118;
+    qdd[3] = t137;
+    return FRONT_CAR_OK;
+}
+
+front_car_status front_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]) {
+    const float phi = q[3];
+    const float t1 = fabsf(phi);
+    const float theta = q[2];
+    const float t2 = fabsf(theta);
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    const float angle[4] = {phi, theta, theta, theta};
+    float sine[4];
+    float cosine[4];
+    front_car_sincos_group_f(2, angle, sine, cosine);
+    const float t3 = sine[0];
+    const float t7 = t3 * t3;
+    const float L = p->L;
+    const float t4 = cosine[0];
+    const float t8 = L * t4;
+    const float t5 = sine[1];
+    const float t9 = t5 * t8;
+    const float t10 = t9 * t9;
+    const float t11 = t7 + t10;
+    const float t6 = cosine[1];
+    const float t12 = t6 * t8;
+    const float t13 = t12 * t12;
+    const float t14 = t11 + t13;
+    const float t15 = t8 * t8;
+    const float t16 = 1.0f + t15;
+    const float t17 = t16 * 3.637979e-12f;
+    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const float Theta_1 = p->Theta_1;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
+    const float Theta_2 = p->Theta_2;
+    const float t25 = Theta_2 * t24;
+    const float t26 = fabsf(t25);
+    const float t27 = fabsf(Theta_1);
+    const float t28 = fabsf(m_2);
+    const float t29 = fabsf(L);
+    const float t30 = t29 * t29;
+    const float t31 = t28 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = fabsf(Theta_2);
+    const float t34 = t32 * t33;
+    const float t35 = t7 * t34;
+    const float t36 = fabsf(m_1);
+    const float t37 = t36 + t28;
+    const float t38 = t37 * t33;
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_RARELY_F(!(t26 > t42))) {
+        return FRONT_CAR_MASS_RANK;
+    }
+    const float t43 = 1.0f / t25;
+    const float t44 = L * Theta_2;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t44 * t50;
+    const float t52 = L * m_2;
+    const float theta_dot = qd[2];
+    const float t53 = theta_dot * t52;
+    const float t54 = theta_dot * t6;
+    const float t55 = t53 * t54;
+    const float t56 = t6 * t4;
+    const float t57 = t5 * t3;
+    const float t58 = t56 - t57;
+    const float K_f = u[0];
+    const float t59 = K_f * t58;
+    const float t60 = t55 + t59;
+    const float t61 = m_1 + m_2;
+    const float t62 = theta_dot * t5;
+    const float y_dot = qd[1];
+    const float t63 = y_dot * t62;
+    const float x_dot = qd[0];
+    const float t64 = x_dot * t54;
+    const float t65 = t63 + t64;
+    const float t66 = t8 * t65;
+    const float t67 = t66 * t51;
+    const float t68 = L * t52;
+    const float t69 = Theta_1 + t68;
+    const float t70 = t3 * t69;
+    const float t71 = Theta_2 * t70;
+    const float phi_dot = qd[3];
+    const float t72 = phi_dot * t3;
+    const float t73 = L * t72;
+    const float t74 = theta_dot * t73;
+    const float t75 = theta_dot + phi_dot;
+    const float t76 = x_dot * t58;
+    const float t77 = y_dot * t48;
+    const float t78 = t76 + t77;
+    const float t79 = t75 * t78;
+    const float t80 = t74 + t79;
+    const float t81 = t6 * t80;
+    const float t82 = t65 * t58;
+    const float t83 = t81 - t82;
+    const float t84 = t71 * t83;
+    const float t85 = t67 + t84;
+    const float t86 = t43 * t85;
+    const float t87 = t61 * t86;
+    const float t88 = t5 * t52;
+    const float t89 = m_1 * t56;
+    const float t90 = m_2 * t58;
+    const float t91 = t89 + t90;
+    const float t92 = t44 * t91;
+    const float t93 = t82 - t81;
+    const float t94 = t92 * t93;
+    const float t95 = t5 * t80;
+    const float t96 = t65 * t48;
+    const float t97 = t95 - t96;
+    const float t98 = t51 * t97;
+    const float t99 = t94 - t98;
+    const float t100 = t43 * t99;
+    const float t101 = t88 * t100;
+    const float t102 = t87 - t101;
+    const float t103 = t60 + t102;
+    const float t104 = t51 * t103;
+    const float t105 = t53 * t62;
+    const float t106 = K_f * t48;
+    const float t107 = t105 + t106;
+    const float t108 = t71 * t97;
+    const float t109 = t66 * t92;
+    const float t110 = t108 - t109;
+    const float t111 = t43 * t110;
+    const float t112 = t61 * t111;
+    const float t113 = t6 * t52;
+    const float t114 = t113 * t100;
+    const float t115 = t112 + t114;
+    const float t116 = t107 + t115;
+    const float t117 = t92 * t116;
+    const float t118 = t104 - t117;
+    const float t119 = t8 * t118;
+    const float t120 = t71 * t103;
+    const float t121 = L * t3;
+    const float t122 = K_f * t121;
+    const float t123 = t69 * t100;
+    const float t124 = t52 * t65;
+    const float t125 = t123 - t124;
+    const float t126 = t122 + t125;
+    const float t127 = t92 * t126;
+    const float t128 = t120 - t127;
+    const float t129 = t58 * t128;
+    const float t130 = t119 - t129;
+    const float t131 = t71 * t116;
+    const float t132 = t51 * t126;
+    const float t133 = t131 - t132;
+    const float t134 = t48 * t133;
+    const float t135 = t130 - t134;
+    const float t136 = t43 * t135;
+    const float t137 = t6 * t128;
+    const float t138 = t5 * t133;
+    const float t139 = t137 + t138;
+    const float t140 = t43 * t139;
+    float rest = (t136 - t136) * t140;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
+        return FRONT_CAR_NOT_FINITE;
+    }
+    lambda_B[0] = t136;
+    lambda_B[1] = t140;
     return FRONT_CAR_OK;
 }
 
 front_car_status front_car_energy_f(const float q[4], const float qd[4], const front_car_params_f *p, float T_U[2]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -2704,7 +2641,7 @@ front_car_status front_car_energy_f(const float q[4], const float qd[4], const f
     const float t24 = theta_dot * t23;
     const float t25 = t13 + t24;
     float rest = t25 - t25;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     T_U[0] = t25;
@@ -2717,10 +2654,10 @@ front_car_status front_car_singularity_f(const float q[4], const front_car_param
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2778,9 +2715,8 @@ front_car_status front_car_singularity_f(const float q[4], const front_car_param
     const float t50 = t34 * t34;
     const float t51 = 1.0f + t50;
     const float t52 = ((t51 != 0.0f) ? t49 : 0.0f) / ((t51 != 0.0f) ? t51 : 1.0f);
-    float rest = t33 - t33;
-    rest += t52 - t52;
-    if (isnan(rest) != 0) {
+    float rest = (t33 - t33) * t52;
+    if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     measure[0] = t33;

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define FRONT_CAR_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define FRONT_CAR_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define FRONT_CAR_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define FRONT_CAR_INLINE static inline __attribute__((always_inline))
 #else
@@ -159,10 +168,10 @@ front_car_status front_car_inverse_dynamics_prepared(const double q[4], const do
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -201,9 +210,8 @@ front_car_status front_car_inverse_dynamics_prepared(const double q[4], const do
     const double phi_ddot = qdd[3];
     const double Theta_2 = p->value[1];
     const double t28 = phi_ddot * Theta_2;
-    double rest = t27 - t27;
-    rest += t28 - t28;
-    if (isnan(rest) != 0) {
+    double rest = (t27 - t27) * t28;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     u[0] = t27;
@@ -212,190 +220,14 @@ front_car_status front_car_inverse_dynamics_prepared(const double q[4], const do
 }
 
 front_car_status front_car_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_prepared *p, double qdd[4]) {
-    const double theta = q[2];
-    const double t1 = fabs(theta);
-    const double phi = q[3];
-    const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    if (!(100000.0 >= t2)) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
-    const double angle[2] = {theta, phi};
-    double sine[2];
-    double cosine[2];
-    front_car_sincos_group(2, angle, sine, cosine);
-    const double t5 = sine[1];
-    const double t7 = t5 * t5;
-    const double L = p->value[0];
-    const double t6 = cosine[1];
-    const double t8 = L * t6;
-    const double t3 = sine[0];
-    const double t9 = t3 * t8;
-    const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
-    const double t4 = cosine[0];
-    const double t12 = t4 * t8;
-    const double t13 = t12 * t12;
-    const double t14 = t11 + t13;
-    const double t15 = t8 * t8;
-    const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
-        return FRONT_CAR_CONSTRAINT_RANK;
-    }
-    const double Theta_1 = p->value[7];
-    const double t18 = Theta_1 * t7;
-    const double t20 = t6 * t6;
-    const double m_1 = p->value[5];
-    const double t21 = m_1 * t20;
-    const double m_2 = p->value[6];
-    const double t22 = m_2 + t21;
-    const double t19 = p->value[8];
-    const double t23 = t19 * t22;
-    const double t24 = t18 + t23;
-    const double Theta_2 = p->value[1];
-    const double t25 = Theta_2 * t24;
-    const double t26 = fabs(t25);
-    const double t34 = p->value[9];
-    const double t35 = t7 * t34;
-    const double t38 = p->value[10];
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
-        return FRONT_CAR_MASS_RANK;
-    }
-    const double t44 = L * t5;
-    const double K_f = u[0];
-    const double t45 = K_f * t44;
-    const double t46 = t5 * t45;
-    const double theta_dot = qd[2];
-    const double t47 = p->value[3];
-    const double t48 = theta_dot * t47;
-    const double t49 = theta_dot * t4;
-    const double t50 = t48 * t49;
-    const double t51 = t4 * t6;
-    const double t52 = t3 * t5;
-    const double t53 = t51 - t52;
-    const double t54 = K_f * t53;
-    const double t55 = t50 + t54;
-    const double t56 = t12 * t55;
-    const double t57 = theta_dot * t3;
-    const double t58 = t48 * t57;
-    const double t59 = t3 * t6;
-    const double t60 = t4 * t5;
-    const double t61 = t59 + t60;
-    const double t62 = K_f * t61;
-    const double t63 = t58 + t62;
-    const double t64 = t9 * t63;
-    const double t65 = t56 + t64;
-    const double t66 = t46 + t65;
-    const double t67 = Theta_2 * t66;
-    const double t68 = t12 * t67;
-    const double t69 = 1.0 / t25;
-    const double t70 = t68 * t69;
-    const double y_dot = qd[1];
-    const double t71 = y_dot * t57;
-    const double x_dot = qd[0];
-    const double t72 = x_dot * t49;
-    const double t73 = t71 + t72;
-    const double t74 = t8 * t73;
-    const double t76 = m_1 * t59;
-    const double t77 = m_2 * t61;
-    const double t78 = t76 + t77;
-    const double t75 = p->value[11];
-    const double t79 = t75 * t78;
-    const double t80 = t74 * t79;
-    const double phi_dot = qd[3];
-    const double t81 = phi_dot * t5;
-    const double t82 = L * t81;
-    const double t83 = theta_dot * t82;
-    const double t84 = theta_dot + phi_dot;
-    const double t85 = t84 * t53;
-    const double t86 = x_dot * t85;
-    const double t87 = t84 * t61;
-    const double t88 = y_dot * t87;
-    const double t89 = t86 + t88;
-    const double t90 = t83 + t89;
-    const double t91 = t4 * t90;
-    const double t92 = t73 * t53;
-    const double t93 = t91 - t92;
-    const double t95 = p->value[4];
-    const double t96 = t5 * t95;
-    const double t97 = Theta_2 * t96;
-    const double t98 = t93 * t97;
-    const double t99 = t80 + t98;
-    const double t100 = t69 * t99;
-    const double t101 = t70 - t100;
-    const double t102 = t9 * t67;
-    const double t103 = t102 * t69;
-    const double t104 = t3 * t90;
-    const double t105 = t73 * t61;
-    const double t106 = t104 - t105;
-    const double t107 = t106 * t97;
-    const double t108 = m_1 * t51;
-    const double t109 = m_2 * t53;
-    const double t110 = t108 + t109;
-    const double t111 = t75 * t110;
-    const double t112 = t74 * t111;
-    const double t113 = t107 - t112;
-    const double t114 = t69 * t113;
-    const double t115 = t103 - t114;
-    const double t116 = t5 * t67;
-    const double t117 = t116 * t69;
-    const double t118 = t92 - t91;
-    const double t119 = t111 * t118;
-    const double t120 = t79 * t106;
-    const double t121 = t119 - t120;
-    const double t122 = t121 * t69;
-    const double t123 = t117 - t122;
-    const double T = u[1];
-    const double t125 = T * t12;
-    const double t124 = p->value[2];
-    const double t126 = t124 * t125;
-    const double t127 = t3 * t47;
-    const double t128 = T * t5;
-    const double t129 = t127 * t128;
-    const double t130 = t126 - t129;
-    const double t131 = t12 * t130;
-    const double t132 = T * t9;
-    const double t133 = t124 * t132;
-    const double t134 = t4 * t47;
-    const double t135 = t134 * t128;
-    const double t136 = t133 + t135;
-    const double t137 = t9 * t136;
-    const double t138 = t131 + t137;
-    const double t139 = t128 * t95;
-    const double t140 = t5 * t139;
-    const double t141 = t138 + t140;
-    const double t142 = t69 * t141;
-    double rest = t101 - t101;
-    rest += t115 - t115;
-    rest += t123 - t123;
-    rest += t142 - t142;
-    if (isnan(rest) != 0) {
-        return FRONT_CAR_NOT_FINITE;
-    }
-    qdd[0] = t101;
-    qdd[1] = t115;
-    qdd[2] = t123;
-    qdd[3] = t142;
-    return FRONT_CAR_OK;
-}
-
-front_car_status front_car_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_prepared *p, double lambda_B[2]) {
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -418,7 +250,7 @@ front_car_status front_car_multipliers_prepared(const double q[4], const double 
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->value[7];
@@ -436,124 +268,290 @@ front_car_status front_car_multipliers_prepared(const double q[4], const double 
     const double t26 = fabs(t25);
     const double t34 = p->value[9];
     const double t35 = t7 * t34;
+    const double t39 = t10 + t13;
     const double t38 = p->value[10];
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t26 > t42))) {
         return FRONT_CAR_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t45 = p->value[11];
-    const double t52 = t45 * t51;
-    const double theta_dot = qd[2];
-    const double t53 = p->value[3];
-    const double t54 = theta_dot * t53;
-    const double t55 = theta_dot * t6;
-    const double t56 = t54 * t55;
-    const double t57 = t6 * t4;
-    const double t58 = t5 * t3;
-    const double t59 = t57 - t58;
+    const double t43 = 1.0 / t25;
+    const double t44 = L * t3;
     const double K_f = u[0];
-    const double t60 = K_f * t59;
-    const double t61 = t56 + t60;
-    const double t63 = theta_dot * t5;
+    const double t45 = K_f * t44;
+    const double t46 = t3 * t45;
+    const double theta_dot = qd[2];
+    const double t47 = p->value[3];
+    const double t48 = theta_dot * t47;
+    const double t49 = theta_dot * t6;
+    const double t50 = t48 * t49;
+    const double t51 = t6 * t4;
+    const double t52 = t5 * t3;
+    const double t53 = t51 - t52;
+    const double t54 = K_f * t53;
+    const double t55 = t50 + t54;
+    const double t56 = t12 * t55;
+    const double t57 = theta_dot * t5;
+    const double t58 = t48 * t57;
+    const double t59 = t5 * t4;
+    const double t60 = t6 * t3;
+    const double t61 = t59 + t60;
+    const double t62 = K_f * t61;
+    const double t63 = t58 + t62;
+    const double t64 = t9 * t63;
+    const double t65 = t56 + t64;
+    const double t66 = t46 + t65;
+    const double t67 = Theta_2 * t66;
+    const double t68 = t12 * t67;
     const double y_dot = qd[1];
-    const double t64 = y_dot * t63;
+    const double t69 = y_dot * t57;
     const double x_dot = qd[0];
-    const double t65 = x_dot * t55;
-    const double t66 = t64 + t65;
-    const double t67 = t8 * t66;
-    const double t68 = t67 * t52;
+    const double t70 = x_dot * t49;
+    const double t71 = t69 + t70;
+    const double t72 = t8 * t71;
+    const double t74 = m_1 * t59;
+    const double t75 = m_2 * t61;
+    const double t76 = t74 + t75;
+    const double t73 = p->value[11];
+    const double t77 = t73 * t76;
+    const double t78 = t72 * t77;
+    const double t80 = p->value[4];
+    const double t81 = t3 * t80;
+    const double t82 = Theta_2 * t81;
     const double phi_dot = qd[3];
-    const double t69 = phi_dot * t3;
-    const double t70 = L * t69;
-    const double t71 = theta_dot * t70;
-    const double t72 = theta_dot + phi_dot;
-    const double t73 = t72 * t59;
-    const double t74 = x_dot * t73;
-    const double t75 = t72 * t49;
-    const double t76 = y_dot * t75;
-    const double t77 = t74 + t76;
-    const double t78 = t71 + t77;
-    const double t79 = t6 * t78;
-    const double t80 = t66 * t59;
-    const double t81 = t79 - t80;
-    const double t83 = p->value[4];
-    const double t84 = t3 * t83;
-    const double t85 = Theta_2 * t84;
-    const double t86 = t81 * t85;
-    const double t87 = t68 + t86;
-    const double t88 = t44 * t87;
-    const double t62 = p->value[2];
-    const double t89 = t62 * t88;
-    const double t90 = t5 * t53;
-    const double t91 = m_1 * t57;
-    const double t92 = m_2 * t59;
-    const double t93 = t91 + t92;
-    const double t94 = t45 * t93;
-    const double t95 = t80 - t79;
-    const double t96 = t94 * t95;
-    const double t97 = t5 * t78;
-    const double t98 = t66 * t49;
-    const double t99 = t97 - t98;
-    const double t100 = t52 * t99;
-    const double t101 = t96 - t100;
-    const double t102 = t101 * t44;
-    const double t103 = t90 * t102;
-    const double t104 = t89 - t103;
-    const double t105 = t61 + t104;
-    const double t106 = t52 * t105;
-    const double t107 = t54 * t63;
-    const double t108 = K_f * t49;
-    const double t109 = t107 + t108;
-    const double t110 = t99 * t85;
-    const double t111 = t67 * t94;
-    const double t112 = t110 - t111;
-    const double t113 = t44 * t112;
-    const double t114 = t62 * t113;
-    const double t115 = t6 * t53;
-    const double t116 = t115 * t102;
-    const double t117 = t114 + t116;
-    const double t118 = t109 + t117;
-    const double t119 = t94 * t118;
-    const double t120 = t106 - t119;
-    const double t121 = t8 * t120;
-    const double t122 = t85 * t105;
-    const double t123 = L * t3;
-    const double t124 = K_f * t123;
-    const double t125 = t83 * t102;
-    const double t126 = t53 * t66;
-    const double t127 = t125 - t126;
-    const double t128 = t124 + t127;
-    const double t129 = t94 * t128;
-    const double t130 = t122 - t129;
-    const double t131 = t59 * t130;
-    const double t132 = t121 - t131;
-    const double t133 = t85 * t118;
-    const double t134 = t52 * t128;
-    const double t135 = t133 - t134;
-    const double t136 = t49 * t135;
-    const double t137 = t132 - t136;
-    const double t138 = t44 * t137;
-    const double t139 = t6 * t130;
-    const double t140 = t5 * t135;
-    const double t141 = t139 + t140;
-    const double t142 = t44 * t141;
-    double rest = t138 - t138;
-    rest += t142 - t142;
-    if (isnan(rest) != 0) {
+    const double t83 = phi_dot * t3;
+    const double t84 = L * t83;
+    const double t85 = theta_dot * t84;
+    const double t86 = theta_dot + phi_dot;
+    const double t87 = x_dot * t53;
+    const double t88 = y_dot * t61;
+    const double t89 = t87 + t88;
+    const double t90 = t86 * t89;
+    const double t91 = t85 + t90;
+    const double t92 = t6 * t91;
+    const double t93 = t71 * t53;
+    const double t94 = t92 - t93;
+    const double t95 = t82 * t94;
+    const double t96 = t78 + t95;
+    const double t97 = t68 - t96;
+    const double t98 = t43 * t97;
+    const double t99 = t9 * t67;
+    const double t100 = t5 * t91;
+    const double t101 = t71 * t61;
+    const double t102 = t100 - t101;
+    const double t103 = t82 * t102;
+    const double t104 = m_1 * t51;
+    const double t105 = m_2 * t53;
+    const double t106 = t104 + t105;
+    const double t107 = t73 * t106;
+    const double t108 = t72 * t107;
+    const double t109 = t103 - t108;
+    const double t110 = t99 - t109;
+    const double t111 = t43 * t110;
+    const double t112 = t3 * t67;
+    const double t113 = t93 - t92;
+    const double t114 = t107 * t113;
+    const double t115 = t77 * t102;
+    const double t116 = t114 - t115;
+    const double t117 = t112 - t116;
+    const double t118 = t43 * t117;
+    const double T = u[1];
+    const double t120 = T * t12;
+    const double t119 = p->value[2];
+    const double t121 = t119 * t120;
+    const double t122 = t5 * t47;
+    const double t123 = T * t3;
+    const double t124 = t122 * t123;
+    const double t125 = t121 - t124;
+    const double t126 = t12 * t125;
+    const double t127 = T * t9;
+    const double t128 = t119 * t127;
+    const double t129 = t6 * t47;
+    const double t130 = t129 * t123;
+    const double t131 = t128 + t130;
+    const double t132 = t9 * t131;
+    const double t133 = t126 + t132;
+    const double t134 = t123 * t80;
+    const double t135 = t3 * t134;
+    const double t136 = t133 + t135;
+    const double t137 = t43 * t136;
+    double rest = (t98 - t98) * t111 * t118;
+    rest += t137 - t137;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t138;
-    lambda_B[1] = t142;
+    qdd[0] = t98;
+    qdd[1] = t111;
+    qdd[2] = t118;
+    qdd[3] = t137;
+    return FRONT_CAR_OK;
+}
+
+front_car_status front_car_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_prepared *p, double lambda_B[2]) {
+    const double phi = q[3];
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
+    if (FRONT_CAR_RARELY(!(100000.0 >= t1))) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    if (FRONT_CAR_RARELY(!(100000.0 >= t2))) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    front_car_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
+    const double t7 = t3 * t3;
+    const double L = p->value[0];
+    const double t4 = cosine[0];
+    const double t8 = L * t4;
+    const double t5 = sine[1];
+    const double t9 = t5 * t8;
+    const double t10 = t9 * t9;
+    const double t11 = t7 + t10;
+    const double t6 = cosine[1];
+    const double t12 = t6 * t8;
+    const double t13 = t12 * t12;
+    const double t14 = t11 + t13;
+    const double t15 = t8 * t8;
+    const double t16 = 1.0 + t15;
+    const double t17 = t16 * 1.262177448353619e-29;
+    if (FRONT_CAR_RARELY(!(t14 > t17))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const double Theta_1 = p->value[7];
+    const double t18 = Theta_1 * t7;
+    const double t20 = t4 * t4;
+    const double m_1 = p->value[5];
+    const double t21 = m_1 * t20;
+    const double m_2 = p->value[6];
+    const double t22 = m_2 + t21;
+    const double t19 = p->value[8];
+    const double t23 = t19 * t22;
+    const double t24 = t18 + t23;
+    const double Theta_2 = p->value[1];
+    const double t25 = Theta_2 * t24;
+    const double t26 = fabs(t25);
+    const double t34 = p->value[9];
+    const double t35 = t7 * t34;
+    const double t39 = t10 + t13;
+    const double t38 = p->value[10];
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t26 > t42))) {
+        return FRONT_CAR_MASS_RANK;
+    }
+    const double t43 = 1.0 / t25;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t44 = p->value[11];
+    const double t51 = t44 * t50;
+    const double theta_dot = qd[2];
+    const double t52 = p->value[3];
+    const double t53 = theta_dot * t52;
+    const double t54 = theta_dot * t6;
+    const double t55 = t53 * t54;
+    const double t56 = t6 * t4;
+    const double t57 = t5 * t3;
+    const double t58 = t56 - t57;
+    const double K_f = u[0];
+    const double t59 = K_f * t58;
+    const double t60 = t55 + t59;
+    const double t62 = theta_dot * t5;
+    const double y_dot = qd[1];
+    const double t63 = y_dot * t62;
+    const double x_dot = qd[0];
+    const double t64 = x_dot * t54;
+    const double t65 = t63 + t64;
+    const double t66 = t8 * t65;
+    const double t67 = t66 * t51;
+    const double t69 = p->value[4];
+    const double t70 = t3 * t69;
+    const double t71 = Theta_2 * t70;
+    const double phi_dot = qd[3];
+    const double t72 = phi_dot * t3;
+    const double t73 = L * t72;
+    const double t74 = theta_dot * t73;
+    const double t75 = theta_dot + phi_dot;
+    const double t76 = x_dot * t58;
+    const double t77 = y_dot * t48;
+    const double t78 = t76 + t77;
+    const double t79 = t75 * t78;
+    const double t80 = t74 + t79;
+    const double t81 = t6 * t80;
+    const double t82 = t65 * t58;
+    const double t83 = t81 - t82;
+    const double t84 = t71 * t83;
+    const double t85 = t67 + t84;
+    const double t86 = t43 * t85;
+    const double t61 = p->value[2];
+    const double t87 = t61 * t86;
+    const double t88 = t5 * t52;
+    const double t89 = m_1 * t56;
+    const double t90 = m_2 * t58;
+    const double t91 = t89 + t90;
+    const double t92 = t44 * t91;
+    const double t93 = t82 - t81;
+    const double t94 = t92 * t93;
+    const double t95 = t5 * t80;
+    const double t96 = t65 * t48;
+    const double t97 = t95 - t96;
+    const double t98 = t51 * t97;
+    const double t99 = t94 - t98;
+    const double t100 = t43 * t99;
+    const double t101 = t88 * t100;
+    const double t102 = t87 - t101;
+    const double t103 = t60 + t102;
+    const double t104 = t51 * t103;
+    const double t105 = t53 * t62;
+    const double t106 = K_f * t48;
+    const double t107 = t105 + t106;
+    const double t108 = t71 * t97;
+    const double t109 = t66 * t92;
+    const double t110 = t108 - t109;
+    const double t111 = t43 * t110;
+    const double t112 = t61 * t111;
+    const double t113 = t6 * t52;
+    const double t114 = t113 * t100;
+    const double t115 = t112 + t114;
+    const double t116 = t107 + t115;
+    const double t117 = t92 * t116;
+    const double t118 = t104 - t117;
+    const double t119 = t8 * t118;
+    const double t120 = t71 * t103;
+    const double t121 = L * t3;
+    const double t122 = K_f * t121;
+    const double t123 = t69 * t100;
+    const double t124 = t52 * t65;
+    const double t125 = t123 - t124;
+    const double t126 = t122 + t125;
+    const double t127 = t92 * t126;
+    const double t128 = t120 - t127;
+    const double t129 = t58 * t128;
+    const double t130 = t119 - t129;
+    const double t131 = t71 * t116;
+    const double t132 = t51 * t126;
+    const double t133 = t131 - t132;
+    const double t134 = t48 * t133;
+    const double t135 = t130 - t134;
+    const double t136 = t43 * t135;
+    const double t137 = t6 * t128;
+    const double t138 = t5 * t133;
+    const double t139 = t137 + t138;
+    const double t140 = t43 * t139;
+    double rest = (t136 - t136) * t140;
+    if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
+        return FRONT_CAR_NOT_FINITE;
+    }
+    lambda_B[0] = t136;
+    lambda_B[1] = t140;
     return FRONT_CAR_OK;
 }

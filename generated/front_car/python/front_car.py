@@ -23,8 +23,8 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     17      1      0      2      0
 nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     47      3      0      2      0
-weighted_nullspace_projector         14     52      4      0      2      0
+weighted_pseudoinverse               17     46      3      0      2      0
+weighted_nullspace_projector         14     51      4      0      2      0
 control_matrix                        1      1      0      0      2      0
 projected_control_matrix              3     14      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
@@ -46,8 +46,8 @@ inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
 actuator_mass_matrix                  2      6      1      0      1      0
 actuator_bias                        11     27      1      0      2      0
-forward_dynamics                     36     93      1      0      2      0
-multipliers                          39     90      1      0      2      0
+forward_dynamics                     36     88      1      0      2      0
+multipliers                          39     88      1      0      2      0
 energy                                7     15      0      0      1      0
 singularity                          12     26      5      1      2      0
 (changes of sign are not counted)
@@ -728,57 +728,56 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t36 = np.abs(m_1)
         t37 = t36 + t28
         t38 = t37 * t33
-        t39 = t10 * t38
-        t40 = t35 + t39
-        t41 = t13 * t38
-        t42 = t40 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = L * Theta_2
-        t46 = t5 * t4
-        t47 = m_1 * t46
-        t48 = t6 * t3
-        t49 = t46 + t48
-        t50 = m_2 * t49
-        t51 = t47 + t50
-        t52 = t45 * t51
-        t53 = t8 * t52
-        t54 = t6 * t4
-        t55 = t5 * t3
-        t56 = t54 - t55
-        t57 = m_2 * t19
-        t58 = Theta_1 + t57
-        t59 = Theta_2 * t58
-        t60 = t3 * t59
-        t61 = t56 * t60
-        t62 = t53 - t61
-        t63 = t44 * t62
-        t64 = t59 / t25
-        t65 = t48 * t64
-        t66 = m_1 * t54
-        t67 = m_2 * t56
-        t68 = t66 + t67
-        t69 = t45 * t68
-        t70 = t8 * t69
-        t71 = t49 * t60
-        t72 = t70 + t71
-        t73 = t44 * t72
-        t74 = -t73
-        t75 = t55 * t64
-        t76 = t45 / t25
-        t77 = t22 * t76
-        t78 = m_1 + m_2
-        t79 = t4 * t78
-        t80 = t79 * t76
-        t81 = -t80
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
+        t44 = L * Theta_2
+        t45 = t5 * t4
+        t46 = m_1 * t45
+        t47 = t6 * t3
+        t48 = t45 + t47
+        t49 = m_2 * t48
+        t50 = t46 + t49
+        t51 = t44 * t50
+        t52 = t8 * t51
+        t53 = t6 * t4
+        t54 = t5 * t3
+        t55 = t53 - t54
+        t56 = m_2 * t19
+        t57 = Theta_1 + t56
+        t58 = Theta_2 * t57
+        t59 = t3 * t58
+        t60 = t55 * t59
+        t61 = t52 - t60
+        t62 = t43 * t61
+        t63 = t58 / t25
+        t64 = t47 * t63
+        t65 = m_1 * t53
+        t66 = m_2 * t55
+        t67 = t65 + t66
+        t68 = t44 * t67
+        t69 = t8 * t68
+        t70 = t48 * t59
+        t71 = t69 + t70
+        t72 = t43 * t71
+        t73 = -t72
+        t74 = t54 * t63
+        t75 = t44 / t25
+        t76 = t22 * t75
+        t77 = m_1 + m_2
+        t78 = t4 * t77
+        t79 = t78 * t75
+        t80 = -t79
         entries = (
-            t63,
-            t65,
+            t62,
+            t64,
+            t73,
             t74,
-            t75,
-            t77,
-            t81,
+            t76,
+            t80,
             0.0,
             0.0,
         )
@@ -838,63 +837,62 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t36 = np.abs(m_1)
         t37 = t36 + t28
         t38 = t37 * t33
-        t39 = t10 * t38
-        t40 = t35 + t39
-        t41 = t13 * t38
-        t42 = t40 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = t4 * t6
-        t45 = m_1 * t44
-        t46 = t3 * t5
-        t47 = t44 - t46
-        t48 = m_2 * t47
-        t49 = t45 + t48
-        t50 = t44 * t49
-        t51 = Theta_2 * t19
-        t52 = t51 / t25
-        t53 = t50 * t52
-        t54 = t3 * t6
-        t55 = m_1 * t54
-        t56 = t4 * t5
-        t57 = t54 + t56
-        t58 = m_2 * t57
-        t59 = t55 + t58
-        t60 = t44 * t59
-        t61 = t52 * t60
-        t62 = t5 * t44
-        t63 = m_2 * t19
-        t64 = Theta_1 + t63
-        t65 = L * Theta_2
-        t66 = t64 * t65
-        t67 = t66 / t25
-        t68 = t62 * t67
-        t69 = t54 * t49
-        t70 = t52 * t69
-        t71 = t54 * t59
-        t72 = t71 * t52
-        t73 = t5 * t54
-        t74 = t73 * t67
-        t75 = t65 / t25
-        t76 = t5 * t49
-        t77 = t75 * t76
-        t78 = t5 * t59
-        t79 = t75 * t78
-        t80 = Theta_2 * t64
-        t81 = t80 / t25
-        t82 = t7 * t81
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = t4 * t6
+        t44 = m_1 * t43
+        t45 = t3 * t5
+        t46 = t43 - t45
+        t47 = m_2 * t46
+        t48 = t44 + t47
+        t49 = t43 * t48
+        t50 = Theta_2 * t19
+        t51 = t50 / t25
+        t52 = t49 * t51
+        t53 = t3 * t6
+        t54 = m_1 * t53
+        t55 = t4 * t5
+        t56 = t53 + t55
+        t57 = m_2 * t56
+        t58 = t54 + t57
+        t59 = t43 * t58
+        t60 = t51 * t59
+        t61 = t5 * t43
+        t62 = m_2 * t19
+        t63 = Theta_1 + t62
+        t64 = L * Theta_2
+        t65 = t63 * t64
+        t66 = t65 / t25
+        t67 = t61 * t66
+        t68 = t53 * t48
+        t69 = t51 * t68
+        t70 = t53 * t58
+        t71 = t70 * t51
+        t72 = t5 * t53
+        t73 = t72 * t66
+        t74 = t64 / t25
+        t75 = t5 * t48
+        t76 = t74 * t75
+        t77 = t5 * t58
+        t78 = t74 * t77
+        t79 = Theta_2 * t63
+        t80 = t79 / t25
+        t81 = t7 * t80
         entries = (
-            t53,
-            t61,
-            t68,
+            t52,
+            t60,
+            t67,
             0.0,
-            t70,
-            t72,
-            t74,
+            t69,
+            t71,
+            t73,
             0.0,
-            t77,
-            t79,
-            t82,
+            t76,
+            t78,
+            t81,
             0.0,
             0.0,
             0.0,
@@ -2207,18 +2205,18 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(theta)
-        t2 = np.abs(phi)
+        t1 = np.abs(phi)
+        t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(theta)
-        t5, t6 = _sincos(phi)
-        t7 = t5 * t5
-        t8 = L * t6
-        t9 = t3 * t8
+        t3, t4 = _sincos(phi)
+        t5, t6 = _sincos(theta)
+        t7 = t3 * t3
+        t8 = L * t4
+        t9 = t5 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t4 * t8
+        t12 = t6 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
@@ -2227,7 +2225,7 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t6 * t6
+        t20 = t4 * t4
         t21 = m_1 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
@@ -2246,29 +2244,29 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t36 = np.abs(m_1)
         t37 = t36 + t28
         t38 = t37 * t33
-        t39 = t10 * t38
-        t40 = t35 + t39
-        t41 = t13 * t38
-        t42 = t40 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = L * t5
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
+        t44 = L * t3
         t45 = K_f * t44
-        t46 = t5 * t45
+        t46 = t3 * t45
         t47 = L * m_2
         t48 = theta_dot * t47
-        t49 = theta_dot * t4
+        t49 = theta_dot * t6
         t50 = t48 * t49
-        t51 = t4 * t6
-        t52 = t3 * t5
+        t51 = t6 * t4
+        t52 = t5 * t3
         t53 = t51 - t52
         t54 = K_f * t53
         t55 = t50 + t54
         t56 = t12 * t55
-        t57 = theta_dot * t3
+        t57 = theta_dot * t5
         t58 = t48 * t57
-        t59 = t3 * t6
-        t60 = t4 * t5
+        t59 = t5 * t4
+        t60 = t6 * t3
         t61 = t59 + t60
         t62 = K_f * t61
         t63 = t58 + t62
@@ -2277,85 +2275,80 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t66 = t46 + t65
         t67 = Theta_2 * t66
         t68 = t12 * t67
-        t69 = 1.0 / t25
-        t70 = t68 * t69
-        t71 = y_dot * t57
-        t72 = x_dot * t49
-        t73 = t71 + t72
-        t74 = t8 * t73
-        t75 = L * Theta_2
-        t76 = m_1 * t59
-        t77 = m_2 * t61
-        t78 = t76 + t77
-        t79 = t75 * t78
-        t80 = t74 * t79
-        t81 = phi_dot * t5
-        t82 = L * t81
-        t83 = theta_dot * t82
-        t84 = theta_dot + phi_dot
-        t85 = t84 * t53
-        t86 = x_dot * t85
-        t87 = t84 * t61
-        t88 = y_dot * t87
-        t89 = t86 + t88
-        t90 = t83 + t89
-        t91 = t4 * t90
-        t92 = t73 * t53
-        t93 = t91 - t92
-        t94 = L * t47
-        t95 = Theta_1 + t94
-        t96 = t5 * t95
-        t97 = Theta_2 * t96
-        t98 = t93 * t97
-        t99 = t80 + t98
-        t100 = t69 * t99
-        t101 = t70 - t100
-        t102 = t9 * t67
-        t103 = t102 * t69
-        t104 = t3 * t90
-        t105 = t73 * t61
-        t106 = t104 - t105
-        t107 = t106 * t97
-        t108 = m_1 * t51
-        t109 = m_2 * t53
-        t110 = t108 + t109
-        t111 = t75 * t110
-        t112 = t74 * t111
-        t113 = t107 - t112
-        t114 = t69 * t113
-        t115 = t103 - t114
-        t116 = t5 * t67
-        t117 = t116 * t69
-        t118 = t92 - t91
-        t119 = t111 * t118
-        t120 = t79 * t106
-        t121 = t119 - t120
-        t122 = t121 * t69
-        t123 = t117 - t122
-        t124 = m_1 + m_2
-        t125 = T * t12
-        t126 = t124 * t125
-        t127 = t3 * t47
-        t128 = T * t5
-        t129 = t127 * t128
-        t130 = t126 - t129
-        t131 = t12 * t130
-        t132 = T * t9
-        t133 = t124 * t132
-        t134 = t4 * t47
-        t135 = t134 * t128
+        t69 = y_dot * t57
+        t70 = x_dot * t49
+        t71 = t69 + t70
+        t72 = t8 * t71
+        t73 = L * Theta_2
+        t74 = m_1 * t59
+        t75 = m_2 * t61
+        t76 = t74 + t75
+        t77 = t73 * t76
+        t78 = t72 * t77
+        t79 = L * t47
+        t80 = Theta_1 + t79
+        t81 = t3 * t80
+        t82 = Theta_2 * t81
+        t83 = phi_dot * t3
+        t84 = L * t83
+        t85 = theta_dot * t84
+        t86 = theta_dot + phi_dot
+        t87 = x_dot * t53
+        t88 = y_dot * t61
+        t89 = t87 + t88
+        t90 = t86 * t89
+        t91 = t85 + t90
+        t92 = t6 * t91
+        t93 = t71 * t53
+        t94 = t92 - t93
+        t95 = t82 * t94
+        t96 = t78 + t95
+        t97 = t68 - t96
+        t98 = t43 * t97
+        t99 = t9 * t67
+        t100 = t5 * t91
+        t101 = t71 * t61
+        t102 = t100 - t101
+        t103 = t82 * t102
+        t104 = m_1 * t51
+        t105 = m_2 * t53
+        t106 = t104 + t105
+        t107 = t73 * t106
+        t108 = t72 * t107
+        t109 = t103 - t108
+        t110 = t99 - t109
+        t111 = t43 * t110
+        t112 = t3 * t67
+        t113 = t93 - t92
+        t114 = t107 * t113
+        t115 = t77 * t102
+        t116 = t114 - t115
+        t117 = t112 - t116
+        t118 = t43 * t117
+        t119 = m_1 + m_2
+        t120 = T * t12
+        t121 = t119 * t120
+        t122 = t5 * t47
+        t123 = T * t3
+        t124 = t122 * t123
+        t125 = t121 - t124
+        t126 = t12 * t125
+        t127 = T * t9
+        t128 = t119 * t127
+        t129 = t6 * t47
+        t130 = t129 * t123
+        t131 = t128 + t130
+        t132 = t9 * t131
+        t133 = t126 + t132
+        t134 = t123 * t80
+        t135 = t3 * t134
         t136 = t133 + t135
-        t137 = t9 * t136
-        t138 = t131 + t137
-        t139 = t128 * t95
-        t140 = t5 * t139
-        t141 = t138 + t140
-        t142 = t69 * t141
+        t137 = t43 * t136
         entries = (
-            t101,
-            t115,
-            t123,
-            t142,
+            t98,
+            t111,
+            t118,
+            t137,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2421,114 +2414,112 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t36 = np.abs(m_1)
         t37 = t36 + t28
         t38 = t37 * t33
-        t39 = t10 * t38
-        t40 = t35 + t39
-        t41 = t13 * t38
-        t42 = t40 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = L * Theta_2
-        t46 = t5 * t4
-        t47 = m_1 * t46
-        t48 = t6 * t3
-        t49 = t46 + t48
-        t50 = m_2 * t49
-        t51 = t47 + t50
-        t52 = t45 * t51
-        t53 = L * m_2
-        t54 = theta_dot * t53
-        t55 = theta_dot * t6
-        t56 = t54 * t55
-        t57 = t6 * t4
-        t58 = t5 * t3
-        t59 = t57 - t58
-        t60 = K_f * t59
-        t61 = t56 + t60
-        t62 = m_1 + m_2
-        t63 = theta_dot * t5
-        t64 = y_dot * t63
-        t65 = x_dot * t55
-        t66 = t64 + t65
-        t67 = t8 * t66
-        t68 = t67 * t52
-        t69 = phi_dot * t3
-        t70 = L * t69
-        t71 = theta_dot * t70
-        t72 = theta_dot + phi_dot
-        t73 = t72 * t59
-        t74 = x_dot * t73
-        t75 = t72 * t49
-        t76 = y_dot * t75
-        t77 = t74 + t76
-        t78 = t71 + t77
-        t79 = t6 * t78
-        t80 = t66 * t59
-        t81 = t79 - t80
-        t82 = L * t53
-        t83 = Theta_1 + t82
-        t84 = t3 * t83
-        t85 = Theta_2 * t84
-        t86 = t81 * t85
-        t87 = t68 + t86
-        t88 = t44 * t87
-        t89 = t62 * t88
-        t90 = t5 * t53
-        t91 = m_1 * t57
-        t92 = m_2 * t59
-        t93 = t91 + t92
-        t94 = t45 * t93
-        t95 = t80 - t79
-        t96 = t94 * t95
-        t97 = t5 * t78
-        t98 = t66 * t49
-        t99 = t97 - t98
-        t100 = t52 * t99
-        t101 = t96 - t100
-        t102 = t101 * t44
-        t103 = t90 * t102
-        t104 = t89 - t103
-        t105 = t61 + t104
-        t106 = t52 * t105
-        t107 = t54 * t63
-        t108 = K_f * t49
-        t109 = t107 + t108
-        t110 = t99 * t85
-        t111 = t67 * t94
-        t112 = t110 - t111
-        t113 = t44 * t112
-        t114 = t62 * t113
-        t115 = t6 * t53
-        t116 = t115 * t102
-        t117 = t114 + t116
-        t118 = t109 + t117
-        t119 = t94 * t118
-        t120 = t106 - t119
-        t121 = t8 * t120
-        t122 = t85 * t105
-        t123 = L * t3
-        t124 = K_f * t123
-        t125 = t83 * t102
-        t126 = t53 * t66
-        t127 = t125 - t126
-        t128 = t124 + t127
-        t129 = t94 * t128
-        t130 = t122 - t129
-        t131 = t59 * t130
-        t132 = t121 - t131
-        t133 = t85 * t118
-        t134 = t52 * t128
-        t135 = t133 - t134
-        t136 = t49 * t135
-        t137 = t132 - t136
-        t138 = t44 * t137
-        t139 = t6 * t130
-        t140 = t5 * t135
-        t141 = t139 + t140
-        t142 = t44 * t141
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
+        t44 = L * Theta_2
+        t45 = t5 * t4
+        t46 = m_1 * t45
+        t47 = t6 * t3
+        t48 = t45 + t47
+        t49 = m_2 * t48
+        t50 = t46 + t49
+        t51 = t44 * t50
+        t52 = L * m_2
+        t53 = theta_dot * t52
+        t54 = theta_dot * t6
+        t55 = t53 * t54
+        t56 = t6 * t4
+        t57 = t5 * t3
+        t58 = t56 - t57
+        t59 = K_f * t58
+        t60 = t55 + t59
+        t61 = m_1 + m_2
+        t62 = theta_dot * t5
+        t63 = y_dot * t62
+        t64 = x_dot * t54
+        t65 = t63 + t64
+        t66 = t8 * t65
+        t67 = t66 * t51
+        t68 = L * t52
+        t69 = Theta_1 + t68
+        t70 = t3 * t69
+        t71 = Theta_2 * t70
+        t72 = phi_dot * t3
+        t73 = L * t72
+        t74 = theta_dot * t73
+        t75 = theta_dot + phi_dot
+        t76 = x_dot * t58
+        t77 = y_dot * t48
+        t78 = t76 + t77
+        t79 = t75 * t78
+        t80 = t74 + t79
+        t81 = t6 * t80
+        t82 = t65 * t58
+        t83 = t81 - t82
+        t84 = t71 * t83
+        t85 = t67 + t84
+        t86 = t43 * t85
+        t87 = t61 * t86
+        t88 = t5 * t52
+        t89 = m_1 * t56
+        t90 = m_2 * t58
+        t91 = t89 + t90
+        t92 = t44 * t91
+        t93 = t82 - t81
+        t94 = t92 * t93
+        t95 = t5 * t80
+        t96 = t65 * t48
+        t97 = t95 - t96
+        t98 = t51 * t97
+        t99 = t94 - t98
+        t100 = t43 * t99
+        t101 = t88 * t100
+        t102 = t87 - t101
+        t103 = t60 + t102
+        t104 = t51 * t103
+        t105 = t53 * t62
+        t106 = K_f * t48
+        t107 = t105 + t106
+        t108 = t71 * t97
+        t109 = t66 * t92
+        t110 = t108 - t109
+        t111 = t43 * t110
+        t112 = t61 * t111
+        t113 = t6 * t52
+        t114 = t113 * t100
+        t115 = t112 + t114
+        t116 = t107 + t115
+        t117 = t92 * t116
+        t118 = t104 - t117
+        t119 = t8 * t118
+        t120 = t71 * t103
+        t121 = L * t3
+        t122 = K_f * t121
+        t123 = t69 * t100
+        t124 = t52 * t65
+        t125 = t123 - t124
+        t126 = t122 + t125
+        t127 = t92 * t126
+        t128 = t120 - t127
+        t129 = t58 * t128
+        t130 = t119 - t129
+        t131 = t71 * t116
+        t132 = t51 * t126
+        t133 = t131 - t132
+        t134 = t48 * t133
+        t135 = t130 - t134
+        t136 = t43 * t135
+        t137 = t6 * t128
+        t138 = t5 * t133
+        t139 = t137 + t138
+        t140 = t43 * t139
         entries = (
-            t138,
-            t142,
+            t136,
+            t140,
         )
         return _result("multipliers", status, batch, (2,), entries)
 

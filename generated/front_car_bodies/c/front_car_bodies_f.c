@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define FRONT_CAR_BODIES_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define FRONT_CAR_BODIES_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define FRONT_CAR_BODIES_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define FRONT_CAR_BODIES_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -122,10 +131,10 @@ front_car_bodies_status front_car_bodies_inverse_dynamics_f(const float q[4], co
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -140,42 +149,40 @@ front_car_bodies_status front_car_bodies_inverse_dynamics_f(const float q[4], co
     const float t8 = y_ddot * t5;
     const float t9 = t7 + t8;
     const float m_1 = p->m_1;
-    const float t10 = m_1 * t9;
-    const float theta_dot = qd[2];
-    const float L = p->L;
-    const float t11 = theta_dot * L;
-    const float t12 = theta_dot * t11;
-    const float t13 = t9 - t12;
     const float m_2 = p->m_2;
-    const float t14 = m_2 * t13;
-    const float t15 = t10 + t14;
+    const float t10 = m_1 + m_2;
+    const float t11 = t9 * t10;
+    const float theta_dot = qd[2];
+    const float t12 = theta_dot * theta_dot;
+    const float L = p->L;
+    const float t13 = L * m_2;
+    const float t14 = t12 * t13;
+    const float t15 = t11 - t14;
     const float t4 = cosine[0];
     const float t16 = t4 * t15;
-    const float theta_ddot = qdd[2];
+    const float t17 = L * t13;
     const float Theta_1 = p->Theta_1;
-    const float t17 = theta_ddot * Theta_1;
-    const float t18 = y_ddot * t6;
-    const float t19 = x_ddot * t5;
-    const float t20 = t18 - t19;
-    const float t21 = theta_ddot * L;
-    const float t22 = t20 + t21;
-    const float t23 = m_2 * t22;
-    const float t24 = L * t23;
-    const float t25 = t17 + t24;
-    const float t26 = t25 / L;
+    const float t18 = Theta_1 + t17;
+    const float theta_ddot = qdd[2];
+    const float t19 = theta_ddot * t18;
+    const float t20 = y_ddot * t6;
+    const float t21 = x_ddot * t5;
+    const float t22 = t20 - t21;
+    const float t23 = t13 * t22;
+    const float t24 = t19 + t23;
+    const float t25 = t24 / L;
     const float t3 = sine[0];
-    const float t27 = t3 * t26;
-    const float t28 = t16 + t27;
+    const float t26 = t3 * t25;
+    const float t27 = t16 + t26;
     const float phi_ddot = qdd[3];
     const float Theta_2 = p->Theta_2;
-    const float t29 = phi_ddot * Theta_2;
-    float rest = t28 - t28;
-    rest += t29 - t29;
-    if (isnan(rest) != 0) {
+    const float t28 = phi_ddot * Theta_2;
+    float rest = (t27 - t27) * t28;
+    if (FRONT_CAR_BODIES_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
-    u[0] = t28;
-    u[1] = t29;
+    u[0] = t27;
+    u[1] = t28;
     return FRONT_CAR_BODIES_OK;
 }
 
@@ -184,10 +191,10 @@ front_car_bodies_status front_car_bodies_forward_dynamics_f(const float q[4], co
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -210,7 +217,7 @@ front_car_bodies_status front_car_bodies_forward_dynamics_f(const float q[4], co
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_BODIES_CONSTRAINT_RANK;
     }
     const float t18 = t4 * t4;
@@ -226,152 +233,143 @@ front_car_bodies_status front_car_bodies_forward_dynamics_f(const float q[4], co
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
-    const float t27 = fabsf(m_1);
-    const float t28 = fabsf(m_2);
-    const float t29 = t27 + t28;
-    const float t30 = fabsf(Theta_2);
-    const float t31 = t29 * t30;
-    const float t32 = t13 * t31;
-    const float t33 = fabsf(Theta_1);
-    const float t34 = fabsf(L);
-    const float t35 = t28 * t34;
-    const float t36 = t34 * t35;
-    const float t37 = t33 + t36;
-    const float t38 = t37 * t30;
-    const float t39 = t7 * t38;
-    const float t40 = t10 * t31;
-    const float t41 = t39 + t40;
-    const float t42 = t32 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t27 = fabsf(Theta_1);
+    const float t28 = fabsf(L);
+    const float t29 = fabsf(m_2);
+    const float t30 = t29 * t28;
+    const float t31 = t28 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = fabsf(Theta_2);
+    const float t34 = t32 * t33;
+    const float t35 = t7 * t34;
+    const float t36 = fabsf(m_1);
+    const float t37 = t36 + t29;
+    const float t38 = t37 * t33;
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_BODIES_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_BODIES_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * t3;
+    const float t43 = 1.0f / t25;
+    const float t44 = L * t3;
     const float K_f = u[0];
-    const float t46 = K_f * t45;
-    const float t47 = t3 * t46;
+    const float t45 = K_f * t44;
+    const float t46 = t3 * t45;
+    const float t47 = t6 * t4;
+    const float t48 = t5 * t3;
+    const float t49 = t47 - t48;
+    const float t50 = K_f * t49;
+    const float t51 = L * m_2;
     const float theta_dot = qd[2];
-    const float t48 = theta_dot * L;
-    const float t49 = theta_dot * t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t6 * t50;
-    const float t52 = t6 * t4;
-    const float t53 = t5 * t3;
-    const float t54 = t52 - t53;
-    const float t55 = K_f * t54;
-    const float t56 = t51 + t55;
-    const float t57 = t12 * t56;
-    const float t58 = t5 * t50;
-    const float t59 = t5 * t4;
-    const float t60 = t6 * t3;
-    const float t61 = t59 + t60;
-    const float t62 = K_f * t61;
-    const float t63 = t58 + t62;
-    const float t64 = t9 * t63;
-    const float t65 = t57 + t64;
-    const float t66 = t47 + t65;
-    const float t67 = Theta_2 * t66;
-    const float t68 = t12 * t67;
-    const float t69 = t44 * t68;
-    const float t70 = L * m_2;
-    const float t71 = L * t70;
-    const float t72 = Theta_1 + t71;
-    const float t73 = t3 * t72;
-    const float t74 = Theta_2 * t73;
+    const float t52 = theta_dot * theta_dot;
+    const float t53 = t51 * t52;
+    const float t54 = t6 * t53;
+    const float t55 = t50 + t54;
+    const float t56 = t12 * t55;
+    const float t57 = t5 * t4;
+    const float t58 = t6 * t3;
+    const float t59 = t57 + t58;
+    const float t60 = K_f * t59;
+    const float t61 = t5 * t53;
+    const float t62 = t60 + t61;
+    const float t63 = t9 * t62;
+    const float t64 = t56 + t63;
+    const float t65 = t46 + t64;
+    const float t66 = Theta_2 * t65;
+    const float t67 = t12 * t66;
+    const float t68 = L * t51;
+    const float t69 = Theta_1 + t68;
+    const float t70 = t3 * t69;
+    const float t71 = Theta_2 * t70;
     const float phi_dot = qd[3];
-    const float t75 = phi_dot * t3;
-    const float t76 = L * t75;
-    const float t77 = theta_dot * t76;
-    const float t78 = theta_dot + phi_dot;
-    const float t79 = t78 * t54;
+    const float t72 = phi_dot * t3;
+    const float t73 = L * t72;
+    const float t74 = theta_dot * t73;
+    const float t75 = theta_dot + phi_dot;
     const float x_dot = qd[0];
-    const float t80 = x_dot * t79;
-    const float t81 = t78 * t61;
+    const float t76 = x_dot * t49;
     const float y_dot = qd[1];
-    const float t82 = y_dot * t81;
-    const float t83 = t80 + t82;
-    const float t84 = t77 + t83;
-    const float t85 = t6 * t84;
-    const float t86 = theta_dot * t6;
-    const float t87 = x_dot * t86;
-    const float t88 = theta_dot * t5;
-    const float t89 = y_dot * t88;
-    const float t90 = t87 + t89;
-    const float t91 = t90 * t54;
-    const float t92 = t85 - t91;
-    const float t93 = t74 * t92;
-    const float t94 = t8 * t90;
-    const float t95 = L * Theta_2;
-    const float t96 = m_1 * t59;
-    const float t97 = m_2 * t61;
-    const float t98 = t96 + t97;
-    const float t99 = t95 * t98;
-    const float t100 = t94 * t99;
-    const float t101 = t93 + t100;
-    const float t102 = t44 * t101;
-    const float t103 = t69 - t102;
-    const float t104 = t9 * t67;
-    const float t105 = t44 * t104;
-    const float t106 = t5 * t84;
-    const float t107 = t90 * t61;
-    const float t108 = t106 - t107;
-    const float t109 = t74 * t108;
-    const float t110 = m_1 * t52;
-    const float t111 = m_2 * t54;
-    const float t112 = t110 + t111;
-    const float t113 = t95 * t112;
-    const float t114 = t94 * t113;
-    const float t115 = t109 - t114;
-    const float t116 = t44 * t115;
-    const float t117 = t105 - t116;
-    const float t118 = t3 * t67;
-    const float t119 = t44 * t118;
-    const float t120 = t91 - t85;
-    const float t121 = t113 * t120;
-    const float t122 = t99 * t108;
-    const float t123 = t121 - t122;
-    const float t124 = t44 * t123;
-    const float t125 = t119 - t124;
-    const float t126 = m_1 * t5;
-    const float t127 = m_2 * t5;
-    const float t128 = t126 + t127;
-    const float t129 = t5 * t128;
-    const float t130 = m_2 * t6;
-    const float t131 = m_1 * t6;
-    const float t132 = t130 + t131;
-    const float t133 = t6 * t132;
-    const float t134 = t129 + t133;
+    const float t77 = y_dot * t59;
+    const float t78 = t76 + t77;
+    const float t79 = t75 * t78;
+    const float t80 = t74 + t79;
+    const float t81 = t6 * t80;
+    const float t82 = x_dot * t6;
+    const float t83 = y_dot * t5;
+    const float t84 = t82 + t83;
+    const float t85 = theta_dot * t84;
+    const float t86 = t49 * t85;
+    const float t87 = t81 - t86;
+    const float t88 = t71 * t87;
+    const float t89 = L * Theta_2;
+    const float t90 = m_1 * t57;
+    const float t91 = m_2 * t59;
+    const float t92 = t90 + t91;
+    const float t93 = t89 * t92;
+    const float t94 = t8 * t85;
+    const float t95 = t93 * t94;
+    const float t96 = t88 + t95;
+    const float t97 = t67 - t96;
+    const float t98 = t43 * t97;
+    const float t99 = t9 * t66;
+    const float t100 = t5 * t80;
+    const float t101 = t59 * t85;
+    const float t102 = t100 - t101;
+    const float t103 = t71 * t102;
+    const float t104 = m_1 * t47;
+    const float t105 = m_2 * t49;
+    const float t106 = t104 + t105;
+    const float t107 = t89 * t106;
+    const float t108 = t107 * t94;
+    const float t109 = t103 - t108;
+    const float t110 = t99 - t109;
+    const float t111 = t43 * t110;
+    const float t112 = t3 * t66;
+    const float t113 = t86 - t81;
+    const float t114 = t107 * t113;
+    const float t115 = t93 * t102;
+    const float t116 = t114 - t115;
+    const float t117 = t112 - t116;
+    const float t118 = t43 * t117;
+    const float t119 = m_1 * t5;
+    const float t120 = m_2 * t5;
+    const float t121 = t119 + t120;
+    const float t122 = t5 * t121;
+    const float t123 = m_2 * t6;
+    const float t124 = m_1 * t6;
+    const float t125 = t123 + t124;
+    const float t126 = t6 * t125;
+    const float t127 = t122 + t126;
     const float T = u[1];
-    const float t135 = T * t12;
-    const float t136 = t134 * t135;
-    const float t137 = L * t127;
-    const float t138 = T * t3;
-    const float t139 = t137 * t138;
-    const float t140 = t136 - t139;
-    const float t141 = t12 * t140;
-    const float t142 = T * t9;
-    const float t143 = t134 * t142;
-    const float t144 = L * t130;
-    const float t145 = t144 * t138;
-    const float t146 = t143 + t145;
-    const float t147 = t9 * t146;
-    const float t148 = t141 + t147;
-    const float t149 = t72 * t138;
-    const float t150 = t3 * t149;
-    const float t151 = t148 + t150;
-    const float t152 = t44 * t151;
-    float rest = t103 - t103;
-    rest += t117 - t117;
-    rest += t125 - t125;
-    rest += t152 - t152;
-    if (isnan(rest) != 0) {
+    const float t128 = T * t12;
+    const float t129 = t127 * t128;
+    const float t130 = L * t120;
+    const float t131 = T * t3;
+    const float t132 = t130 * t131;
+    const float t133 = t129 - t132;
+    const float t134 = t12 * t133;
+    const float t135 = T * t9;
+    const float t136 = t127 * t135;
+    const float t137 = L * t123;
+    const float t138 = t137 * t131;
+    const float t139 = t136 + t138;
+    const float t140 = t9 * t139;
+    const float t141 = t134 + t140;
+    const float t142 = t69 * t131;
+    const float t143 = t3 * t142;
+    const float t144 = t141 + t143;
+    const float t145 = t43 * t144;
+    float rest = (t98 - t98) * t111 * t118;
+    rest += t145 - t145;
+    if (FRONT_CAR_BODIES_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
-    qdd[0] = t103;
-    qdd[1] = t117;
-    qdd[2] = t125;
-    qdd[3] = t152;
+    qdd[0] = t98;
+    qdd[1] = t111;
+    qdd[2] = t118;
+    qdd[3] = t145;
     return FRONT_CAR_BODIES_OK;
 }
 
@@ -380,10 +378,10 @@ front_car_bodies_status front_car_bodies_multipliers_f(const float q[4], const f
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -406,7 +404,7 @@ front_car_bodies_status front_car_bodies_multipliers_f(const float q[4], const f
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_BODIES_CONSTRAINT_RANK;
     }
     const float t18 = t4 * t4;
@@ -422,149 +420,144 @@ front_car_bodies_status front_car_bodies_multipliers_f(const float q[4], const f
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
-    const float t27 = fabsf(m_1);
-    const float t28 = fabsf(m_2);
-    const float t29 = t27 + t28;
-    const float t30 = fabsf(Theta_2);
-    const float t31 = t29 * t30;
-    const float t32 = t13 * t31;
-    const float t33 = fabsf(Theta_1);
-    const float t34 = fabsf(L);
-    const float t35 = t28 * t34;
-    const float t36 = t34 * t35;
-    const float t37 = t33 + t36;
-    const float t38 = t37 * t30;
-    const float t39 = t7 * t38;
-    const float t40 = t10 * t31;
-    const float t41 = t39 + t40;
-    const float t42 = t32 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t27 = fabsf(Theta_1);
+    const float t28 = fabsf(L);
+    const float t29 = fabsf(m_2);
+    const float t30 = t29 * t28;
+    const float t31 = t28 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = fabsf(Theta_2);
+    const float t34 = t32 * t33;
+    const float t35 = t7 * t34;
+    const float t36 = fabsf(m_1);
+    const float t37 = t36 + t29;
+    const float t38 = t37 * t33;
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_BODIES_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_BODIES_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * Theta_2;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t45 * t51;
-    const float theta_dot = qd[2];
-    const float t53 = theta_dot * L;
-    const float t54 = theta_dot * t53;
-    const float t55 = m_2 * t54;
-    const float t56 = t6 * t55;
-    const float t57 = t6 * t4;
-    const float t58 = t5 * t3;
-    const float t59 = t57 - t58;
+    const float t43 = 1.0f / t25;
+    const float t44 = L * Theta_2;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t44 * t50;
+    const float t52 = t6 * t4;
+    const float t53 = t5 * t3;
+    const float t54 = t52 - t53;
     const float K_f = u[0];
-    const float t60 = K_f * t59;
-    const float t61 = t56 + t60;
-    const float t62 = m_1 * t5;
-    const float t63 = m_2 * t5;
-    const float t64 = t62 + t63;
-    const float t65 = t5 * t64;
-    const float t66 = m_2 * t6;
-    const float t67 = m_1 * t6;
-    const float t68 = t66 + t67;
-    const float t69 = t6 * t68;
-    const float t70 = t65 + t69;
-    const float t71 = L * m_2;
-    const float t72 = L * t71;
-    const float t73 = Theta_1 + t72;
-    const float t74 = t3 * t73;
-    const float t75 = Theta_2 * t74;
+    const float t55 = K_f * t54;
+    const float t56 = L * m_2;
+    const float theta_dot = qd[2];
+    const float t57 = theta_dot * theta_dot;
+    const float t58 = t56 * t57;
+    const float t59 = t6 * t58;
+    const float t60 = t55 + t59;
+    const float t61 = m_1 * t5;
+    const float t62 = m_2 * t5;
+    const float t63 = t61 + t62;
+    const float t64 = t5 * t63;
+    const float t65 = m_2 * t6;
+    const float t66 = m_1 * t6;
+    const float t67 = t65 + t66;
+    const float t68 = t6 * t67;
+    const float t69 = t64 + t68;
+    const float t70 = L * t56;
+    const float t71 = Theta_1 + t70;
+    const float t72 = t3 * t71;
+    const float t73 = Theta_2 * t72;
     const float phi_dot = qd[3];
-    const float t76 = phi_dot * t3;
-    const float t77 = L * t76;
-    const float t78 = theta_dot * t77;
-    const float t79 = theta_dot + phi_dot;
-    const float t80 = t79 * t59;
+    const float t74 = phi_dot * t3;
+    const float t75 = L * t74;
+    const float t76 = theta_dot * t75;
+    const float t77 = theta_dot + phi_dot;
     const float x_dot = qd[0];
-    const float t81 = x_dot * t80;
-    const float t82 = t79 * t49;
+    const float t78 = x_dot * t54;
     const float y_dot = qd[1];
-    const float t83 = y_dot * t82;
-    const float t84 = t81 + t83;
-    const float t85 = t78 + t84;
-    const float t86 = t6 * t85;
-    const float t87 = theta_dot * t6;
-    const float t88 = x_dot * t87;
-    const float t89 = theta_dot * t5;
-    const float t90 = y_dot * t89;
-    const float t91 = t88 + t90;
-    const float t92 = t91 * t59;
-    const float t93 = t86 - t92;
-    const float t94 = t75 * t93;
-    const float t95 = t8 * t91;
-    const float t96 = t95 * t52;
-    const float t97 = t94 + t96;
-    const float t98 = t44 * t97;
-    const float t99 = t70 * t98;
-    const float t100 = L * t63;
-    const float t101 = m_1 * t57;
-    const float t102 = m_2 * t59;
-    const float t103 = t101 + t102;
-    const float t104 = t45 * t103;
-    const float t105 = t92 - t86;
-    const float t106 = t104 * t105;
-    const float t107 = t5 * t85;
-    const float t108 = t91 * t49;
-    const float t109 = t107 - t108;
-    const float t110 = t52 * t109;
-    const float t111 = t106 - t110;
-    const float t112 = t44 * t111;
-    const float t113 = t100 * t112;
-    const float t114 = t99 - t113;
-    const float t115 = t61 + t114;
-    const float t116 = t52 * t115;
-    const float t117 = t5 * t55;
-    const float t118 = K_f * t49;
-    const float t119 = t117 + t118;
-    const float t120 = t75 * t109;
-    const float t121 = t95 * t104;
-    const float t122 = t120 - t121;
-    const float t123 = t44 * t122;
-    const float t124 = t70 * t123;
-    const float t125 = L * t66;
-    const float t126 = t125 * t112;
-    const float t127 = t124 + t126;
-    const float t128 = t119 + t127;
-    const float t129 = t104 * t128;
-    const float t130 = t116 - t129;
-    const float t131 = t8 * t130;
-    const float t132 = t75 * t115;
-    const float t133 = L * t3;
-    const float t134 = K_f * t133;
-    const float t135 = t125 * t123;
-    const float t136 = t100 * t98;
-    const float t137 = t135 - t136;
-    const float t138 = t73 * t112;
-    const float t139 = t137 + t138;
-    const float t140 = t134 + t139;
-    const float t141 = t104 * t140;
-    const float t142 = t132 - t141;
-    const float t143 = t59 * t142;
-    const float t144 = t131 - t143;
-    const float t145 = t75 * t128;
-    const float t146 = t52 * t140;
-    const float t147 = t145 - t146;
-    const float t148 = t49 * t147;
-    const float t149 = t144 - t148;
-    const float t150 = t44 * t149;
-    const float t151 = t6 * t142;
-    const float t152 = t5 * t147;
-    const float t153 = t151 + t152;
-    const float t154 = t44 * t153;
-    float rest = t150 - t150;
-    rest += t154 - t154;
-    if (isnan(rest) != 0) {
+    const float t79 = y_dot * t48;
+    const float t80 = t78 + t79;
+    const float t81 = t77 * t80;
+    const float t82 = t76 + t81;
+    const float t83 = t6 * t82;
+    const float t84 = x_dot * t6;
+    const float t85 = y_dot * t5;
+    const float t86 = t84 + t85;
+    const float t87 = theta_dot * t86;
+    const float t88 = t54 * t87;
+    const float t89 = t83 - t88;
+    const float t90 = t73 * t89;
+    const float t91 = t8 * t87;
+    const float t92 = t51 * t91;
+    const float t93 = t90 + t92;
+    const float t94 = t43 * t93;
+    const float t95 = t69 * t94;
+    const float t96 = L * t62;
+    const float t97 = m_1 * t52;
+    const float t98 = m_2 * t54;
+    const float t99 = t97 + t98;
+    const float t100 = t44 * t99;
+    const float t101 = t88 - t83;
+    const float t102 = t100 * t101;
+    const float t103 = t5 * t82;
+    const float t104 = t48 * t87;
+    const float t105 = t103 - t104;
+    const float t106 = t51 * t105;
+    const float t107 = t102 - t106;
+    const float t108 = t43 * t107;
+    const float t109 = t96 * t108;
+    const float t110 = t95 - t109;
+    const float t111 = t60 + t110;
+    const float t112 = t51 * t111;
+    const float t113 = K_f * t48;
+    const float t114 = t5 * t58;
+    const float t115 = t113 + t114;
+    const float t116 = t73 * t105;
+    const float t117 = t100 * t91;
+    const float t118 = t116 - t117;
+    const float t119 = t43 * t118;
+    const float t120 = t69 * t119;
+    const float t121 = L * t65;
+    const float t122 = t121 * t108;
+    const float t123 = t120 + t122;
+    const float t124 = t115 + t123;
+    const float t125 = t100 * t124;
+    const float t126 = t112 - t125;
+    const float t127 = t8 * t126;
+    const float t128 = t73 * t111;
+    const float t129 = L * t3;
+    const float t130 = K_f * t129;
+    const float t131 = t121 * t119;
+    const float t132 = t96 * t94;
+    const float t133 = t131 - t132;
+    const float t134 = t71 * t108;
+    const float t135 = t133 + t134;
+    const float t136 = t130 + t135;
+    const float t137 = t100 * t136;
+    const float t138 = t128 - t137;
+    const float t139 = t54 * t138;
+    const float t140 = t127 - t139;
+    const float t141 = t73 * t124;
+    const float t142 = t51 * t136;
+    const float t143 = t141 - t142;
+    const float t144 = t48 * t143;
+    const float t145 = t140 - t144;
+    const float t146 = t43 * t145;
+    const float t147 = t6 * t138;
+    const float t148 = t5 * t143;
+    const float t149 = t147 + t148;
+    const float t150 = t43 * t149;
+    float rest = (t146 - t146) * t150;
+    if (FRONT_CAR_BODIES_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
-    lambda_B[0] = t150;
-    lambda_B[1] = t154;
+    lambda_B[0] = t146;
+    lambda_B[1] = t150;
     return FRONT_CAR_BODIES_OK;
 }
 
@@ -573,10 +566,10 @@ front_car_bodies_status front_car_bodies_singularity_f(const float q[4], const f
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -634,9 +627,8 @@ front_car_bodies_status front_car_bodies_singularity_f(const float q[4], const f
     const float t50 = t34 * t34;
     const float t51 = 1.0f + t50;
     const float t52 = ((t51 != 0.0f) ? t49 : 0.0f) / ((t51 != 0.0f) ? t51 : 1.0f);
-    float rest = t33 - t33;
-    rest += t52 - t52;
-    if (isnan(rest) != 0) {
+    float rest = (t33 - t33) * t52;
+    if (FRONT_CAR_BODIES_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
     measure[0] = t33;

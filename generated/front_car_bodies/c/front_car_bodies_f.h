@@ -15,9 +15,9 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics       7     15      1      0      2      0
- * forward_dynamics      38    101      1      0      2      0
- * multipliers           42     99      1      0      2      0
+ * inverse_dynamics       7     14      1      0      2      0
+ * forward_dynamics      38     94      1      0      2      0
+ * multipliers           42     95      1      0      2      0
  * singularity           12     26      5      1      2      0
  * (changes of sign are not counted)
  *

@@ -25,8 +25,8 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     47      3      0      2      0
- * weighted_nullspace_projector         15     54      4      0      2      0
+ * weighted_pseudoinverse               17     46      3      0      2      0
+ * weighted_nullspace_projector         15     53      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     14      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
@@ -48,9 +48,9 @@
  * actuator_velocity                     3      4      0      0      2      0
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                        12     29      2      0      2      0
- * forward_dynamics                     41     95      1      0      2      0
- * multipliers                          44     94      1      0      2      0
- * energy                                8     16      0      0      1      0
+ * forward_dynamics                     41     89      1      0      2      0
+ * multipliers                          43     90      1      0      2      0
+ * energy                                8     15      0      0      1      0
  * singularity                          12     26      5      1      2      0
  * (changes of sign are not counted)
  *

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define FRONT_CAR_WHEELSET_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define FRONT_CAR_WHEELSET_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define FRONT_CAR_WHEELSET_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define FRONT_CAR_WHEELSET_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -124,7 +133,7 @@ front_car_wheelset_params_f front_car_wheelset_default_params_f(void) {
 front_car_wheelset_status front_car_wheelset_mass_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float G[16]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t2;
@@ -143,12 +152,9 @@ front_car_wheelset_status front_car_wheelset_mass_matrix_f(const float q[4], con
     const float t10 = Theta_1 + t9;
     const float Theta_2 = p->Theta_2;
     const float t11 = Theta_2 + t10;
-    float rest = t4 - t4;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    rest += t11 - t11;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t4 - t4) * t7 * t8;
+    rest += (t11 - t11) * Theta_2;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G[0] = t4;
@@ -173,7 +179,7 @@ front_car_wheelset_status front_car_wheelset_mass_matrix_f(const float q[4], con
 front_car_wheelset_status front_car_wheelset_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float C[16]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t2;
@@ -188,9 +194,8 @@ front_car_wheelset_status front_car_wheelset_coriolis_matrix_f(const float q[4],
     const float t7 = -t6;
     const float t8 = t2 * t5;
     const float t9 = -t8;
-    float rest = t7 - t7;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    float rest = (t7 - t7) * t9;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C[0] = 0.0f;
@@ -215,7 +220,7 @@ front_car_wheelset_status front_car_wheelset_coriolis_matrix_f(const float q[4],
 front_car_wheelset_status front_car_wheelset_coriolis_force_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float C_qd[4]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t2;
@@ -232,9 +237,8 @@ front_car_wheelset_status front_car_wheelset_coriolis_force_f(const float q[4], 
     const float t9 = theta_dot * t2;
     const float t10 = t5 * t9;
     const float t11 = -t10;
-    float rest = t8 - t8;
-    rest += t11 - t11;
-    if (isnan(rest) != 0) {
+    float rest = (t8 - t8) * t11;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -270,10 +274,10 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_f(const float q
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -295,12 +299,9 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_f(const float q
     const float L = p->L;
     const float t15 = L * t6;
     const float t16 = -t15;
-    float rest = t3 - t3;
-    rest += t7 - t7;
-    rest += t10 - t10;
-    rest += t14 - t14;
-    rest += t16 - t16;
-    if (isnan(rest) != 0) {
+    float rest = (t3 - t3) * t7 * t10;
+    rest += (t14 - t14) * t16;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B[0] = t3;
@@ -319,10 +320,10 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot_f(const flo
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -349,12 +350,9 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot_f(const flo
     const float t18 = phi_dot * t5;
     const float L = p->L;
     const float t19 = L * t18;
-    float rest = t7 - t7;
-    rest += t8 - t8;
-    rest += t13 - t13;
-    rest += t17 - t17;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    float rest = (t7 - t7) * t8 * t13;
+    rest += (t17 - t17) * t19;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -373,10 +371,10 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const fl
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -399,7 +397,7 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const fl
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float t18 = 1.0f / t14;
@@ -425,13 +423,9 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const fl
     const float t38 = t36 * t37;
     const float t39 = t4 * t36;
     const float t40 = -t39;
-    float rest = t25 - t25;
-    rest += t27 - t27;
-    rest += t34 - t34;
-    rest += t35 - t35;
-    rest += t38 - t38;
-    rest += t40 - t40;
-    if (isnan(rest) != 0) {
+    float rest = (t25 - t25) * t27 * t34;
+    rest += (t35 - t35) * t38 * t40;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -450,10 +444,10 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -476,7 +470,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float t18 = 1.0f / t14;
@@ -489,13 +483,9 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
     const float t25 = t5 * t9;
     const float t26 = t18 * t25;
     const float t27 = t7 * t18;
-    float rest = t19 - t19;
-    rest += t21 - t21;
-    rest += t23 - t23;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    rest += t27 - t27;
-    if (isnan(rest) != 0) {
+    float rest = (t19 - t19) * t21 * t23;
+    rest += (t24 - t24) * t26 * t27;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -522,10 +512,10 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -548,7 +538,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -620,13 +610,9 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     const float t82 = t3 * t81;
     const float t83 = t20 * t82;
     const float t84 = 2.0f * t83;
-    float rest = t34 - t34;
-    rest += t52 - t52;
-    rest += t63 - t63;
-    rest += t70 - t70;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    float rest = (t34 - t34) * t52 * t63;
+    rest += (t70 - t70) * t80 * t84;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -653,10 +639,10 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -679,7 +665,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -695,84 +681,78 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
-    const float t27 = fabsf(m_1);
-    const float t28 = fabsf(m_2);
-    const float t29 = t27 + t28;
-    const float t30 = fabsf(Theta_2);
-    const float t31 = t29 * t30;
-    const float t32 = t13 * t31;
-    const float t33 = t10 * t31;
-    const float t34 = fabsf(Theta_1);
-    const float t35 = fabsf(L);
-    const float t36 = t35 * t35;
-    const float t37 = t28 * t36;
-    const float t38 = t34 + t37;
-    const float t39 = t30 * t38;
-    const float t40 = t7 * t39;
-    const float t41 = t33 + t40;
-    const float t42 = t32 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t27 = fabsf(Theta_2);
+    const float t28 = fabsf(Theta_1);
+    const float t29 = fabsf(m_2);
+    const float t30 = fabsf(L);
+    const float t31 = t30 * t30;
+    const float t32 = t29 * t31;
+    const float t33 = t28 + t32;
+    const float t34 = t27 * t33;
+    const float t35 = t7 * t34;
+    const float t36 = fabsf(m_1);
+    const float t37 = t36 + t29;
+    const float t38 = t37 * t27;
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * Theta_2;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t45 * t51;
-    const float t53 = t8 * t52;
-    const float t54 = t6 * t4;
-    const float t55 = t5 * t3;
-    const float t56 = t54 - t55;
-    const float t57 = m_2 * t19;
-    const float t58 = Theta_1 + t57;
-    const float t59 = Theta_2 * t58;
-    const float t60 = t3 * t59;
-    const float t61 = t56 * t60;
-    const float t62 = t53 - t61;
-    const float t63 = t44 * t62;
-    const float t64 = t59 / t25;
-    const float t65 = t48 * t64;
-    const float t66 = m_1 * t54;
-    const float t67 = m_2 * t56;
-    const float t68 = t66 + t67;
-    const float t69 = t45 * t68;
-    const float t70 = t8 * t69;
-    const float t71 = t49 * t60;
-    const float t72 = t70 + t71;
-    const float t73 = t44 * t72;
-    const float t74 = -t73;
-    const float t75 = t55 * t64;
-    const float t76 = t45 / t25;
-    const float t77 = t22 * t76;
-    const float t78 = m_1 + m_2;
-    const float t79 = t4 * t78;
-    const float t80 = t79 * t76;
-    const float t81 = -t80;
-    const float t82 = -t77;
-    float rest = t63 - t63;
-    rest += t65 - t65;
-    rest += t74 - t74;
-    rest += t75 - t75;
-    rest += t77 - t77;
-    rest += t81 - t81;
-    rest += t82 - t82;
-    rest += t80 - t80;
-    if (isnan(rest) != 0) {
+    const float t43 = 1.0f / t25;
+    const float t44 = L * Theta_2;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t44 * t50;
+    const float t52 = t8 * t51;
+    const float t53 = t6 * t4;
+    const float t54 = t5 * t3;
+    const float t55 = t53 - t54;
+    const float t56 = m_2 * t19;
+    const float t57 = Theta_1 + t56;
+    const float t58 = Theta_2 * t57;
+    const float t59 = t3 * t58;
+    const float t60 = t55 * t59;
+    const float t61 = t52 - t60;
+    const float t62 = t43 * t61;
+    const float t63 = t58 / t25;
+    const float t64 = t47 * t63;
+    const float t65 = m_1 * t53;
+    const float t66 = m_2 * t55;
+    const float t67 = t65 + t66;
+    const float t68 = t44 * t67;
+    const float t69 = t8 * t68;
+    const float t70 = t48 * t59;
+    const float t71 = t69 + t70;
+    const float t72 = t43 * t71;
+    const float t73 = -t72;
+    const float t74 = t54 * t63;
+    const float t75 = t44 / t25;
+    const float t76 = t22 * t75;
+    const float t77 = m_1 + m_2;
+    const float t78 = t4 * t77;
+    const float t79 = t78 * t75;
+    const float t80 = -t79;
+    const float t81 = -t76;
+    float rest = (t62 - t62) * t64 * t73;
+    rest += (t74 - t74) * t76 * t80;
+    rest += (t81 - t81) * t79;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    B_G_pinv[0] = t63;
-    B_G_pinv[1] = t65;
-    B_G_pinv[2] = t74;
-    B_G_pinv[3] = t75;
-    B_G_pinv[4] = t77;
-    B_G_pinv[5] = t81;
-    B_G_pinv[6] = t82;
-    B_G_pinv[7] = t80;
+    B_G_pinv[0] = t62;
+    B_G_pinv[1] = t64;
+    B_G_pinv[2] = t73;
+    B_G_pinv[3] = t74;
+    B_G_pinv[4] = t76;
+    B_G_pinv[5] = t80;
+    B_G_pinv[6] = t81;
+    B_G_pinv[7] = t79;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -781,10 +761,10 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -807,7 +787,7 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -823,100 +803,91 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
-    const float t27 = fabsf(m_1);
-    const float t28 = fabsf(m_2);
-    const float t29 = t27 + t28;
-    const float t30 = fabsf(Theta_2);
-    const float t31 = t29 * t30;
-    const float t32 = t13 * t31;
-    const float t33 = t10 * t31;
-    const float t34 = fabsf(Theta_1);
-    const float t35 = fabsf(L);
-    const float t36 = t35 * t35;
-    const float t37 = t28 * t36;
-    const float t38 = t34 + t37;
-    const float t39 = t30 * t38;
-    const float t40 = t7 * t39;
-    const float t41 = t33 + t40;
-    const float t42 = t32 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t27 = fabsf(Theta_2);
+    const float t28 = fabsf(Theta_1);
+    const float t29 = fabsf(m_2);
+    const float t30 = fabsf(L);
+    const float t31 = t30 * t30;
+    const float t32 = t29 * t31;
+    const float t33 = t28 + t32;
+    const float t34 = t27 * t33;
+    const float t35 = t7 * t34;
+    const float t36 = fabsf(m_1);
+    const float t37 = t36 + t29;
+    const float t38 = t37 * t27;
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const float t44 = Theta_2 * t19;
-    const float t45 = t44 / t25;
-    const float t46 = t6 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t5 * t3;
-    const float t49 = t46 - t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t46 * t51;
-    const float t53 = t45 * t52;
-    const float t54 = t5 * t4;
-    const float t55 = m_1 * t54;
-    const float t56 = t6 * t3;
-    const float t57 = t54 + t56;
-    const float t58 = m_2 * t57;
-    const float t59 = t55 + t58;
-    const float t60 = t46 * t59;
-    const float t61 = t45 * t60;
-    const float t62 = t3 * t46;
-    const float t63 = m_2 * t19;
-    const float t64 = Theta_1 + t63;
-    const float t65 = L * Theta_2;
-    const float t66 = t64 * t65;
-    const float t67 = t66 / t25;
-    const float t68 = t62 * t67;
-    const float t69 = t54 * t51;
-    const float t70 = t45 * t69;
-    const float t71 = t54 * t59;
-    const float t72 = t45 * t71;
-    const float t73 = t3 * t54;
-    const float t74 = t73 * t67;
-    const float t75 = t65 / t25;
-    const float t76 = t3 * t51;
-    const float t77 = t75 * t76;
-    const float t78 = t3 * t59;
-    const float t79 = t75 * t78;
-    const float t80 = Theta_2 * t64;
-    const float t81 = t80 / t25;
-    const float t82 = t7 * t81;
-    const float t83 = -t77;
-    const float t84 = -t79;
-    const float t85 = m_1 + m_2;
-    const float t86 = t85 * t20;
-    const float t87 = t86 * t45;
-    float rest = t53 - t53;
-    rest += t61 - t61;
-    rest += t68 - t68;
-    rest += t70 - t70;
-    rest += t72 - t72;
-    rest += t74 - t74;
-    rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t82 - t82;
-    rest += t83 - t83;
-    rest += t84 - t84;
-    rest += t87 - t87;
-    if (isnan(rest) != 0) {
+    const float t43 = Theta_2 * t19;
+    const float t44 = t43 / t25;
+    const float t45 = t6 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t5 * t3;
+    const float t48 = t45 - t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t45 * t50;
+    const float t52 = t44 * t51;
+    const float t53 = t5 * t4;
+    const float t54 = m_1 * t53;
+    const float t55 = t6 * t3;
+    const float t56 = t53 + t55;
+    const float t57 = m_2 * t56;
+    const float t58 = t54 + t57;
+    const float t59 = t45 * t58;
+    const float t60 = t44 * t59;
+    const float t61 = t3 * t45;
+    const float t62 = m_2 * t19;
+    const float t63 = Theta_1 + t62;
+    const float t64 = L * Theta_2;
+    const float t65 = t63 * t64;
+    const float t66 = t65 / t25;
+    const float t67 = t61 * t66;
+    const float t68 = t53 * t50;
+    const float t69 = t44 * t68;
+    const float t70 = t53 * t58;
+    const float t71 = t44 * t70;
+    const float t72 = t3 * t53;
+    const float t73 = t72 * t66;
+    const float t74 = t64 / t25;
+    const float t75 = t3 * t50;
+    const float t76 = t74 * t75;
+    const float t77 = t3 * t58;
+    const float t78 = t74 * t77;
+    const float t79 = Theta_2 * t63;
+    const float t80 = t79 / t25;
+    const float t81 = t7 * t80;
+    const float t82 = -t76;
+    const float t83 = -t78;
+    const float t84 = m_1 + m_2;
+    const float t85 = t84 * t20;
+    const float t86 = t85 * t44;
+    float rest = (t52 - t52) * t60 * t67;
+    rest += (t69 - t69) * t71 * t73;
+    rest += (t76 - t76) * t78 * t81;
+    rest += (t82 - t82) * t83 * t86;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    N_BG[0] = t53;
-    N_BG[1] = t61;
-    N_BG[2] = t68;
+    N_BG[0] = t52;
+    N_BG[1] = t60;
+    N_BG[2] = t67;
     N_BG[3] = 0.0f;
-    N_BG[4] = t70;
-    N_BG[5] = t72;
-    N_BG[6] = t74;
+    N_BG[4] = t69;
+    N_BG[5] = t71;
+    N_BG[6] = t73;
     N_BG[7] = 0.0f;
-    N_BG[8] = t77;
-    N_BG[9] = t79;
-    N_BG[10] = t82;
+    N_BG[8] = t76;
+    N_BG[9] = t78;
+    N_BG[10] = t81;
     N_BG[11] = 0.0f;
-    N_BG[12] = t83;
-    N_BG[13] = t84;
-    N_BG[14] = t87;
+    N_BG[12] = t82;
+    N_BG[13] = t83;
+    N_BG[14] = t86;
     N_BG[15] = 1.0f;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -927,10 +898,10 @@ front_car_wheelset_status front_car_wheelset_control_matrix_f(const float q[4], 
     const float t1 = theta + phi;
     const float t2 = fabsf(t1);
     const float t3 = fabsf(phi);
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t3)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t3))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {t1, phi, phi, phi};
@@ -942,10 +913,8 @@ front_car_wheelset_status front_car_wheelset_control_matrix_f(const float q[4], 
     const float t8 = L * t6;
     const float t5 = cosine[0];
     const float t4 = sine[0];
-    float rest = t5 - t5;
-    rest += t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    float rest = (t5 - t5) * t4 * t8;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M[0] = t5;
@@ -964,10 +933,10 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix_f(const fl
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -990,7 +959,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix_f(const fl
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -1002,10 +971,8 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix_f(const fl
     const float t24 = t23 / t14;
     const float t25 = L * t3;
     const float t26 = t25 / t14;
-    float rest = t21 - t21;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    if (isnan(rest) != 0) {
+    float rest = (t21 - t21) * t24 * t26;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_tilde[0] = t21;
@@ -1024,10 +991,10 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse_f(c
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1040,7 +1007,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse_f(c
     const float t6 = cosine[1];
     const float t3 = sine[0];
     const float t4 = cosine[0];
-    if (!(t7 > 0.0f)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t7 > 0.0f))) {
         const float t8 = t5 * t5;
         const float t9 = L * t6;
         const float t10 = t3 * t9;
@@ -1060,10 +1027,8 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse_f(c
     const float t19 = t4 * t6;
     const float t20 = t3 * t6;
     const float t21 = t5 / L;
-    float rest = t19 - t19;
-    rest += t20 - t20;
-    rest += t21 - t21;
-    if (isnan(rest) != 0) {
+    float rest = (t19 - t19) * t20 * t21;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_tilde_pinv[0] = t19;
@@ -1082,10 +1047,10 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1103,7 +1068,7 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float
     const float t12 = t11 * 3.637979e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t9 > t12))) {
         const float t13 = t5 * t5;
         const float t14 = t3 * t7;
         const float t15 = t14 * t14;
@@ -1116,9 +1081,8 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float
     }
     const float t18 = t3 / t4;
     const float t19 = t5 / t8;
-    float rest = t18 - t18;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    float rest = (t18 - t18) * t19;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     F_B[0] = 1.0f;
@@ -1137,10 +1101,10 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1163,7 +1127,7 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -1224,17 +1188,11 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t69 = t68 / t19;
     const float t70 = Theta_2 / t14;
     const float t71 = t7 * t70;
-    float rest = t34 - t34;
-    rest += t43 - t43;
-    rest += t48 - t48;
-    rest += t51 - t51;
-    rest += t56 - t56;
-    rest += t60 - t60;
-    rest += t61 - t61;
-    rest += t69 - t69;
-    rest += t71 - t71;
+    float rest = (t34 - t34) * t43 * t48;
+    rest += (t51 - t51) * t56 * t60;
+    rest += (t61 - t61) * t69 * t71;
     rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_tilde[0] = t34;
@@ -1261,10 +1219,10 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1287,7 +1245,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -1588,19 +1546,11 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float t305 = t304 / t19;
     const float t306 = t303 * t305;
     const float t307 = 2.0f * t306;
-    float rest = t87 - t87;
-    rest += t133 - t133;
-    rest += t146 - t146;
-    rest += t181 - t181;
-    rest += t183 - t183;
-    rest += t186 - t186;
-    rest += t233 - t233;
-    rest += t274 - t274;
-    rest += t279 - t279;
-    rest += t291 - t291;
-    rest += t301 - t301;
-    rest += t307 - t307;
-    if (isnan(rest) != 0) {
+    float rest = (t87 - t87) * t133 * t146;
+    rest += (t181 - t181) * t183 * t186;
+    rest += (t233 - t233) * t274 * t279;
+    rest += (t291 - t291) * t301 * t307;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C_tilde[0] = t87;
@@ -1648,10 +1598,10 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix_f(const float q
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1669,7 +1619,7 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix_f(const float q
     const float t12 = t11 * 3.637979e-12f;
     const float t3 = sine[0];
     const float t5 = sine[1];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t9 > t12))) {
         const float t13 = t3 * t3;
         const float t14 = t5 * t7;
         const float t15 = t14 * t14;
@@ -1697,10 +1647,8 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix_f(const float q
     const float t28 = t27 / t9;
     const float t29 = t3 / t8;
     const float t30 = Theta_2 * t29;
-    float rest = t28 - t28;
-    rest += t30 - t30;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t28 - t28) * t30 * Theta_2;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_bar[0] = t28;
@@ -1715,10 +1663,10 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1741,10 +1689,10 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t13 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t13 > t17))) {
         if (!(t14 > t17)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
@@ -1810,9 +1758,8 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     const float t69 = t4 * t68;
     const float t70 = t22 + t69;
     const float t71 = t61 * t70;
-    float rest = t57 - t57;
-    rest += t71 - t71;
-    if (isnan(rest) != 0) {
+    float rest = (t57 - t57) * t71;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C_bar[0] = t57;
@@ -1844,10 +1791,10 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix_f(const floa
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1865,7 +1812,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix_f(const floa
     const float t12 = t11 * 3.637979e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t9 > t12))) {
         const float t13 = t5 * t5;
         const float t14 = t3 * t7;
         const float t15 = t14 * t14;
@@ -1879,7 +1826,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix_f(const floa
     const float t18 = t4 * t6;
     const float t19 = 1.0f / t18;
     float rest = t19 - t19;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_bar[0] = t19;
@@ -1894,10 +1841,10 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1920,7 +1867,7 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float t18 = L / t14;
@@ -1943,11 +1890,9 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q
     const float t32 = t3 * t25;
     const float t33 = t32 / t14;
     const float phi_dot = qd[3];
-    float rest = t28 - t28;
-    rest += t31 - t31;
-    rest += t33 - t33;
+    float rest = (t28 - t28) * t31 * t33;
     rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     qd_admissible[0] = t28;
@@ -1962,10 +1907,10 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1988,7 +1933,7 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float y_ddot = qdd[1];
@@ -2082,11 +2027,9 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t99 = t95 + t98;
     const float t100 = t99 / t56;
     const float phi_ddot = qdd[3];
-    float rest = t59 - t59;
-    rest += t88 - t88;
-    rest += t100 - t100;
+    float rest = (t59 - t59) * t88 * t100;
     rest += phi_ddot - phi_ddot;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
@@ -2102,11 +2045,9 @@ front_car_wheelset_status front_car_wheelset_projected_configuration_f(const flo
     const float y = q[1];
     const float theta = q[2];
     const float phi = q[3];
-    float rest = x - x;
-    rest += y - y;
-    rest += theta - theta;
+    float rest = (x - x) * y * theta;
     rest += phi - phi;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2121,10 +2062,10 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_f(const float q[4]
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2171,9 +2112,8 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_f(const float q[4]
     const float t30 = t16 + t29;
     const float t31 = theta_ddot + phi_ddot;
     const float t32 = Theta_2 * t31;
-    float rest = t30 - t30;
-    rest += t32 - t32;
-    if (isnan(rest) != 0) {
+    float rest = (t30 - t30) * t32;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     u[0] = t30;
@@ -2199,10 +2139,10 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity_f(const float q[4
     const float t1 = theta + phi;
     const float t2 = fabsf(t1);
     const float t3 = fabsf(phi);
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t3)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t3))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {t1, phi, phi, phi};
@@ -2223,9 +2163,8 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity_f(const float q[4
     const float t12 = theta_dot * t11;
     const float t13 = t10 + t12;
     const float phi_dot = qd[3];
-    float rest = t13 - t13;
-    rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    float rest = (t13 - t13) * phi_dot;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     nu[0] = t13;
@@ -2236,7 +2175,7 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity_f(const float q[4
 front_car_wheelset_status front_car_wheelset_actuator_mass_matrix_f(const float q[4], const front_car_wheelset_params_f *p, float G_nu[4]) {
     const float phi = q[3];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t2;
@@ -2245,7 +2184,7 @@ front_car_wheelset_status front_car_wheelset_actuator_mass_matrix_f(const float 
     const float L = p->L;
     const float t4 = fabsf(L);
     const float theta = q[2];
-    if (!(t4 > 0.0f)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t4 > 0.0f))) {
         const float t5 = t2 * t2;
         float t6;
         float t7;
@@ -2285,10 +2224,8 @@ front_car_wheelset_status front_car_wheelset_actuator_mass_matrix_f(const float 
     const float t28 = t22 * t27;
     const float t29 = t21 + t28;
     const float t30 = Theta_2 * t22;
-    float rest = t29 - t29;
-    rest += t30 - t30;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t29 - t29) * t30 * Theta_2;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_nu[0] = t29;
@@ -2303,10 +2240,10 @@ front_car_wheelset_status front_car_wheelset_actuator_bias_f(const float q[4], c
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2329,11 +2266,11 @@ front_car_wheelset_status front_car_wheelset_actuator_bias_f(const float q[4], c
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float t18 = fabsf(L);
-    if (!(t18 > 0.0f)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t18 > 0.0f))) {
         if (!(t14 > t17)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
@@ -2379,9 +2316,8 @@ front_car_wheelset_status front_car_wheelset_actuator_bias_f(const float q[4], c
     const float t48 = t19 / L;
     const float t49 = t48 * t39;
     const float t50 = Theta_2 * t49;
-    float rest = t47 - t47;
-    rest += t50 - t50;
-    if (isnan(rest) != 0) {
+    float rest = (t47 - t47) * t50;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     bias_nu[0] = t47;
@@ -2394,10 +2330,10 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2420,7 +2356,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -2436,152 +2372,144 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
-    const float t27 = fabsf(m_1);
-    const float t28 = fabsf(m_2);
-    const float t29 = t27 + t28;
-    const float t30 = fabsf(Theta_2);
-    const float t31 = t29 * t30;
-    const float t32 = t13 * t31;
-    const float t33 = t10 * t31;
-    const float t34 = fabsf(Theta_1);
-    const float t35 = fabsf(L);
-    const float t36 = t35 * t35;
-    const float t37 = t28 * t36;
-    const float t38 = t34 + t37;
-    const float t39 = t30 * t38;
-    const float t40 = t7 * t39;
-    const float t41 = t33 + t40;
-    const float t42 = t32 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t27 = fabsf(Theta_2);
+    const float t28 = fabsf(Theta_1);
+    const float t29 = fabsf(m_2);
+    const float t30 = fabsf(L);
+    const float t31 = t30 * t30;
+    const float t32 = t29 * t31;
+    const float t33 = t28 + t32;
+    const float t34 = t27 * t33;
+    const float t35 = t7 * t34;
+    const float t36 = fabsf(m_1);
+    const float t37 = t36 + t29;
+    const float t38 = t37 * t27;
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float theta_dot = qd[2];
-    const float t45 = theta_dot * t5;
-    const float y_dot = qd[1];
-    const float t46 = y_dot * t45;
-    const float t47 = theta_dot * t6;
-    const float x_dot = qd[0];
-    const float t48 = x_dot * t47;
-    const float t49 = t46 + t48;
-    const float t50 = t8 * t49;
-    const float t51 = L * Theta_2;
-    const float t52 = t5 * t4;
-    const float t53 = m_1 * t52;
-    const float t54 = t6 * t3;
-    const float t55 = t52 + t54;
-    const float t56 = m_2 * t55;
-    const float t57 = t53 + t56;
-    const float t58 = t51 * t57;
-    const float t59 = t50 * t58;
-    const float phi_dot = qd[3];
-    const float t60 = phi_dot * t3;
-    const float t61 = L * t60;
-    const float t62 = theta_dot * t61;
-    const float t63 = theta_dot + phi_dot;
-    const float t64 = t6 * t4;
-    const float t65 = t5 * t3;
-    const float t66 = t64 - t65;
-    const float t67 = t63 * t66;
-    const float t68 = x_dot * t67;
-    const float t69 = t63 * t55;
-    const float t70 = y_dot * t69;
-    const float t71 = t68 + t70;
-    const float t72 = t62 + t71;
-    const float t73 = t6 * t72;
-    const float t74 = t49 * t66;
-    const float t75 = t73 - t74;
-    const float t76 = L * m_2;
-    const float t77 = L * t76;
-    const float t78 = Theta_1 + t77;
-    const float t79 = t3 * t78;
-    const float t80 = Theta_2 * t79;
-    const float t81 = t75 * t80;
-    const float t82 = t59 + t81;
-    const float t83 = t44 * t82;
+    const float t43 = 1.0f / t25;
     const float T = u[1];
-    const float t84 = T * t3;
-    const float t85 = Theta_2 * t84;
-    const float t86 = L * t3;
+    const float t44 = T * t3;
+    const float t45 = Theta_2 * t44;
+    const float t46 = L * t3;
     const float K_f = u[0];
-    const float t87 = K_f * t86;
-    const float t88 = t3 * t87;
-    const float t89 = theta_dot * t76;
-    const float t90 = t89 * t47;
-    const float t91 = K_f * t66;
+    const float t47 = K_f * t46;
+    const float t48 = t3 * t47;
+    const float t49 = L * m_2;
+    const float theta_dot = qd[2];
+    const float t50 = theta_dot * t49;
+    const float t51 = theta_dot * t6;
+    const float t52 = t50 * t51;
+    const float t53 = t6 * t4;
+    const float t54 = t5 * t3;
+    const float t55 = t53 - t54;
+    const float t56 = K_f * t55;
+    const float t57 = t52 + t56;
+    const float t58 = t12 * t57;
+    const float t59 = theta_dot * t5;
+    const float t60 = t50 * t59;
+    const float t61 = t5 * t4;
+    const float t62 = t6 * t3;
+    const float t63 = t61 + t62;
+    const float t64 = K_f * t63;
+    const float t65 = t60 + t64;
+    const float t66 = t9 * t65;
+    const float t67 = t58 + t66;
+    const float t68 = t48 + t67;
+    const float t69 = Theta_2 * t68;
+    const float t70 = t45 - t69;
+    const float t71 = t12 * t70;
+    const float y_dot = qd[1];
+    const float t72 = y_dot * t59;
+    const float x_dot = qd[0];
+    const float t73 = x_dot * t51;
+    const float t74 = t72 + t73;
+    const float t75 = t8 * t74;
+    const float t76 = L * Theta_2;
+    const float t77 = m_1 * t61;
+    const float t78 = m_2 * t63;
+    const float t79 = t77 + t78;
+    const float t80 = t76 * t79;
+    const float t81 = t75 * t80;
+    const float t82 = L * t49;
+    const float t83 = Theta_1 + t82;
+    const float t84 = t3 * t83;
+    const float t85 = Theta_2 * t84;
+    const float phi_dot = qd[3];
+    const float t86 = phi_dot * t3;
+    const float t87 = L * t86;
+    const float t88 = theta_dot * t87;
+    const float t89 = theta_dot + phi_dot;
+    const float t90 = x_dot * t55;
+    const float t91 = y_dot * t63;
     const float t92 = t90 + t91;
-    const float t93 = t12 * t92;
-    const float t94 = t89 * t45;
-    const float t95 = K_f * t55;
-    const float t96 = t94 + t95;
-    const float t97 = t9 * t96;
-    const float t98 = t93 + t97;
-    const float t99 = t88 + t98;
-    const float t100 = Theta_2 * t99;
-    const float t101 = t85 - t100;
-    const float t102 = t12 * t101;
-    const float t103 = t102 * t44;
-    const float t104 = t83 + t103;
-    const float t105 = -t104;
-    const float t106 = t5 * t72;
-    const float t107 = t49 * t55;
-    const float t108 = t106 - t107;
-    const float t109 = t108 * t80;
-    const float t110 = m_1 * t64;
-    const float t111 = m_2 * t66;
-    const float t112 = t110 + t111;
-    const float t113 = t51 * t112;
-    const float t114 = t50 * t113;
-    const float t115 = t109 - t114;
-    const float t116 = t44 * t115;
-    const float t117 = t9 * t101;
-    const float t118 = t117 * t44;
-    const float t119 = t116 + t118;
-    const float t120 = -t119;
-    const float t121 = t74 - t73;
-    const float t122 = t113 * t121;
-    const float t123 = t58 * t108;
-    const float t124 = t122 - t123;
-    const float t125 = t124 * t44;
-    const float t126 = t3 * t101;
-    const float t127 = t126 * t44;
-    const float t128 = t125 + t127;
-    const float t129 = -t128;
-    const float t130 = m_1 + m_2;
-    const float t131 = T * t12;
-    const float t132 = t130 * t131;
-    const float t133 = t5 * t76;
-    const float t134 = t133 * t84;
-    const float t135 = t132 - t134;
-    const float t136 = t12 * t135;
-    const float t137 = T * t9;
-    const float t138 = t130 * t137;
-    const float t139 = t6 * t76;
-    const float t140 = t139 * t84;
-    const float t141 = t138 + t140;
-    const float t142 = t9 * t141;
-    const float t143 = t136 + t142;
-    const float t144 = Theta_2 + t78;
-    const float t145 = t84 * t144;
-    const float t146 = t145 - t100;
-    const float t147 = t3 * t146;
-    const float t148 = t143 + t147;
-    const float t149 = t44 * t148;
-    const float t150 = t123 - t122;
-    const float t151 = t150 * t44;
-    const float t152 = t149 - t151;
-    float rest = t105 - t105;
-    rest += t120 - t120;
-    rest += t129 - t129;
-    rest += t152 - t152;
-    if (isnan(rest) != 0) {
+    const float t93 = t89 * t92;
+    const float t94 = t88 + t93;
+    const float t95 = t6 * t94;
+    const float t96 = t74 * t55;
+    const float t97 = t95 - t96;
+    const float t98 = t85 * t97;
+    const float t99 = t81 + t98;
+    const float t100 = t71 + t99;
+    const float t101 = t43 * t100;
+    const float t102 = -t101;
+    const float t103 = t9 * t70;
+    const float t104 = t5 * t94;
+    const float t105 = t74 * t63;
+    const float t106 = t104 - t105;
+    const float t107 = t85 * t106;
+    const float t108 = m_1 * t53;
+    const float t109 = m_2 * t55;
+    const float t110 = t108 + t109;
+    const float t111 = t76 * t110;
+    const float t112 = t75 * t111;
+    const float t113 = t107 - t112;
+    const float t114 = t103 + t113;
+    const float t115 = t43 * t114;
+    const float t116 = -t115;
+    const float t117 = t3 * t70;
+    const float t118 = t96 - t95;
+    const float t119 = t111 * t118;
+    const float t120 = t80 * t106;
+    const float t121 = t119 - t120;
+    const float t122 = t117 + t121;
+    const float t123 = t43 * t122;
+    const float t124 = -t123;
+    const float t125 = m_1 + m_2;
+    const float t126 = T * t12;
+    const float t127 = t125 * t126;
+    const float t128 = t5 * t49;
+    const float t129 = t128 * t44;
+    const float t130 = t127 - t129;
+    const float t131 = t12 * t130;
+    const float t132 = T * t9;
+    const float t133 = t125 * t132;
+    const float t134 = t6 * t49;
+    const float t135 = t134 * t44;
+    const float t136 = t133 + t135;
+    const float t137 = t9 * t136;
+    const float t138 = t131 + t137;
+    const float t139 = Theta_2 + t83;
+    const float t140 = t44 * t139;
+    const float t141 = t140 - t69;
+    const float t142 = t3 * t141;
+    const float t143 = t138 + t142;
+    const float t144 = t120 - t119;
+    const float t145 = t143 - t144;
+    const float t146 = t43 * t145;
+    float rest = (t102 - t102) * t116 * t124;
+    rest += t146 - t146;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    qdd[0] = t105;
-    qdd[1] = t120;
-    qdd[2] = t129;
-    qdd[3] = t152;
+    qdd[0] = t102;
+    qdd[1] = t116;
+    qdd[2] = t124;
+    qdd[3] = t146;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2590,10 +2518,10 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2616,7 +2544,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -2632,154 +2560,148 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float Theta_2 = p->Theta_2;
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
-    const float t27 = fabsf(m_1);
-    const float t28 = fabsf(m_2);
-    const float t29 = t27 + t28;
-    const float t30 = fabsf(Theta_2);
-    const float t31 = t29 * t30;
-    const float t32 = t13 * t31;
-    const float t33 = t10 * t31;
-    const float t34 = fabsf(Theta_1);
-    const float t35 = fabsf(L);
-    const float t36 = t35 * t35;
-    const float t37 = t28 * t36;
-    const float t38 = t34 + t37;
-    const float t39 = t30 * t38;
-    const float t40 = t7 * t39;
-    const float t41 = t33 + t40;
-    const float t42 = t32 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t27 = fabsf(Theta_2);
+    const float t28 = fabsf(Theta_1);
+    const float t29 = fabsf(m_2);
+    const float t30 = fabsf(L);
+    const float t31 = t30 * t30;
+    const float t32 = t29 * t31;
+    const float t33 = t28 + t32;
+    const float t34 = t27 * t33;
+    const float t35 = t7 * t34;
+    const float t36 = fabsf(m_1);
+    const float t37 = t36 + t29;
+    const float t38 = t37 * t27;
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * Theta_2;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t45 * t51;
-    const float t53 = L * m_2;
+    const float t43 = 1.0f / t25;
+    const float t44 = L * Theta_2;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t44 * t50;
+    const float t52 = L * m_2;
     const float theta_dot = qd[2];
-    const float t54 = theta_dot * t53;
-    const float t55 = theta_dot * t6;
-    const float t56 = t54 * t55;
-    const float t57 = t6 * t4;
-    const float t58 = t5 * t3;
-    const float t59 = t57 - t58;
+    const float t53 = theta_dot * t52;
+    const float t54 = theta_dot * t6;
+    const float t55 = t53 * t54;
+    const float t56 = t6 * t4;
+    const float t57 = t5 * t3;
+    const float t58 = t56 - t57;
     const float K_f = u[0];
-    const float t60 = K_f * t59;
-    const float t61 = t56 + t60;
-    const float t62 = m_1 + m_2;
-    const float t63 = theta_dot * t5;
+    const float t59 = K_f * t58;
+    const float t60 = t55 + t59;
+    const float t61 = m_1 + m_2;
+    const float t62 = theta_dot * t5;
     const float y_dot = qd[1];
-    const float t64 = y_dot * t63;
+    const float t63 = y_dot * t62;
     const float x_dot = qd[0];
-    const float t65 = x_dot * t55;
-    const float t66 = t64 + t65;
-    const float t67 = t8 * t66;
-    const float t68 = t67 * t52;
+    const float t64 = x_dot * t54;
+    const float t65 = t63 + t64;
+    const float t66 = t8 * t65;
+    const float t67 = t66 * t51;
+    const float t68 = L * t52;
+    const float t69 = Theta_1 + t68;
+    const float t70 = t3 * t69;
+    const float t71 = Theta_2 * t70;
     const float phi_dot = qd[3];
-    const float t69 = phi_dot * t3;
-    const float t70 = L * t69;
-    const float t71 = theta_dot * t70;
-    const float t72 = theta_dot + phi_dot;
-    const float t73 = t72 * t59;
-    const float t74 = x_dot * t73;
-    const float t75 = t72 * t49;
-    const float t76 = y_dot * t75;
-    const float t77 = t74 + t76;
-    const float t78 = t71 + t77;
-    const float t79 = t6 * t78;
-    const float t80 = t66 * t59;
-    const float t81 = t79 - t80;
-    const float t82 = L * t53;
-    const float t83 = Theta_1 + t82;
-    const float t84 = t3 * t83;
-    const float t85 = Theta_2 * t84;
-    const float t86 = t81 * t85;
-    const float t87 = t68 + t86;
-    const float t88 = t44 * t87;
-    const float t89 = t62 * t88;
-    const float t90 = t5 * t53;
-    const float t91 = m_1 * t57;
-    const float t92 = m_2 * t59;
-    const float t93 = t91 + t92;
-    const float t94 = t45 * t93;
-    const float t95 = t80 - t79;
-    const float t96 = t94 * t95;
-    const float t97 = t5 * t78;
-    const float t98 = t66 * t49;
-    const float t99 = t97 - t98;
-    const float t100 = t52 * t99;
-    const float t101 = t96 - t100;
-    const float t102 = t101 * t44;
-    const float t103 = t90 * t102;
-    const float t104 = t89 - t103;
-    const float t105 = t61 + t104;
-    const float t106 = t52 * t105;
-    const float t107 = t54 * t63;
-    const float t108 = K_f * t49;
-    const float t109 = t107 + t108;
-    const float t110 = t99 * t85;
-    const float t111 = t67 * t94;
-    const float t112 = t110 - t111;
-    const float t113 = t44 * t112;
-    const float t114 = t62 * t113;
-    const float t115 = t6 * t53;
-    const float t116 = t115 * t102;
-    const float t117 = t114 + t116;
-    const float t118 = t109 + t117;
-    const float t119 = t94 * t118;
-    const float t120 = t106 - t119;
-    const float t121 = t8 * t120;
+    const float t72 = phi_dot * t3;
+    const float t73 = L * t72;
+    const float t74 = theta_dot * t73;
+    const float t75 = theta_dot + phi_dot;
+    const float t76 = x_dot * t58;
+    const float t77 = y_dot * t48;
+    const float t78 = t76 + t77;
+    const float t79 = t75 * t78;
+    const float t80 = t74 + t79;
+    const float t81 = t6 * t80;
+    const float t82 = t65 * t58;
+    const float t83 = t81 - t82;
+    const float t84 = t71 * t83;
+    const float t85 = t67 + t84;
+    const float t86 = t43 * t85;
+    const float t87 = t61 * t86;
+    const float t88 = t5 * t52;
+    const float t89 = m_1 * t56;
+    const float t90 = m_2 * t58;
+    const float t91 = t89 + t90;
+    const float t92 = t44 * t91;
+    const float t93 = t82 - t81;
+    const float t94 = t92 * t93;
+    const float t95 = t5 * t80;
+    const float t96 = t65 * t48;
+    const float t97 = t95 - t96;
+    const float t98 = t51 * t97;
+    const float t99 = t94 - t98;
+    const float t100 = t43 * t99;
+    const float t101 = t88 * t100;
+    const float t102 = t87 - t101;
+    const float t103 = t60 + t102;
+    const float t104 = t51 * t103;
+    const float t105 = t53 * t62;
+    const float t106 = K_f * t48;
+    const float t107 = t105 + t106;
+    const float t108 = t71 * t97;
+    const float t109 = t66 * t92;
+    const float t110 = t108 - t109;
+    const float t111 = t43 * t110;
+    const float t112 = t61 * t111;
+    const float t113 = t6 * t52;
+    const float t114 = t113 * t100;
+    const float t115 = t112 + t114;
+    const float t116 = t107 + t115;
+    const float t117 = t92 * t116;
+    const float t118 = t104 - t117;
+    const float t119 = t8 * t118;
+    const float t120 = t71 * t103;
+    const float t121 = L * t3;
+    const float t122 = K_f * t121;
+    const float t123 = Theta_2 + t69;
+    const float t124 = t123 * t100;
+    const float t125 = t52 * t65;
+    const float t126 = t124 - t125;
+    const float t127 = t98 - t94;
+    const float t128 = t43 * t127;
+    const float t129 = Theta_2 * t128;
+    const float t130 = t126 + t129;
+    const float t131 = t122 + t130;
     const float T = u[1];
-    const float t122 = T * t94;
-    const float t123 = L * t3;
-    const float t124 = K_f * t123;
-    const float t125 = Theta_2 + t83;
-    const float t126 = t125 * t102;
-    const float t127 = t53 * t66;
-    const float t128 = t126 - t127;
-    const float t129 = t100 - t96;
-    const float t130 = t129 * t44;
-    const float t131 = Theta_2 * t130;
-    const float t132 = t128 + t131;
-    const float t133 = t124 + t132;
-    const float t134 = t94 * t133;
-    const float t135 = t122 - t134;
-    const float t136 = t85 * t105;
-    const float t137 = t135 + t136;
-    const float t138 = t59 * t137;
-    const float t139 = t121 - t138;
-    const float t140 = T * t52;
-    const float t141 = t52 * t133;
-    const float t142 = t140 - t141;
-    const float t143 = t85 * t118;
-    const float t144 = t142 + t143;
-    const float t145 = t49 * t144;
-    const float t146 = t139 - t145;
-    const float t147 = t44 * t146;
-    const float t148 = t6 * t137;
-    const float t149 = t5 * t144;
-    const float t150 = t148 + t149;
-    const float t151 = t44 * t150;
-    float rest = t147 - t147;
-    rest += t151 - t151;
-    if (isnan(rest) != 0) {
+    const float t132 = T - t131;
+    const float t133 = t92 * t132;
+    const float t134 = t120 + t133;
+    const float t135 = t58 * t134;
+    const float t136 = t119 - t135;
+    const float t137 = t71 * t116;
+    const float t138 = t51 * t132;
+    const float t139 = t137 + t138;
+    const float t140 = t48 * t139;
+    const float t141 = t136 - t140;
+    const float t142 = t43 * t141;
+    const float t143 = t6 * t134;
+    const float t144 = t5 * t139;
+    const float t145 = t143 + t144;
+    const float t146 = t43 * t145;
+    float rest = (t142 - t142) * t146;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t147;
-    lambda_B[1] = t151;
+    lambda_B[0] = t142;
+    lambda_B[1] = t146;
     return FRONT_CAR_WHEELSET_OK;
 }
 
 front_car_wheelset_status front_car_wheelset_energy_f(const float q[4], const float qd[4], const front_car_wheelset_params_f *p, float T_U[2]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     float t2;
@@ -2804,25 +2726,24 @@ front_car_wheelset_status front_car_wheelset_energy_f(const float q[4], const fl
     const float t13 = 0.5f * t12;
     const float L = p->L;
     const float t14 = L * m_2;
-    const float t15 = theta_dot * t14;
-    const float t16 = y_dot * t3;
-    const float t17 = x_dot * t2;
-    const float t18 = t16 - t17;
-    const float t19 = t15 * t18;
-    const float t20 = t13 + t19;
-    const float t21 = theta_dot * theta_dot;
-    const float t22 = L * t14;
+    const float t15 = y_dot * t3;
+    const float t16 = x_dot * t2;
+    const float t17 = t15 - t16;
+    const float t18 = t14 * t17;
+    const float t19 = L * t14;
     const float Theta_1 = p->Theta_1;
-    const float t23 = Theta_1 + t22;
-    const float t24 = t21 * t23;
-    const float t25 = 0.5f * t24;
-    const float t26 = t20 + t25;
-    const float t27 = t7 + t26;
-    float rest = t27 - t27;
-    if (isnan(rest) != 0) {
+    const float t20 = Theta_1 + t19;
+    const float t21 = theta_dot * t20;
+    const float t22 = 0.5f * t21;
+    const float t23 = t18 + t22;
+    const float t24 = theta_dot * t23;
+    const float t25 = t13 + t24;
+    const float t26 = t7 + t25;
+    float rest = t26 - t26;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    T_U[0] = t27;
+    T_U[0] = t26;
     T_U[1] = 0.0f;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -2832,10 +2753,10 @@ front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], con
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2893,9 +2814,8 @@ front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], con
     const float t50 = t34 * t34;
     const float t51 = 1.0f + t50;
     const float t52 = ((t51 != 0.0f) ? t49 : 0.0f) / ((t51 != 0.0f) ? t51 : 1.0f);
-    float rest = t33 - t33;
-    rest += t52 - t52;
-    if (isnan(rest) != 0) {
+    float rest = (t33 - t33) * t52;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     measure[0] = t33;

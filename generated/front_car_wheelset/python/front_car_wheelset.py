@@ -23,8 +23,8 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     17      1      0      2      0
 nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     47      3      0      2      0
-weighted_nullspace_projector         15     54      4      0      2      0
+weighted_pseudoinverse               17     46      3      0      2      0
+weighted_nullspace_projector         15     53      4      0      2      0
 control_matrix                        1      1      0      0      2      0
 projected_control_matrix              3     14      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
@@ -46,9 +46,9 @@ inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
 actuator_mass_matrix                  4      7      1      0      1      0
 actuator_bias                        12     29      2      0      2      0
-forward_dynamics                     41     95      1      0      2      0
-multipliers                          44     94      1      0      2      0
-energy                                8     16      0      0      1      0
+forward_dynamics                     41     89      1      0      2      0
+multipliers                          43     90      1      0      2      0
+energy                                8     15      0      0      1      0
 singularity                          12     26      5      1      2      0
 (changes of sign are not counted)
 
@@ -717,72 +717,71 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(m_1)
-        t28 = np.abs(m_2)
-        t29 = t27 + t28
-        t30 = np.abs(Theta_2)
-        t31 = t29 * t30
-        t32 = t13 * t31
-        t33 = t10 * t31
-        t34 = np.abs(Theta_1)
-        t35 = np.abs(L)
-        t36 = t35 * t35
-        t37 = t28 * t36
-        t38 = t34 + t37
-        t39 = t30 * t38
-        t40 = t7 * t39
-        t41 = t33 + t40
-        t42 = t32 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = L * Theta_2
-        t46 = t5 * t4
-        t47 = m_1 * t46
-        t48 = t6 * t3
-        t49 = t46 + t48
-        t50 = m_2 * t49
-        t51 = t47 + t50
-        t52 = t45 * t51
-        t53 = t8 * t52
-        t54 = t6 * t4
-        t55 = t5 * t3
-        t56 = t54 - t55
-        t57 = m_2 * t19
-        t58 = Theta_1 + t57
-        t59 = Theta_2 * t58
-        t60 = t3 * t59
-        t61 = t56 * t60
-        t62 = t53 - t61
-        t63 = t44 * t62
-        t64 = t59 / t25
-        t65 = t48 * t64
-        t66 = m_1 * t54
-        t67 = m_2 * t56
-        t68 = t66 + t67
-        t69 = t45 * t68
-        t70 = t8 * t69
-        t71 = t49 * t60
-        t72 = t70 + t71
-        t73 = t44 * t72
-        t74 = -t73
-        t75 = t55 * t64
-        t76 = t45 / t25
-        t77 = t22 * t76
-        t78 = m_1 + m_2
-        t79 = t4 * t78
-        t80 = t79 * t76
-        t81 = -t80
-        t82 = -t77
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t29 = np.abs(m_2)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t27 * t33
+        t35 = t7 * t34
+        t36 = np.abs(m_1)
+        t37 = t36 + t29
+        t38 = t37 * t27
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
+        t44 = L * Theta_2
+        t45 = t5 * t4
+        t46 = m_1 * t45
+        t47 = t6 * t3
+        t48 = t45 + t47
+        t49 = m_2 * t48
+        t50 = t46 + t49
+        t51 = t44 * t50
+        t52 = t8 * t51
+        t53 = t6 * t4
+        t54 = t5 * t3
+        t55 = t53 - t54
+        t56 = m_2 * t19
+        t57 = Theta_1 + t56
+        t58 = Theta_2 * t57
+        t59 = t3 * t58
+        t60 = t55 * t59
+        t61 = t52 - t60
+        t62 = t43 * t61
+        t63 = t58 / t25
+        t64 = t47 * t63
+        t65 = m_1 * t53
+        t66 = m_2 * t55
+        t67 = t65 + t66
+        t68 = t44 * t67
+        t69 = t8 * t68
+        t70 = t48 * t59
+        t71 = t69 + t70
+        t72 = t43 * t71
+        t73 = -t72
+        t74 = t54 * t63
+        t75 = t44 / t25
+        t76 = t22 * t75
+        t77 = m_1 + m_2
+        t78 = t4 * t77
+        t79 = t78 * t75
+        t80 = -t79
+        t81 = -t76
         entries = (
-            t63,
-            t65,
+            t62,
+            t64,
+            t73,
             t74,
-            t75,
-            t77,
-            t81,
-            t82,
+            t76,
             t80,
+            t81,
+            t79,
         )
         return _result("weighted_pseudoinverse", status, batch, (4, 2), entries)
 
@@ -828,84 +827,83 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(m_1)
-        t28 = np.abs(m_2)
-        t29 = t27 + t28
-        t30 = np.abs(Theta_2)
-        t31 = t29 * t30
-        t32 = t13 * t31
-        t33 = t10 * t31
-        t34 = np.abs(Theta_1)
-        t35 = np.abs(L)
-        t36 = t35 * t35
-        t37 = t28 * t36
-        t38 = t34 + t37
-        t39 = t30 * t38
-        t40 = t7 * t39
-        t41 = t33 + t40
-        t42 = t32 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = Theta_2 * t19
-        t45 = t44 / t25
-        t46 = t6 * t4
-        t47 = m_1 * t46
-        t48 = t5 * t3
-        t49 = t46 - t48
-        t50 = m_2 * t49
-        t51 = t47 + t50
-        t52 = t46 * t51
-        t53 = t45 * t52
-        t54 = t5 * t4
-        t55 = m_1 * t54
-        t56 = t6 * t3
-        t57 = t54 + t56
-        t58 = m_2 * t57
-        t59 = t55 + t58
-        t60 = t46 * t59
-        t61 = t45 * t60
-        t62 = t3 * t46
-        t63 = m_2 * t19
-        t64 = Theta_1 + t63
-        t65 = L * Theta_2
-        t66 = t64 * t65
-        t67 = t66 / t25
-        t68 = t62 * t67
-        t69 = t54 * t51
-        t70 = t45 * t69
-        t71 = t54 * t59
-        t72 = t45 * t71
-        t73 = t3 * t54
-        t74 = t73 * t67
-        t75 = t65 / t25
-        t76 = t3 * t51
-        t77 = t75 * t76
-        t78 = t3 * t59
-        t79 = t75 * t78
-        t80 = Theta_2 * t64
-        t81 = t80 / t25
-        t82 = t7 * t81
-        t83 = -t77
-        t84 = -t79
-        t85 = m_1 + m_2
-        t86 = t85 * t20
-        t87 = t86 * t45
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t29 = np.abs(m_2)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t27 * t33
+        t35 = t7 * t34
+        t36 = np.abs(m_1)
+        t37 = t36 + t29
+        t38 = t37 * t27
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = Theta_2 * t19
+        t44 = t43 / t25
+        t45 = t6 * t4
+        t46 = m_1 * t45
+        t47 = t5 * t3
+        t48 = t45 - t47
+        t49 = m_2 * t48
+        t50 = t46 + t49
+        t51 = t45 * t50
+        t52 = t44 * t51
+        t53 = t5 * t4
+        t54 = m_1 * t53
+        t55 = t6 * t3
+        t56 = t53 + t55
+        t57 = m_2 * t56
+        t58 = t54 + t57
+        t59 = t45 * t58
+        t60 = t44 * t59
+        t61 = t3 * t45
+        t62 = m_2 * t19
+        t63 = Theta_1 + t62
+        t64 = L * Theta_2
+        t65 = t63 * t64
+        t66 = t65 / t25
+        t67 = t61 * t66
+        t68 = t53 * t50
+        t69 = t44 * t68
+        t70 = t53 * t58
+        t71 = t44 * t70
+        t72 = t3 * t53
+        t73 = t72 * t66
+        t74 = t64 / t25
+        t75 = t3 * t50
+        t76 = t74 * t75
+        t77 = t3 * t58
+        t78 = t74 * t77
+        t79 = Theta_2 * t63
+        t80 = t79 / t25
+        t81 = t7 * t80
+        t82 = -t76
+        t83 = -t78
+        t84 = m_1 + m_2
+        t85 = t84 * t20
+        t86 = t85 * t44
         entries = (
-            t53,
-            t61,
-            t68,
+            t52,
+            t60,
+            t67,
             0.0,
-            t70,
-            t72,
-            t74,
+            t69,
+            t71,
+            t73,
             0.0,
-            t77,
-            t79,
+            t76,
+            t78,
+            t81,
+            0.0,
             t82,
-            0.0,
             t83,
-            t84,
-            t87,
+            t86,
             1.0,
         )
         return _result("weighted_nullspace_projector", status, batch, (4, 4), entries)
@@ -2312,138 +2310,132 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(m_1)
-        t28 = np.abs(m_2)
-        t29 = t27 + t28
-        t30 = np.abs(Theta_2)
-        t31 = t29 * t30
-        t32 = t13 * t31
-        t33 = t10 * t31
-        t34 = np.abs(Theta_1)
-        t35 = np.abs(L)
-        t36 = t35 * t35
-        t37 = t28 * t36
-        t38 = t34 + t37
-        t39 = t30 * t38
-        t40 = t7 * t39
-        t41 = t33 + t40
-        t42 = t32 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = theta_dot * t5
-        t46 = y_dot * t45
-        t47 = theta_dot * t6
-        t48 = x_dot * t47
-        t49 = t46 + t48
-        t50 = t8 * t49
-        t51 = L * Theta_2
-        t52 = t5 * t4
-        t53 = m_1 * t52
-        t54 = t6 * t3
-        t55 = t52 + t54
-        t56 = m_2 * t55
-        t57 = t53 + t56
-        t58 = t51 * t57
-        t59 = t50 * t58
-        t60 = phi_dot * t3
-        t61 = L * t60
-        t62 = theta_dot * t61
-        t63 = theta_dot + phi_dot
-        t64 = t6 * t4
-        t65 = t5 * t3
-        t66 = t64 - t65
-        t67 = t63 * t66
-        t68 = x_dot * t67
-        t69 = t63 * t55
-        t70 = y_dot * t69
-        t71 = t68 + t70
-        t72 = t62 + t71
-        t73 = t6 * t72
-        t74 = t49 * t66
-        t75 = t73 - t74
-        t76 = L * m_2
-        t77 = L * t76
-        t78 = Theta_1 + t77
-        t79 = t3 * t78
-        t80 = Theta_2 * t79
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t29 = np.abs(m_2)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t27 * t33
+        t35 = t7 * t34
+        t36 = np.abs(m_1)
+        t37 = t36 + t29
+        t38 = t37 * t27
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
+        t44 = T * t3
+        t45 = Theta_2 * t44
+        t46 = L * t3
+        t47 = K_f * t46
+        t48 = t3 * t47
+        t49 = L * m_2
+        t50 = theta_dot * t49
+        t51 = theta_dot * t6
+        t52 = t50 * t51
+        t53 = t6 * t4
+        t54 = t5 * t3
+        t55 = t53 - t54
+        t56 = K_f * t55
+        t57 = t52 + t56
+        t58 = t12 * t57
+        t59 = theta_dot * t5
+        t60 = t50 * t59
+        t61 = t5 * t4
+        t62 = t6 * t3
+        t63 = t61 + t62
+        t64 = K_f * t63
+        t65 = t60 + t64
+        t66 = t9 * t65
+        t67 = t58 + t66
+        t68 = t48 + t67
+        t69 = Theta_2 * t68
+        t70 = t45 - t69
+        t71 = t12 * t70
+        t72 = y_dot * t59
+        t73 = x_dot * t51
+        t74 = t72 + t73
+        t75 = t8 * t74
+        t76 = L * Theta_2
+        t77 = m_1 * t61
+        t78 = m_2 * t63
+        t79 = t77 + t78
+        t80 = t76 * t79
         t81 = t75 * t80
-        t82 = t59 + t81
-        t83 = t44 * t82
-        t84 = T * t3
+        t82 = L * t49
+        t83 = Theta_1 + t82
+        t84 = t3 * t83
         t85 = Theta_2 * t84
-        t86 = L * t3
-        t87 = K_f * t86
-        t88 = t3 * t87
-        t89 = theta_dot * t76
-        t90 = t89 * t47
-        t91 = K_f * t66
+        t86 = phi_dot * t3
+        t87 = L * t86
+        t88 = theta_dot * t87
+        t89 = theta_dot + phi_dot
+        t90 = x_dot * t55
+        t91 = y_dot * t63
         t92 = t90 + t91
-        t93 = t12 * t92
-        t94 = t89 * t45
-        t95 = K_f * t55
-        t96 = t94 + t95
-        t97 = t9 * t96
-        t98 = t93 + t97
-        t99 = t88 + t98
-        t100 = Theta_2 * t99
-        t101 = t85 - t100
-        t102 = t12 * t101
-        t103 = t102 * t44
-        t104 = t83 + t103
-        t105 = -t104
-        t106 = t5 * t72
-        t107 = t49 * t55
-        t108 = t106 - t107
-        t109 = t108 * t80
-        t110 = m_1 * t64
-        t111 = m_2 * t66
-        t112 = t110 + t111
-        t113 = t51 * t112
-        t114 = t50 * t113
-        t115 = t109 - t114
-        t116 = t44 * t115
-        t117 = t9 * t101
-        t118 = t117 * t44
-        t119 = t116 + t118
-        t120 = -t119
-        t121 = t74 - t73
-        t122 = t113 * t121
-        t123 = t58 * t108
-        t124 = t122 - t123
-        t125 = t124 * t44
-        t126 = t3 * t101
-        t127 = t126 * t44
-        t128 = t125 + t127
-        t129 = -t128
-        t130 = m_1 + m_2
-        t131 = T * t12
-        t132 = t130 * t131
-        t133 = t5 * t76
-        t134 = t133 * t84
-        t135 = t132 - t134
-        t136 = t12 * t135
-        t137 = T * t9
-        t138 = t130 * t137
-        t139 = t6 * t76
-        t140 = t139 * t84
-        t141 = t138 + t140
-        t142 = t9 * t141
-        t143 = t136 + t142
-        t144 = Theta_2 + t78
-        t145 = t84 * t144
-        t146 = t145 - t100
-        t147 = t3 * t146
-        t148 = t143 + t147
-        t149 = t44 * t148
-        t150 = t123 - t122
-        t151 = t150 * t44
-        t152 = t149 - t151
+        t93 = t89 * t92
+        t94 = t88 + t93
+        t95 = t6 * t94
+        t96 = t74 * t55
+        t97 = t95 - t96
+        t98 = t85 * t97
+        t99 = t81 + t98
+        t100 = t71 + t99
+        t101 = t43 * t100
+        t102 = -t101
+        t103 = t9 * t70
+        t104 = t5 * t94
+        t105 = t74 * t63
+        t106 = t104 - t105
+        t107 = t85 * t106
+        t108 = m_1 * t53
+        t109 = m_2 * t55
+        t110 = t108 + t109
+        t111 = t76 * t110
+        t112 = t75 * t111
+        t113 = t107 - t112
+        t114 = t103 + t113
+        t115 = t43 * t114
+        t116 = -t115
+        t117 = t3 * t70
+        t118 = t96 - t95
+        t119 = t111 * t118
+        t120 = t80 * t106
+        t121 = t119 - t120
+        t122 = t117 + t121
+        t123 = t43 * t122
+        t124 = -t123
+        t125 = m_1 + m_2
+        t126 = T * t12
+        t127 = t125 * t126
+        t128 = t5 * t49
+        t129 = t128 * t44
+        t130 = t127 - t129
+        t131 = t12 * t130
+        t132 = T * t9
+        t133 = t125 * t132
+        t134 = t6 * t49
+        t135 = t134 * t44
+        t136 = t133 + t135
+        t137 = t9 * t136
+        t138 = t131 + t137
+        t139 = Theta_2 + t83
+        t140 = t44 * t139
+        t141 = t140 - t69
+        t142 = t3 * t141
+        t143 = t138 + t142
+        t144 = t120 - t119
+        t145 = t143 - t144
+        t146 = t43 * t145
         entries = (
-            t105,
-            t120,
-            t129,
-            t152,
+            t102,
+            t116,
+            t124,
+            t146,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2498,135 +2490,130 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(m_1)
-        t28 = np.abs(m_2)
-        t29 = t27 + t28
-        t30 = np.abs(Theta_2)
-        t31 = t29 * t30
-        t32 = t13 * t31
-        t33 = t10 * t31
-        t34 = np.abs(Theta_1)
-        t35 = np.abs(L)
-        t36 = t35 * t35
-        t37 = t28 * t36
-        t38 = t34 + t37
-        t39 = t30 * t38
-        t40 = t7 * t39
-        t41 = t33 + t40
-        t42 = t32 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = L * Theta_2
-        t46 = t5 * t4
-        t47 = m_1 * t46
-        t48 = t6 * t3
-        t49 = t46 + t48
-        t50 = m_2 * t49
-        t51 = t47 + t50
-        t52 = t45 * t51
-        t53 = L * m_2
-        t54 = theta_dot * t53
-        t55 = theta_dot * t6
-        t56 = t54 * t55
-        t57 = t6 * t4
-        t58 = t5 * t3
-        t59 = t57 - t58
-        t60 = K_f * t59
-        t61 = t56 + t60
-        t62 = m_1 + m_2
-        t63 = theta_dot * t5
-        t64 = y_dot * t63
-        t65 = x_dot * t55
-        t66 = t64 + t65
-        t67 = t8 * t66
-        t68 = t67 * t52
-        t69 = phi_dot * t3
-        t70 = L * t69
-        t71 = theta_dot * t70
-        t72 = theta_dot + phi_dot
-        t73 = t72 * t59
-        t74 = x_dot * t73
-        t75 = t72 * t49
-        t76 = y_dot * t75
-        t77 = t74 + t76
-        t78 = t71 + t77
-        t79 = t6 * t78
-        t80 = t66 * t59
-        t81 = t79 - t80
-        t82 = L * t53
-        t83 = Theta_1 + t82
-        t84 = t3 * t83
-        t85 = Theta_2 * t84
-        t86 = t81 * t85
-        t87 = t68 + t86
-        t88 = t44 * t87
-        t89 = t62 * t88
-        t90 = t5 * t53
-        t91 = m_1 * t57
-        t92 = m_2 * t59
-        t93 = t91 + t92
-        t94 = t45 * t93
-        t95 = t80 - t79
-        t96 = t94 * t95
-        t97 = t5 * t78
-        t98 = t66 * t49
-        t99 = t97 - t98
-        t100 = t52 * t99
-        t101 = t96 - t100
-        t102 = t101 * t44
-        t103 = t90 * t102
-        t104 = t89 - t103
-        t105 = t61 + t104
-        t106 = t52 * t105
-        t107 = t54 * t63
-        t108 = K_f * t49
-        t109 = t107 + t108
-        t110 = t99 * t85
-        t111 = t67 * t94
-        t112 = t110 - t111
-        t113 = t44 * t112
-        t114 = t62 * t113
-        t115 = t6 * t53
-        t116 = t115 * t102
-        t117 = t114 + t116
-        t118 = t109 + t117
-        t119 = t94 * t118
-        t120 = t106 - t119
-        t121 = t8 * t120
-        t122 = T * t94
-        t123 = L * t3
-        t124 = K_f * t123
-        t125 = Theta_2 + t83
-        t126 = t125 * t102
-        t127 = t53 * t66
-        t128 = t126 - t127
-        t129 = t100 - t96
-        t130 = t129 * t44
-        t131 = Theta_2 * t130
-        t132 = t128 + t131
-        t133 = t124 + t132
-        t134 = t94 * t133
-        t135 = t122 - t134
-        t136 = t85 * t105
-        t137 = t135 + t136
-        t138 = t59 * t137
-        t139 = t121 - t138
-        t140 = T * t52
-        t141 = t52 * t133
-        t142 = t140 - t141
-        t143 = t85 * t118
-        t144 = t142 + t143
-        t145 = t49 * t144
-        t146 = t139 - t145
-        t147 = t44 * t146
-        t148 = t6 * t137
-        t149 = t5 * t144
-        t150 = t148 + t149
-        t151 = t44 * t150
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t29 = np.abs(m_2)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t27 * t33
+        t35 = t7 * t34
+        t36 = np.abs(m_1)
+        t37 = t36 + t29
+        t38 = t37 * t27
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
+        t44 = L * Theta_2
+        t45 = t5 * t4
+        t46 = m_1 * t45
+        t47 = t6 * t3
+        t48 = t45 + t47
+        t49 = m_2 * t48
+        t50 = t46 + t49
+        t51 = t44 * t50
+        t52 = L * m_2
+        t53 = theta_dot * t52
+        t54 = theta_dot * t6
+        t55 = t53 * t54
+        t56 = t6 * t4
+        t57 = t5 * t3
+        t58 = t56 - t57
+        t59 = K_f * t58
+        t60 = t55 + t59
+        t61 = m_1 + m_2
+        t62 = theta_dot * t5
+        t63 = y_dot * t62
+        t64 = x_dot * t54
+        t65 = t63 + t64
+        t66 = t8 * t65
+        t67 = t66 * t51
+        t68 = L * t52
+        t69 = Theta_1 + t68
+        t70 = t3 * t69
+        t71 = Theta_2 * t70
+        t72 = phi_dot * t3
+        t73 = L * t72
+        t74 = theta_dot * t73
+        t75 = theta_dot + phi_dot
+        t76 = x_dot * t58
+        t77 = y_dot * t48
+        t78 = t76 + t77
+        t79 = t75 * t78
+        t80 = t74 + t79
+        t81 = t6 * t80
+        t82 = t65 * t58
+        t83 = t81 - t82
+        t84 = t71 * t83
+        t85 = t67 + t84
+        t86 = t43 * t85
+        t87 = t61 * t86
+        t88 = t5 * t52
+        t89 = m_1 * t56
+        t90 = m_2 * t58
+        t91 = t89 + t90
+        t92 = t44 * t91
+        t93 = t82 - t81
+        t94 = t92 * t93
+        t95 = t5 * t80
+        t96 = t65 * t48
+        t97 = t95 - t96
+        t98 = t51 * t97
+        t99 = t94 - t98
+        t100 = t43 * t99
+        t101 = t88 * t100
+        t102 = t87 - t101
+        t103 = t60 + t102
+        t104 = t51 * t103
+        t105 = t53 * t62
+        t106 = K_f * t48
+        t107 = t105 + t106
+        t108 = t71 * t97
+        t109 = t66 * t92
+        t110 = t108 - t109
+        t111 = t43 * t110
+        t112 = t61 * t111
+        t113 = t6 * t52
+        t114 = t113 * t100
+        t115 = t112 + t114
+        t116 = t107 + t115
+        t117 = t92 * t116
+        t118 = t104 - t117
+        t119 = t8 * t118
+        t120 = t71 * t103
+        t121 = L * t3
+        t122 = K_f * t121
+        t123 = Theta_2 + t69
+        t124 = t123 * t100
+        t125 = t52 * t65
+        t126 = t124 - t125
+        t127 = t98 - t94
+        t128 = t43 * t127
+        t129 = Theta_2 * t128
+        t130 = t126 + t129
+        t131 = t122 + t130
+        t132 = T - t131
+        t133 = t92 * t132
+        t134 = t120 + t133
+        t135 = t58 * t134
+        t136 = t119 - t135
+        t137 = t71 * t116
+        t138 = t51 * t132
+        t139 = t137 + t138
+        t140 = t48 * t139
+        t141 = t136 - t140
+        t142 = t43 * t141
+        t143 = t6 * t134
+        t144 = t5 * t139
+        t145 = t143 + t144
+        t146 = t43 * t145
         entries = (
-            t147,
-            t151,
+            t142,
+            t146,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2663,21 +2650,20 @@ def energy(q, qd, p=PARAMETERS):
         t12 = t8 * t11
         t13 = 0.5 * t12
         t14 = L * m_2
-        t15 = theta_dot * t14
-        t16 = y_dot * t3
-        t17 = x_dot * t2
-        t18 = t16 - t17
-        t19 = t15 * t18
-        t20 = t13 + t19
-        t21 = theta_dot * theta_dot
-        t22 = L * t14
-        t23 = Theta_1 + t22
-        t24 = t21 * t23
-        t25 = 0.5 * t24
-        t26 = t20 + t25
-        t27 = t7 + t26
+        t15 = y_dot * t3
+        t16 = x_dot * t2
+        t17 = t15 - t16
+        t18 = t14 * t17
+        t19 = L * t14
+        t20 = Theta_1 + t19
+        t21 = theta_dot * t20
+        t22 = 0.5 * t21
+        t23 = t18 + t22
+        t24 = theta_dot * t23
+        t25 = t13 + t24
+        t26 = t7 + t25
         entries = (
-            t27,
+            t26,
             0.0,
         )
         return _result("energy", status, batch, (2,), entries)

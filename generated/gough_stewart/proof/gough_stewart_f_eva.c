@@ -20,7 +20,7 @@ float Frama_C_float_interval(float min, float max);
 
 void eva_inverse_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t329, t379, t464, t629, t653, t155, t384, t466, t634, t655, t797. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t126, t314, t388, t548, t572, t158, t319, t390, t553, t574, t711. */
 void eva_inverse_dynamics(void) {
     static const float low_9[] = {-0x1.99999ap-2f, -0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f};
     static const float high_9[] = {-0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f, 0x1.99999ap-2f};
@@ -96,7 +96,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1482, t1494, t1732, t1737, t1953, t2086, t2242, t2422, t2628, t1956, t2089, t2245, t2425, t2631. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1070, t1081, t1323, t1328, t1537, t1668, t1822, t2000, t2204, t1540, t1671, t1825, t2003, t2207. */
 void eva_forward_dynamics(void) {
     static const float low_9[] = {-0x1.99999ap-2f, -0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f};
     static const float high_9[] = {-0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f, 0x1.99999ap-2f};
@@ -166,7 +166,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1482, t1494, t1562, t1559, t1993, t2119, t2269, t2443, t2511, t2519, t2549, t2579, t2609, t2507. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1070, t1081, t1146, t1143, t1576, t1701, t1849, t2021, t2087, t2092, t2123, t2153, t2183, t2083. */
 void eva_multipliers(void) {
     static const float low_9[] = {-0x1.99999ap-2f, -0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f};
     static const float high_9[] = {-0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f, 0x1.99999ap-2f};

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define RAPKM_2RRR_RR_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define RAPKM_2RRR_RR_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define RAPKM_2RRR_RR_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define RAPKM_2RRR_RR_INLINE static inline __attribute__((always_inline))
 #else
@@ -116,45 +125,44 @@ RAPKM_2RRR_RR_GROUP void rapkm_2rrr_rr_sincos_group(const int count, const doubl
 }
 
 rapkm_2rrr_rr_prepared rapkm_2rrr_rr_prepare(const rapkm_2rrr_rr_params *p) {
+    const double l_1 = p->l_1;
+    const double m_2 = p->m_2;
+    const double l_2 = p->l_2;
+    const double m_payload = p->m_payload;
     const double J_1 = p->J_1;
     const double J_motor = p->J_motor;
-    const double l_1 = p->l_1;
     const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double m_payload = p->m_payload;
-    const double l_2 = p->l_2;
     const double J_2 = p->J_2;
-    const double v1 = J_1 + J_motor;
-    const double v2 = l_1 * l_1;
-    const double v3 = m_1 * v2;
-    const double v4 = 0.25 * v3;
-    const double v5 = v1 + v4;
-    const double v6 = m_2 * v2;
-    const double v7 = v5 + v6;
-    const double v8 = m_payload * v2;
-    const double v9 = v7 + v8;
-    const double v10 = l_1 * m_2;
-    const double v11 = l_2 * v10;
-    const double v12 = 0.5 * v11;
-    const double v13 = l_1 * m_payload;
-    const double v14 = l_2 * v13;
-    const double v15 = v12 + v14;
-    const double v16 = 1.0 / l_2;
-    const double v17 = l_2 * l_2;
-    const double v18 = m_2 * v17;
-    const double v19 = 0.25 * v18;
-    const double v20 = J_2 + v19;
-    const double v21 = m_payload * v17;
-    const double v22 = v20 + v21;
+    const double v1 = l_1 * m_2;
+    const double v2 = l_2 * v1;
+    const double v3 = 0.5 * v2;
+    const double v4 = l_1 * m_payload;
+    const double v5 = l_2 * v4;
+    const double v6 = v3 + v5;
+    const double v7 = l_1 * l_1;
+    const double v8 = m_payload * v7;
+    const double v9 = J_1 + J_motor;
+    const double v10 = 0.25 * m_1;
+    const double v11 = m_2 + v10;
+    const double v12 = v7 * v11;
+    const double v13 = v9 + v12;
+    const double v14 = v8 + v13;
+    const double v15 = l_2 * l_2;
+    const double v16 = m_2 * v15;
+    const double v17 = 0.25 * v16;
+    const double v18 = J_2 + v17;
+    const double v19 = m_payload * v15;
+    const double v20 = v18 + v19;
+    const double v21 = l_1 / l_2;
     rapkm_2rrr_rr_prepared prepared;
     prepared.value[0] = l_1;
-    prepared.value[1] = v7;
-    prepared.value[2] = v9;
-    prepared.value[3] = v12;
-    prepared.value[4] = v15;
-    prepared.value[5] = v16;
+    prepared.value[1] = v3;
+    prepared.value[2] = v6;
+    prepared.value[3] = v13;
+    prepared.value[4] = v14;
+    prepared.value[5] = v18;
     prepared.value[6] = v20;
-    prepared.value[7] = v22;
+    prepared.value[7] = v21;
     return prepared;
 }
 
@@ -176,19 +184,19 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t9 = fabs(b_2);
     const double t10 = fabs(t6);
     const double t11 = fabs(b_3);
-    if (!(100000.0 >= t7)) {
+    if (RAPKM_2RRR_RR_RARELY(!(100000.0 >= t7))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t8)) {
+    if (RAPKM_2RRR_RR_RARELY(!(100000.0 >= t8))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t9)) {
+    if (RAPKM_2RRR_RR_RARELY(!(100000.0 >= t9))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t10)) {
+    if (RAPKM_2RRR_RR_RARELY(!(100000.0 >= t10))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t11)) {
+    if (RAPKM_2RRR_RR_RARELY(!(100000.0 >= t11))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
     const double angle[6] = {b_1, t3, b_2, t6, b_3, b_3};
@@ -206,7 +214,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t15 = cosine[1];
     const double t12 = sine[0];
     const double t19 = cosine[3];
-    if (!(t24 > 5.679798517591285e-29)) {
+    if (RAPKM_2RRR_RR_RARELY(!(t24 > 5.679798517591285e-29))) {
         const double t25 = l_1 * t16;
         const double t26 = l_1 * t20;
         const double t27 = t25 * t26;
@@ -255,21 +263,20 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t65 = t64 * t64;
     const double t66 = t60 + t65;
     const double t67 = t58 + t66;
-    const double t68 = t24 * 2.8398992587956425e-29;
-    const double t69 = 1.5 * t68;
-    if (!(t67 > t69)) {
+    const double t68 = t24 * 4.259848888193464e-29;
+    if (RAPKM_2RRR_RR_RARELY(!(t67 > t68))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    const double a_1_ddot = qdd[0];
-    const double J_base_1 = p->value[2];
-    const double t77 = a_1_ddot * J_base_1;
-    const double coupling_1 = p->value[4];
+    const double coupling_1 = p->value[2];
     const double t13 = cosine[0];
-    const double t82 = coupling_1 * t13;
+    const double t73 = coupling_1 * t13;
+    const double a_1_ddot = qdd[0];
     const double b_1_ddot = qdd[3];
-    const double t83 = a_1_ddot + b_1_ddot;
-    const double t84 = t82 * t83;
-    const double t85 = t77 + t84;
+    const double t74 = a_1_ddot + b_1_ddot;
+    const double t75 = t73 * t74;
+    const double t83 = p->value[4];
+    const double t84 = a_1_ddot * t83;
+    const double t85 = t75 + t84;
     const double a_1_dot = qd[0];
     const double b_1_dot = qd[3];
     const double t86 = a_1_dot + b_1_dot;
@@ -277,114 +284,106 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t88 = coupling_1 * t12;
     const double t89 = t87 * t88;
     const double t90 = t85 - t89;
-    const double t91 = l_1 * t13;
-    const double t93 = a_1_dot * a_1_dot;
-    const double t94 = t93 * t88;
-    const double J_elbow_1 = p->value[7];
-    const double t99 = J_elbow_1 * t83;
-    const double t100 = a_1_ddot * t82;
-    const double t101 = t99 + t100;
-    const double t102 = t94 + t101;
-    const double t92 = p->value[5];
-    const double t103 = t92 * t102;
-    const double t104 = t91 * t103;
-    const double t105 = t90 - t104;
+    const double t91 = a_1_dot * a_1_dot;
+    const double t92 = t91 * t88;
+    const double J_elbow_1 = p->value[6];
+    const double t97 = J_elbow_1 * t74;
+    const double t98 = a_1_ddot * t73;
+    const double t99 = t97 + t98;
+    const double t100 = t92 + t99;
+    const double t101 = t13 * t100;
     const double a_2_dot = qd[1];
-    const double t106 = a_2_dot * a_2_dot;
-    const double coupling = p->value[3];
-    const double t107 = coupling * t16;
-    const double t108 = t106 * t107;
+    const double t102 = a_2_dot * a_2_dot;
+    const double coupling = p->value[1];
+    const double t103 = coupling * t16;
+    const double t104 = t102 * t103;
     const double a_2_ddot = qdd[1];
     const double b_2_ddot = qdd[4];
-    const double t109 = a_2_ddot + b_2_ddot;
-    const double J_elbow = p->value[6];
-    const double t110 = J_elbow * t109;
+    const double t105 = a_2_ddot + b_2_ddot;
+    const double J_elbow = p->value[5];
+    const double t106 = J_elbow * t105;
     const double t17 = cosine[2];
-    const double t111 = coupling * t17;
-    const double t112 = a_2_ddot * t111;
-    const double t113 = t110 + t112;
-    const double t114 = t108 + t113;
-    const double t115 = t92 * t114;
-    const double t116 = t14 * t115;
+    const double t107 = coupling * t17;
+    const double t108 = a_2_ddot * t107;
+    const double t109 = t106 + t108;
+    const double t110 = t104 + t109;
+    const double t111 = t14 * t110;
     const double a_3_dot = qd[2];
-    const double t117 = a_3_dot * a_3_dot;
-    const double t118 = coupling * t20;
-    const double t119 = t117 * t118;
+    const double t112 = a_3_dot * a_3_dot;
+    const double t113 = coupling * t20;
+    const double t114 = t112 * t113;
     const double a_3_ddot = qdd[2];
     const double b_3_ddot = qdd[5];
-    const double t120 = a_3_ddot + b_3_ddot;
-    const double t121 = J_elbow * t120;
+    const double t115 = a_3_ddot + b_3_ddot;
+    const double t116 = J_elbow * t115;
     const double t21 = cosine[4];
-    const double t122 = coupling * t21;
-    const double t123 = a_3_ddot * t122;
-    const double t124 = t121 + t123;
-    const double t125 = t119 + t124;
-    const double t126 = t92 * t125;
-    const double t127 = t18 * t126;
-    const double t128 = t116 + t127;
-    const double t129 = t15 * t115;
-    const double t130 = t103 + t129;
-    const double t131 = t19 * t126;
-    const double t132 = t130 + t131;
-    const double t133 = t132 / t24;
-    const double t134 = t14 * t133;
-    const double t135 = t15 * t134;
-    const double t136 = t18 * t133;
-    const double t137 = t19 * t136;
-    const double t138 = t135 + t137;
-    const double t139 = t128 + t138;
-    const double t140 = t12 * t139;
-    const double t141 = l_1 * t140;
-    const double t142 = t105 + t141;
-    const double J_base = p->value[1];
-    const double t143 = a_3_ddot * J_base;
-    const double t144 = t120 * t122;
-    const double t145 = t143 + t144;
+    const double t117 = coupling * t21;
+    const double t118 = a_3_ddot * t117;
+    const double t119 = t116 + t118;
+    const double t120 = t114 + t119;
+    const double t121 = t18 * t120;
+    const double t122 = t111 + t121;
+    const double t123 = t15 * t110;
+    const double t124 = t100 + t123;
+    const double t125 = t19 * t120;
+    const double t126 = t124 + t125;
+    const double t127 = t126 / t24;
+    const double t128 = t14 * t127;
+    const double t129 = t15 * t128;
+    const double t130 = t18 * t127;
+    const double t131 = t19 * t130;
+    const double t132 = t129 + t131;
+    const double t133 = t122 + t132;
+    const double t134 = t12 * t133;
+    const double t135 = t101 - t134;
+    const double t136 = p->value[7];
+    const double t137 = t135 * t136;
+    const double t138 = t90 - t137;
+    const double t82 = p->value[3];
+    const double t139 = a_3_ddot * t82;
+    const double t140 = t115 * t117;
+    const double t141 = t139 + t140;
     const double b_3_dot = qd[5];
-    const double t146 = a_3_dot + b_3_dot;
-    const double t147 = t146 * t146;
-    const double t148 = t147 * t118;
-    const double t149 = t145 - t148;
-    const double t150 = l_1 * t21;
-    const double t151 = t150 * t126;
-    const double t152 = t149 - t151;
-    const double t153 = t20 * t136;
-    const double t154 = l_1 * t153;
-    const double t155 = t152 - t154;
-    const double t156 = t57 * t155;
-    const double t157 = t142 * t64;
-    const double t158 = a_2_ddot * J_base;
-    const double t159 = t109 * t111;
-    const double t160 = t158 + t159;
+    const double t142 = a_3_dot + b_3_dot;
+    const double t143 = t142 * t142;
+    const double t144 = t143 * t113;
+    const double t145 = t141 - t144;
+    const double t146 = t20 * t130;
+    const double t147 = t21 * t120;
+    const double t148 = t146 + t147;
+    const double t149 = t148 * t136;
+    const double t150 = t145 - t149;
+    const double t151 = t57 * t150;
+    const double t152 = t138 * t64;
+    const double t153 = a_2_ddot * t82;
+    const double t154 = t105 * t107;
+    const double t155 = t153 + t154;
     const double b_2_dot = qd[4];
-    const double t161 = a_2_dot + b_2_dot;
-    const double t162 = t161 * t161;
-    const double t163 = t162 * t107;
-    const double t164 = t160 - t163;
-    const double t165 = l_1 * t17;
-    const double t166 = t165 * t115;
-    const double t167 = t164 - t166;
-    const double t168 = t16 * t134;
-    const double t169 = l_1 * t168;
-    const double t170 = t167 - t169;
-    const double t171 = t59 * t170;
-    const double t172 = t157 - t171;
-    const double t173 = t156 + t172;
-    const double t174 = t173 / t67;
-    const double t175 = t64 * t174;
-    const double t176 = t142 - t175;
-    const double t177 = t59 * t174;
-    const double t178 = t170 + t177;
-    const double t179 = t57 * t174;
-    const double t180 = t155 - t179;
-    double rest = t176 - t176;
-    rest += t178 - t178;
-    rest += t180 - t180;
-    if (isnan(rest) != 0) {
+    const double t156 = a_2_dot + b_2_dot;
+    const double t157 = t156 * t156;
+    const double t158 = t157 * t103;
+    const double t159 = t155 - t158;
+    const double t160 = t16 * t128;
+    const double t161 = t17 * t110;
+    const double t162 = t160 + t161;
+    const double t163 = t162 * t136;
+    const double t164 = t159 - t163;
+    const double t165 = t59 * t164;
+    const double t166 = t152 - t165;
+    const double t167 = t151 + t166;
+    const double t168 = t167 / t67;
+    const double t169 = t64 * t168;
+    const double t170 = t138 - t169;
+    const double t171 = t59 * t168;
+    const double t172 = t164 + t171;
+    const double t173 = t57 * t168;
+    const double t174 = t150 - t173;
+    double rest = (t170 - t170) * t172 * t174;
+    if (RAPKM_2RRR_RR_RARELY(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    u[0] = t176;
-    u[1] = t178;
-    u[2] = t180;
+    u[0] = t170;
+    u[1] = t172;
+    u[2] = t174;
     return RAPKM_2RRR_RR_OK;
 }

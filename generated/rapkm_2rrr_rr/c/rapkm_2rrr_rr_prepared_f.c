@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define RAPKM_2RRR_RR_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define RAPKM_2RRR_RR_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define RAPKM_2RRR_RR_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define RAPKM_2RRR_RR_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -108,45 +117,44 @@ RAPKM_2RRR_RR_GROUP_F void rapkm_2rrr_rr_sincos_group_f(const int count, const f
 }
 
 rapkm_2rrr_rr_prepared_f rapkm_2rrr_rr_prepare_f(const rapkm_2rrr_rr_params_f *p) {
+    const float l_1 = p->l_1;
+    const float m_2 = p->m_2;
+    const float l_2 = p->l_2;
+    const float m_payload = p->m_payload;
     const float J_1 = p->J_1;
     const float J_motor = p->J_motor;
-    const float l_1 = p->l_1;
     const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float m_payload = p->m_payload;
-    const float l_2 = p->l_2;
     const float J_2 = p->J_2;
-    const float v1 = J_1 + J_motor;
-    const float v2 = l_1 * l_1;
-    const float v3 = m_1 * v2;
-    const float v4 = 0.25f * v3;
-    const float v5 = v1 + v4;
-    const float v6 = m_2 * v2;
-    const float v7 = v5 + v6;
-    const float v8 = m_payload * v2;
-    const float v9 = v7 + v8;
-    const float v10 = l_1 * m_2;
-    const float v11 = l_2 * v10;
-    const float v12 = 0.5f * v11;
-    const float v13 = l_1 * m_payload;
-    const float v14 = l_2 * v13;
-    const float v15 = v12 + v14;
-    const float v16 = 1.0f / l_2;
-    const float v17 = l_2 * l_2;
-    const float v18 = m_2 * v17;
-    const float v19 = 0.25f * v18;
-    const float v20 = J_2 + v19;
-    const float v21 = m_payload * v17;
-    const float v22 = v20 + v21;
+    const float v1 = l_1 * m_2;
+    const float v2 = l_2 * v1;
+    const float v3 = 0.5f * v2;
+    const float v4 = l_1 * m_payload;
+    const float v5 = l_2 * v4;
+    const float v6 = v3 + v5;
+    const float v7 = l_1 * l_1;
+    const float v8 = m_payload * v7;
+    const float v9 = J_1 + J_motor;
+    const float v10 = 0.25f * m_1;
+    const float v11 = m_2 + v10;
+    const float v12 = v7 * v11;
+    const float v13 = v9 + v12;
+    const float v14 = v8 + v13;
+    const float v15 = l_2 * l_2;
+    const float v16 = m_2 * v15;
+    const float v17 = 0.25f * v16;
+    const float v18 = J_2 + v17;
+    const float v19 = m_payload * v15;
+    const float v20 = v18 + v19;
+    const float v21 = l_1 / l_2;
     rapkm_2rrr_rr_prepared_f prepared;
     prepared.value[0] = l_1;
-    prepared.value[1] = v7;
-    prepared.value[2] = v9;
-    prepared.value[3] = v12;
-    prepared.value[4] = v15;
-    prepared.value[5] = v16;
+    prepared.value[1] = v3;
+    prepared.value[2] = v6;
+    prepared.value[3] = v13;
+    prepared.value[4] = v14;
+    prepared.value[5] = v18;
     prepared.value[6] = v20;
-    prepared.value[7] = v22;
+    prepared.value[7] = v21;
     return prepared;
 }
 
@@ -168,19 +176,19 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float t9 = fabsf(b_2);
     const float t10 = fabsf(t6);
     const float t11 = fabsf(b_3);
-    if (!(100.0f >= t7)) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t7))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t8)) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t8))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t9)) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t9))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t10)) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t10))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t11)) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t11))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
     const float angle[8] = {b_1, t3, b_2, t6, b_3, b_3, b_3, b_3};
@@ -198,7 +206,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float t15 = cosine[1];
     const float t12 = sine[0];
     const float t19 = cosine[3];
-    if (!(t24 > 1.6370905e-11f)) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(t24 > 1.6370905e-11f))) {
         const float t25 = l_1 * t16;
         const float t26 = l_1 * t20;
         const float t27 = t25 * t26;
@@ -247,21 +255,20 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float t65 = t64 * t64;
     const float t66 = t60 + t65;
     const float t67 = t58 + t66;
-    const float t68 = t24 * 8.185452e-12f;
-    const float t69 = 1.5f * t68;
-    if (!(t67 > t69)) {
+    const float t68 = t24 * 1.22781785e-11f;
+    if (RAPKM_2RRR_RR_RARELY_F(!(t67 > t68))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    const float a_1_ddot = qdd[0];
-    const float J_base_1 = p->value[2];
-    const float t77 = a_1_ddot * J_base_1;
-    const float coupling_1 = p->value[4];
+    const float coupling_1 = p->value[2];
     const float t13 = cosine[0];
-    const float t82 = coupling_1 * t13;
+    const float t73 = coupling_1 * t13;
+    const float a_1_ddot = qdd[0];
     const float b_1_ddot = qdd[3];
-    const float t83 = a_1_ddot + b_1_ddot;
-    const float t84 = t82 * t83;
-    const float t85 = t77 + t84;
+    const float t74 = a_1_ddot + b_1_ddot;
+    const float t75 = t73 * t74;
+    const float t83 = p->value[4];
+    const float t84 = a_1_ddot * t83;
+    const float t85 = t75 + t84;
     const float a_1_dot = qd[0];
     const float b_1_dot = qd[3];
     const float t86 = a_1_dot + b_1_dot;
@@ -269,114 +276,106 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float t88 = coupling_1 * t12;
     const float t89 = t87 * t88;
     const float t90 = t85 - t89;
-    const float t91 = l_1 * t13;
-    const float t93 = a_1_dot * a_1_dot;
-    const float t94 = t93 * t88;
-    const float J_elbow_1 = p->value[7];
-    const float t99 = J_elbow_1 * t83;
-    const float t100 = a_1_ddot * t82;
-    const float t101 = t99 + t100;
-    const float t102 = t94 + t101;
-    const float t92 = p->value[5];
-    const float t103 = t92 * t102;
-    const float t104 = t91 * t103;
-    const float t105 = t90 - t104;
+    const float t91 = a_1_dot * a_1_dot;
+    const float t92 = t91 * t88;
+    const float J_elbow_1 = p->value[6];
+    const float t97 = J_elbow_1 * t74;
+    const float t98 = a_1_ddot * t73;
+    const float t99 = t97 + t98;
+    const float t100 = t92 + t99;
+    const float t101 = t13 * t100;
     const float a_2_dot = qd[1];
-    const float t106 = a_2_dot * a_2_dot;
-    const float coupling = p->value[3];
-    const float t107 = coupling * t16;
-    const float t108 = t106 * t107;
+    const float t102 = a_2_dot * a_2_dot;
+    const float coupling = p->value[1];
+    const float t103 = coupling * t16;
+    const float t104 = t102 * t103;
     const float a_2_ddot = qdd[1];
     const float b_2_ddot = qdd[4];
-    const float t109 = a_2_ddot + b_2_ddot;
-    const float J_elbow = p->value[6];
-    const float t110 = J_elbow * t109;
+    const float t105 = a_2_ddot + b_2_ddot;
+    const float J_elbow = p->value[5];
+    const float t106 = J_elbow * t105;
     const float t17 = cosine[2];
-    const float t111 = coupling * t17;
-    const float t112 = a_2_ddot * t111;
-    const float t113 = t110 + t112;
-    const float t114 = t108 + t113;
-    const float t115 = t92 * t114;
-    const float t116 = t14 * t115;
+    const float t107 = coupling * t17;
+    const float t108 = a_2_ddot * t107;
+    const float t109 = t106 + t108;
+    const float t110 = t104 + t109;
+    const float t111 = t14 * t110;
     const float a_3_dot = qd[2];
-    const float t117 = a_3_dot * a_3_dot;
-    const float t118 = coupling * t20;
-    const float t119 = t117 * t118;
+    const float t112 = a_3_dot * a_3_dot;
+    const float t113 = coupling * t20;
+    const float t114 = t112 * t113;
     const float a_3_ddot = qdd[2];
     const float b_3_ddot = qdd[5];
-    const float t120 = a_3_ddot + b_3_ddot;
-    const float t121 = J_elbow * t120;
+    const float t115 = a_3_ddot + b_3_ddot;
+    const float t116 = J_elbow * t115;
     const float t21 = cosine[4];
-    const float t122 = coupling * t21;
-    const float t123 = a_3_ddot * t122;
-    const float t124 = t121 + t123;
-    const float t125 = t119 + t124;
-    const float t126 = t92 * t125;
-    const float t127 = t18 * t126;
-    const float t128 = t116 + t127;
-    const float t129 = t15 * t115;
-    const float t130 = t103 + t129;
-    const float t131 = t19 * t126;
-    const float t132 = t130 + t131;
-    const float t133 = t132 / t24;
-    const float t134 = t14 * t133;
-    const float t135 = t15 * t134;
-    const float t136 = t18 * t133;
-    const float t137 = t19 * t136;
-    const float t138 = t135 + t137;
-    const float t139 = t128 + t138;
-    const float t140 = t12 * t139;
-    const float t141 = l_1 * t140;
-    const float t142 = t105 + t141;
-    const float J_base = p->value[1];
-    const float t143 = a_3_ddot * J_base;
-    const float t144 = t120 * t122;
-    const float t145 = t143 + t144;
+    const float t117 = coupling * t21;
+    const float t118 = a_3_ddot * t117;
+    const float t119 = t116 + t118;
+    const float t120 = t114 + t119;
+    const float t121 = t18 * t120;
+    const float t122 = t111 + t121;
+    const float t123 = t15 * t110;
+    const float t124 = t100 + t123;
+    const float t125 = t19 * t120;
+    const float t126 = t124 + t125;
+    const float t127 = t126 / t24;
+    const float t128 = t14 * t127;
+    const float t129 = t15 * t128;
+    const float t130 = t18 * t127;
+    const float t131 = t19 * t130;
+    const float t132 = t129 + t131;
+    const float t133 = t122 + t132;
+    const float t134 = t12 * t133;
+    const float t135 = t101 - t134;
+    const float t136 = p->value[7];
+    const float t137 = t135 * t136;
+    const float t138 = t90 - t137;
+    const float t82 = p->value[3];
+    const float t139 = a_3_ddot * t82;
+    const float t140 = t115 * t117;
+    const float t141 = t139 + t140;
     const float b_3_dot = qd[5];
-    const float t146 = a_3_dot + b_3_dot;
-    const float t147 = t146 * t146;
-    const float t148 = t147 * t118;
-    const float t149 = t145 - t148;
-    const float t150 = l_1 * t21;
-    const float t151 = t150 * t126;
-    const float t152 = t149 - t151;
-    const float t153 = t20 * t136;
-    const float t154 = l_1 * t153;
-    const float t155 = t152 - t154;
-    const float t156 = t57 * t155;
-    const float t157 = t142 * t64;
-    const float t158 = a_2_ddot * J_base;
-    const float t159 = t109 * t111;
-    const float t160 = t158 + t159;
+    const float t142 = a_3_dot + b_3_dot;
+    const float t143 = t142 * t142;
+    const float t144 = t143 * t113;
+    const float t145 = t141 - t144;
+    const float t146 = t20 * t130;
+    const float t147 = t21 * t120;
+    const float t148 = t146 + t147;
+    const float t149 = t148 * t136;
+    const float t150 = t145 - t149;
+    const float t151 = t57 * t150;
+    const float t152 = t138 * t64;
+    const float t153 = a_2_ddot * t82;
+    const float t154 = t105 * t107;
+    const float t155 = t153 + t154;
     const float b_2_dot = qd[4];
-    const float t161 = a_2_dot + b_2_dot;
-    const float t162 = t161 * t161;
-    const float t163 = t162 * t107;
-    const float t164 = t160 - t163;
-    const float t165 = l_1 * t17;
-    const float t166 = t165 * t115;
-    const float t167 = t164 - t166;
-    const float t168 = t16 * t134;
-    const float t169 = l_1 * t168;
-    const float t170 = t167 - t169;
-    const float t171 = t59 * t170;
-    const float t172 = t157 - t171;
-    const float t173 = t156 + t172;
-    const float t174 = t173 / t67;
-    const float t175 = t64 * t174;
-    const float t176 = t142 - t175;
-    const float t177 = t59 * t174;
-    const float t178 = t170 + t177;
-    const float t179 = t57 * t174;
-    const float t180 = t155 - t179;
-    float rest = t176 - t176;
-    rest += t178 - t178;
-    rest += t180 - t180;
-    if (isnan(rest) != 0) {
+    const float t156 = a_2_dot + b_2_dot;
+    const float t157 = t156 * t156;
+    const float t158 = t157 * t103;
+    const float t159 = t155 - t158;
+    const float t160 = t16 * t128;
+    const float t161 = t17 * t110;
+    const float t162 = t160 + t161;
+    const float t163 = t162 * t136;
+    const float t164 = t159 - t163;
+    const float t165 = t59 * t164;
+    const float t166 = t152 - t165;
+    const float t167 = t151 + t166;
+    const float t168 = t167 / t67;
+    const float t169 = t64 * t168;
+    const float t170 = t138 - t169;
+    const float t171 = t59 * t168;
+    const float t172 = t164 + t171;
+    const float t173 = t57 * t168;
+    const float t174 = t150 - t173;
+    float rest = (t170 - t170) * t172 * t174;
+    if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    u[0] = t176;
-    u[1] = t178;
-    u[2] = t180;
+    u[0] = t170;
+    u[1] = t172;
+    u[2] = t174;
     return RAPKM_2RRR_RR_OK;
 }

@@ -399,7 +399,7 @@ void eva_nullspace_projector_dot(void) {
 
 void eva_weighted_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t379. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t380. */
 void eva_weighted_pseudoinverse(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -431,7 +431,7 @@ void eva_weighted_pseudoinverse(void) {
 
 void eva_weighted_nullspace_projector(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t190, t287, t423. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t188, t288, t421. */
 void eva_weighted_nullspace_projector(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -987,7 +987,7 @@ void eva_admissible_acceleration(void) {
 
 void eva_projected_configuration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t79, t126, t175, t214, t366, t402, t451, t369, t406, t457, t547, t590. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t79, t126, t175, t214, t304, t340, t389, t307, t344, t395, t446, t489. */
 void eva_projected_configuration(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -1110,7 +1110,7 @@ void eva_inverse_dynamics_residual(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t49, t93, t151, t202, t242, t251, t260, t255, t304, t309, t365, t371, t265, t441, t438, t501, t507. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t188, t288, t50, t88, t141, t195, t421. */
 void eva_forward_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1153,7 +1153,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t49, t93, t151, t202, t242, t251, t260, t255, t293, t290, t410, t416, t265, t469, t466, t528, t571. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t49, t93, t151, t203, t240, t249, t253, t258, t291, t288, t378, t263, t430, t504, t381, t438, t500. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];

@@ -18,9 +18,9 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      70    112      3      0      5      0
- * forward_dynamics     259    408     20      7      6      0
- * multipliers          244    373     24      7      6      0
+ * inverse_dynamics      53     86      3      0      5      0
+ * forward_dynamics     282    424     11      4      6      0
+ * multipliers          230    373     22      7      6      0
  * singularity           60     99     17      4      6      0
  * (changes of sign are not counted)
  *

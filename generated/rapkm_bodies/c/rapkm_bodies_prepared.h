@@ -14,13 +14,13 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[17];
+    double value[10];
 } rapkm_bodies_prepared;
 
 rapkm_bodies_prepared rapkm_bodies_prepare(const rapkm_bodies_params *p);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 622 operations instead of 692 */
-rapkm_bodies_status rapkm_bodies_multipliers_prepared(const double q[6], const double qd[6], const double u[3], const rapkm_bodies_prepared *p, double lambda_B[4]);
+/* u: the smallest inputs that produce the motion, (27); 127 operations instead of 152 */
+rapkm_bodies_status rapkm_bodies_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const rapkm_bodies_prepared *p, double u[3]);
 
 #ifdef __cplusplus
 }

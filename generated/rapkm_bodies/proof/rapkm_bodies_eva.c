@@ -66,7 +66,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t48, t92, t151, t210, t258, t285, t295, t309, t356, t361, t417, t423, t317, t493, t490, t553, t559. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t190, t326, t50, t88, t141, t186, t475. */
 void eva_forward_dynamics(void) {
     double q[6];
     double qd[6];
@@ -109,7 +109,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t48, t92, t151, t210, t258, t285, t295, t309, t365, t362, t486, t492, t317, t545, t542, t604, t654. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t48, t92, t151, t248, t331, t209, t327, t431, t485, t265, t572, t433, t508, t568. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];

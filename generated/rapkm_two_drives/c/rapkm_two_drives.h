@@ -17,7 +17,7 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                          16     20      0      0      3      0
+ * mass_matrix                          16     19      0      0      3      0
  * coriolis_matrix                       4     20      0      0      3      0
  * coriolis_force                        4     26      0      0      3      0
  * potential_force                       0      0      0      0      0      0
@@ -28,32 +28,32 @@
  * constraint_pseudoinverse            138    210     14      4      6      0
  * nullspace_projector                 109    173      4      4      6      0
  * nullspace_projector_dot             391    549     14      4      6      0
- * weighted_pseudoinverse              375    554      1      0      6      0
- * weighted_nullspace_projector        206    327     17      4      6      0
+ * weighted_pseudoinverse              374    541      1      0      6      0
+ * weighted_nullspace_projector        206    321     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            105    158      1      0      6      0
  * projected_control_pseudoinverse      39     95      3      0      6      0
  * orthogonal_complement                39     95      3      0      6      0
- * projected_mass_matrix               269    396      4      4      6      0
- * projected_coriolis_matrix           722   1014     14      4      6      0
+ * projected_mass_matrix               269    395      4      4      6      0
+ * projected_coriolis_matrix           722   1012     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  76    139      1      0      6      0
- * minimal_coriolis_matrix             404    610      2      0      6      0
+ * minimal_mass_matrix                  75    132      1      0      6      0
+ * minimal_coriolis_matrix             404    603      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                0      0      0      0      0      0
- * admissible_velocity                  96    139      4      4      6      0
- * admissible_acceleration             191    273      8      4      6      0
- * projected_configuration             266    286     17      8     18      0
- * inverse_dynamics                     43     80      4      0      5      0
+ * admissible_velocity                  96    138      4      4      6      0
+ * admissible_acceleration             189    266      8      4      6      0
+ * projected_configuration             228    242     16      8     12      0
+ * inverse_dynamics                     42     72      4      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                 76    139      1      0      6      0
- * actuator_bias                       178    319      2      0      6      0
- * forward_dynamics                    229    358     20      7      6      0
- * multipliers                         214    323     24      7      6      0
- * energy                               18     39      0      0      3      0
+ * actuator_mass_matrix                 75    132      1      0      6      0
+ * actuator_bias                       178    314      2      0      6      0
+ * forward_dynamics                    252    372     11      4      6      0
+ * multipliers                         214    320     24      7      6      0
+ * energy                               18     38      0      0      3      0
  * singularity                          58     98     17      4      6      0
  * (changes of sign are not counted)
  *

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define REAR_CAR_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define REAR_CAR_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define REAR_CAR_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define REAR_CAR_INLINE static inline __attribute__((always_inline))
 #else
@@ -132,7 +141,7 @@ rear_car_params rear_car_default_params(void) {
 rear_car_status rear_car_mass_matrix(const double q[4], const rear_car_params *p, double G[16]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -150,12 +159,9 @@ rear_car_status rear_car_mass_matrix(const double q[4], const rear_car_params *p
     const double Theta_1 = p->Theta_1;
     const double t10 = Theta_1 + t9;
     const double Theta_2 = p->Theta_2;
-    double rest = t4 - t4;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    rest += t10 - t10;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t7 * t8;
+    rest += (t10 - t10) * Theta_2;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     G[0] = t4;
@@ -180,7 +186,7 @@ rear_car_status rear_car_mass_matrix(const double q[4], const rear_car_params *p
 rear_car_status rear_car_coriolis_matrix(const double q[4], const double qd[4], const rear_car_params *p, double C[16]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -195,9 +201,8 @@ rear_car_status rear_car_coriolis_matrix(const double q[4], const double qd[4], 
     const double t7 = -t6;
     const double t8 = t2 * t5;
     const double t9 = -t8;
-    double rest = t7 - t7;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    double rest = (t7 - t7) * t9;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     C[0] = 0.0;
@@ -222,7 +227,7 @@ rear_car_status rear_car_coriolis_matrix(const double q[4], const double qd[4], 
 rear_car_status rear_car_coriolis_force(const double q[4], const double qd[4], const rear_car_params *p, double C_qd[4]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -239,9 +244,8 @@ rear_car_status rear_car_coriolis_force(const double q[4], const double qd[4], c
     const double t9 = theta_dot * t2;
     const double t10 = t5 * t9;
     const double t11 = -t10;
-    double rest = t8 - t8;
-    rest += t11 - t11;
-    if (isnan(rest) != 0) {
+    double rest = (t8 - t8) * t11;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -277,10 +281,10 @@ rear_car_status rear_car_constraint_jacobian(const double q[4], const rear_car_p
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -302,12 +306,9 @@ rear_car_status rear_car_constraint_jacobian(const double q[4], const rear_car_p
     const double L = p->L;
     const double t15 = L * t6;
     const double t16 = -t15;
-    double rest = t3 - t3;
-    rest += t7 - t7;
-    rest += t10 - t10;
-    rest += t14 - t14;
-    rest += t16 - t16;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t7 * t10;
+    rest += (t14 - t14) * t16;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     B[0] = t3;
@@ -326,10 +327,10 @@ rear_car_status rear_car_constraint_jacobian_dot(const double q[4], const double
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -356,12 +357,9 @@ rear_car_status rear_car_constraint_jacobian_dot(const double q[4], const double
     const double t18 = phi_dot * t5;
     const double L = p->L;
     const double t19 = L * t18;
-    double rest = t7 - t7;
-    rest += t8 - t8;
-    rest += t13 - t13;
-    rest += t17 - t17;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    double rest = (t7 - t7) * t8 * t13;
+    rest += (t17 - t17) * t19;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -380,10 +378,10 @@ rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -406,7 +404,7 @@ rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double t18 = 1.0 / t14;
@@ -432,13 +430,9 @@ rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_
     const double t38 = t36 * t37;
     const double t39 = t4 * t36;
     const double t40 = -t39;
-    double rest = t25 - t25;
-    rest += t27 - t27;
-    rest += t34 - t34;
-    rest += t35 - t35;
-    rest += t38 - t38;
-    rest += t40 - t40;
-    if (isnan(rest) != 0) {
+    double rest = (t25 - t25) * t27 * t34;
+    rest += (t35 - t35) * t38 * t40;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -457,10 +451,10 @@ rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_p
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -483,7 +477,7 @@ rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_p
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double t18 = 1.0 / t14;
@@ -496,13 +490,9 @@ rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_p
     const double t25 = t9 * t5;
     const double t26 = t18 * t25;
     const double t27 = t7 * t18;
-    double rest = t19 - t19;
-    rest += t21 - t21;
-    rest += t23 - t23;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    rest += t27 - t27;
-    if (isnan(rest) != 0) {
+    double rest = (t19 - t19) * t21 * t23;
+    rest += (t24 - t24) * t26 * t27;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -529,10 +519,10 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -555,7 +545,7 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -627,13 +617,9 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     const double t82 = t3 * t81;
     const double t83 = t20 * t82;
     const double t84 = 2.0 * t83;
-    double rest = t34 - t34;
-    rest += t52 - t52;
-    rest += t63 - t63;
-    rest += t70 - t70;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    double rest = (t34 - t34) * t52 * t63;
+    rest += (t70 - t70) * t80 * t84;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -660,10 +646,10 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -686,7 +672,7 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -714,67 +700,62 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t36 = fabs(m_1);
     const double t37 = t36 + t28;
     const double t38 = t37 * t33;
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (REAR_CAR_RARELY(!(t26 > t42))) {
         return REAR_CAR_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * Theta_2;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t45 * t51;
-    const double t53 = t8 * t52;
-    const double t54 = t6 * t4;
-    const double t55 = t5 * t3;
-    const double t56 = t54 - t55;
-    const double t57 = m_2 * t19;
-    const double t58 = Theta_1 + t57;
-    const double t59 = Theta_2 * t58;
-    const double t60 = t3 * t59;
-    const double t61 = t56 * t60;
-    const double t62 = t53 - t61;
-    const double t63 = t44 * t62;
-    const double t64 = t59 / t25;
-    const double t65 = t48 * t64;
-    const double t66 = m_1 * t54;
-    const double t67 = m_2 * t56;
-    const double t68 = t66 + t67;
-    const double t69 = t45 * t68;
-    const double t70 = t8 * t69;
-    const double t71 = t49 * t60;
-    const double t72 = t70 + t71;
-    const double t73 = t44 * t72;
-    const double t74 = -t73;
-    const double t75 = t55 * t64;
-    const double t76 = t45 / t25;
-    const double t77 = t22 * t76;
-    const double t78 = m_1 + m_2;
-    const double t79 = t4 * t78;
-    const double t80 = t79 * t76;
-    const double t81 = -t80;
-    double rest = t63 - t63;
-    rest += t65 - t65;
-    rest += t74 - t74;
-    rest += t75 - t75;
-    rest += t77 - t77;
-    rest += t81 - t81;
-    if (isnan(rest) != 0) {
+    const double t43 = 1.0 / t25;
+    const double t44 = L * Theta_2;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t44 * t50;
+    const double t52 = t8 * t51;
+    const double t53 = t6 * t4;
+    const double t54 = t5 * t3;
+    const double t55 = t53 - t54;
+    const double t56 = m_2 * t19;
+    const double t57 = Theta_1 + t56;
+    const double t58 = Theta_2 * t57;
+    const double t59 = t3 * t58;
+    const double t60 = t55 * t59;
+    const double t61 = t52 - t60;
+    const double t62 = t43 * t61;
+    const double t63 = t58 / t25;
+    const double t64 = t47 * t63;
+    const double t65 = m_1 * t53;
+    const double t66 = m_2 * t55;
+    const double t67 = t65 + t66;
+    const double t68 = t44 * t67;
+    const double t69 = t8 * t68;
+    const double t70 = t48 * t59;
+    const double t71 = t69 + t70;
+    const double t72 = t43 * t71;
+    const double t73 = -t72;
+    const double t74 = t54 * t63;
+    const double t75 = t44 / t25;
+    const double t76 = t22 * t75;
+    const double t77 = m_1 + m_2;
+    const double t78 = t4 * t77;
+    const double t79 = t78 * t75;
+    const double t80 = -t79;
+    double rest = (t62 - t62) * t64 * t73;
+    rest += (t74 - t74) * t76 * t80;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    B_G_pinv[0] = t63;
-    B_G_pinv[1] = t65;
-    B_G_pinv[2] = t74;
-    B_G_pinv[3] = t75;
-    B_G_pinv[4] = t77;
-    B_G_pinv[5] = t81;
+    B_G_pinv[0] = t62;
+    B_G_pinv[1] = t64;
+    B_G_pinv[2] = t73;
+    B_G_pinv[3] = t74;
+    B_G_pinv[4] = t76;
+    B_G_pinv[5] = t80;
     B_G_pinv[6] = 0.0;
     B_G_pinv[7] = 0.0;
     return REAR_CAR_OK;
@@ -785,10 +766,10 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -811,7 +792,7 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -839,76 +820,69 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     const double t36 = fabs(m_1);
     const double t37 = t36 + t28;
     const double t38 = t37 * t33;
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (REAR_CAR_RARELY(!(t26 > t42))) {
         return REAR_CAR_MASS_RANK;
     }
-    const double t44 = Theta_2 * t19;
-    const double t45 = t44 / t25;
-    const double t46 = t6 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t5 * t3;
-    const double t49 = t46 - t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t46 * t51;
-    const double t53 = t45 * t52;
-    const double t54 = t5 * t4;
-    const double t55 = m_1 * t54;
-    const double t56 = t6 * t3;
-    const double t57 = t54 + t56;
-    const double t58 = m_2 * t57;
-    const double t59 = t55 + t58;
-    const double t60 = t46 * t59;
-    const double t61 = t45 * t60;
-    const double t62 = t3 * t46;
-    const double t63 = m_2 * t19;
-    const double t64 = Theta_1 + t63;
-    const double t65 = L * Theta_2;
-    const double t66 = t64 * t65;
-    const double t67 = t66 / t25;
-    const double t68 = t62 * t67;
-    const double t69 = t54 * t51;
-    const double t70 = t45 * t69;
-    const double t71 = t54 * t59;
-    const double t72 = t45 * t71;
-    const double t73 = t3 * t54;
-    const double t74 = t73 * t67;
-    const double t75 = t65 / t25;
-    const double t76 = t3 * t51;
-    const double t77 = t75 * t76;
-    const double t78 = t3 * t59;
-    const double t79 = t75 * t78;
-    const double t80 = Theta_2 * t64;
-    const double t81 = t80 / t25;
-    const double t82 = t7 * t81;
-    double rest = t53 - t53;
-    rest += t61 - t61;
-    rest += t68 - t68;
-    rest += t70 - t70;
-    rest += t72 - t72;
-    rest += t74 - t74;
-    rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t82 - t82;
-    if (isnan(rest) != 0) {
+    const double t43 = Theta_2 * t19;
+    const double t44 = t43 / t25;
+    const double t45 = t6 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t5 * t3;
+    const double t48 = t45 - t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t45 * t50;
+    const double t52 = t44 * t51;
+    const double t53 = t5 * t4;
+    const double t54 = m_1 * t53;
+    const double t55 = t6 * t3;
+    const double t56 = t53 + t55;
+    const double t57 = m_2 * t56;
+    const double t58 = t54 + t57;
+    const double t59 = t45 * t58;
+    const double t60 = t44 * t59;
+    const double t61 = t3 * t45;
+    const double t62 = m_2 * t19;
+    const double t63 = Theta_1 + t62;
+    const double t64 = L * Theta_2;
+    const double t65 = t63 * t64;
+    const double t66 = t65 / t25;
+    const double t67 = t61 * t66;
+    const double t68 = t53 * t50;
+    const double t69 = t44 * t68;
+    const double t70 = t53 * t58;
+    const double t71 = t44 * t70;
+    const double t72 = t3 * t53;
+    const double t73 = t72 * t66;
+    const double t74 = t64 / t25;
+    const double t75 = t3 * t50;
+    const double t76 = t74 * t75;
+    const double t77 = t3 * t58;
+    const double t78 = t74 * t77;
+    const double t79 = Theta_2 * t63;
+    const double t80 = t79 / t25;
+    const double t81 = t7 * t80;
+    double rest = (t52 - t52) * t60 * t67;
+    rest += (t69 - t69) * t71 * t73;
+    rest += (t76 - t76) * t78 * t81;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    N_BG[0] = t53;
-    N_BG[1] = t61;
-    N_BG[2] = t68;
+    N_BG[0] = t52;
+    N_BG[1] = t60;
+    N_BG[2] = t67;
     N_BG[3] = 0.0;
-    N_BG[4] = t70;
-    N_BG[5] = t72;
-    N_BG[6] = t74;
+    N_BG[4] = t69;
+    N_BG[5] = t71;
+    N_BG[6] = t73;
     N_BG[7] = 0.0;
-    N_BG[8] = t77;
-    N_BG[9] = t79;
-    N_BG[10] = t82;
+    N_BG[8] = t76;
+    N_BG[9] = t78;
+    N_BG[10] = t81;
     N_BG[11] = 0.0;
     N_BG[12] = 0.0;
     N_BG[13] = 0.0;
@@ -921,15 +895,14 @@ rear_car_status rear_car_control_matrix(const double q[4], const rear_car_params
     (void)p;
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2;
     double t3;
     rear_car_sincos(theta, &t2, &t3);
-    double rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t2;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     M[0] = t3;
@@ -948,10 +921,10 @@ rear_car_status rear_car_projected_control_matrix(const double q[4], const rear_
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -974,7 +947,7 @@ rear_car_status rear_car_projected_control_matrix(const double q[4], const rear_
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double t18 = t8 * t12;
@@ -983,10 +956,8 @@ rear_car_status rear_car_projected_control_matrix(const double q[4], const rear_
     const double t21 = t20 / t14;
     const double t22 = t8 * t3;
     const double t23 = t22 / t14;
-    double rest = t19 - t19;
-    rest += t21 - t21;
-    rest += t23 - t23;
-    if (isnan(rest) != 0) {
+    double rest = (t19 - t19) * t21 * t23;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     M_tilde[0] = t19;
@@ -1005,10 +976,10 @@ rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], cons
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -1024,7 +995,7 @@ rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], cons
     const double t5 = sine[1];
     const double t3 = sine[0];
     const double t4 = cosine[0];
-    if (!(t8 > t10)) {
+    if (REAR_CAR_RARELY(!(t8 > t10))) {
         const double t11 = t5 * t5;
         const double t12 = t3 * t7;
         const double t13 = t12 * t12;
@@ -1038,10 +1009,8 @@ rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], cons
         return REAR_CAR_ACTUATION_RANK;
     }
     const double t18 = t5 / t7;
-    double rest = t4 - t4;
-    rest += t3 - t3;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t3 * t18;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     M_tilde_pinv[0] = t4;
@@ -1060,10 +1029,10 @@ rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -1081,7 +1050,7 @@ rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car
     const double t12 = t11 * 1.262177448353619e-29;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (REAR_CAR_RARELY(!(t9 > t12))) {
         const double t13 = t5 * t5;
         const double t14 = t3 * t7;
         const double t15 = t14 * t14;
@@ -1094,9 +1063,8 @@ rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car
     }
     const double t18 = t3 / t4;
     const double t19 = t5 / t8;
-    double rest = t18 - t18;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    double rest = (t18 - t18) * t19;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0;
@@ -1115,10 +1083,10 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1141,7 +1109,7 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -1193,14 +1161,10 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     const double t61 = t52 + t60;
     const double t62 = t61 / t19;
     const double Theta_2 = p->Theta_2;
-    double rest = t31 - t31;
-    rest += t36 - t36;
-    rest += t41 - t41;
-    rest += t46 - t46;
-    rest += t50 - t50;
-    rest += t62 - t62;
+    double rest = (t31 - t31) * t36 * t41;
+    rest += (t46 - t46) * t50 * t62;
     rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     G_tilde[0] = t31;
@@ -1227,10 +1191,10 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1253,7 +1217,7 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -1523,16 +1487,10 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double t275 = t274 * t140;
     const double t276 = t4 * t275;
     const double t277 = t22 * t276;
-    double rest = t85 - t85;
-    rest += t131 - t131;
-    rest += t144 - t144;
-    rest += t179 - t179;
-    rest += t181 - t181;
-    rest += t184 - t184;
-    rest += t231 - t231;
-    rest += t272 - t272;
-    rest += t277 - t277;
-    if (isnan(rest) != 0) {
+    double rest = (t85 - t85) * t131 * t144;
+    rest += (t179 - t179) * t181 * t184;
+    rest += (t231 - t231) * t272 * t277;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     C_tilde[0] = t85;
@@ -1580,10 +1538,10 @@ rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_p
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1601,7 +1559,7 @@ rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_p
     const double t12 = t11 * 1.262177448353619e-29;
     const double t3 = sine[0];
     const double t5 = sine[1];
-    if (!(t9 > t12)) {
+    if (REAR_CAR_RARELY(!(t9 > t12))) {
         const double t13 = t3 * t3;
         const double t14 = t5 * t7;
         const double t15 = t14 * t14;
@@ -1625,9 +1583,8 @@ rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_p
     const double t25 = t22 + t24;
     const double t26 = t25 / t9;
     const double Theta_2 = p->Theta_2;
-    double rest = t26 - t26;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t26 - t26) * Theta_2;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     G_bar[0] = t26;
@@ -1642,10 +1599,10 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1668,10 +1625,10 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    if (!(t13 > t17)) {
+    if (REAR_CAR_RARELY(!(t13 > t17))) {
         if (!(t14 > t17)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
@@ -1722,7 +1679,7 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
     const double t55 = t14 * t54;
     const double t56 = t48 / t55;
     double rest = t56 - t56;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     C_bar[0] = t56;
@@ -1754,10 +1711,10 @@ rear_car_status rear_car_minimal_control_matrix(const double q[4], const rear_ca
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -1775,7 +1732,7 @@ rear_car_status rear_car_minimal_control_matrix(const double q[4], const rear_ca
     const double t12 = t11 * 1.262177448353619e-29;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (REAR_CAR_RARELY(!(t9 > t12))) {
         const double t13 = t5 * t5;
         const double t14 = t3 * t7;
         const double t15 = t14 * t14;
@@ -1788,7 +1745,7 @@ rear_car_status rear_car_minimal_control_matrix(const double q[4], const rear_ca
     }
     const double t18 = 1.0 / t4;
     double rest = t18 - t18;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     M_bar[0] = t18;
@@ -1803,10 +1760,10 @@ rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1829,7 +1786,7 @@ rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double t18 = L / t14;
@@ -1852,11 +1809,9 @@ rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[
     const double t32 = t3 * t25;
     const double t33 = t32 / t14;
     const double phi_dot = qd[3];
-    double rest = t28 - t28;
-    rest += t31 - t31;
-    rest += t33 - t33;
+    double rest = (t28 - t28) * t31 * t33;
     rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     qd_admissible[0] = t28;
@@ -1871,10 +1826,10 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1897,7 +1852,7 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double y_ddot = qdd[1];
@@ -1991,11 +1946,9 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t99 = t95 + t98;
     const double t100 = t99 / t56;
     const double phi_ddot = qdd[3];
-    double rest = t59 - t59;
-    rest += t88 - t88;
-    rest += t100 - t100;
+    double rest = (t59 - t59) * t88 * t100;
     rest += phi_ddot - phi_ddot;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
@@ -2011,11 +1964,9 @@ rear_car_status rear_car_projected_configuration(const double q[4], const rear_c
     const double y = q[1];
     const double theta = q[2];
     const double phi = q[3];
-    double rest = x - x;
-    rest += y - y;
-    rest += theta - theta;
+    double rest = (x - x) * y * theta;
     rest += phi - phi;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2030,10 +1981,10 @@ rear_car_status rear_car_inverse_dynamics(const double q[4], const double qd[4],
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -2046,7 +1997,7 @@ rear_car_status rear_car_inverse_dynamics(const double q[4], const double qd[4],
     const double t8 = fabs(t7);
     const double t9 = L * 3.552713678800501e-15;
     const double t5 = sine[1];
-    if (!(t8 > t9)) {
+    if (REAR_CAR_RARELY(!(t8 > t9))) {
         const double t10 = t5 * t5;
         const double t11 = t7 * t7;
         const double t12 = t10 + t11;
@@ -2090,9 +2041,8 @@ rear_car_status rear_car_inverse_dynamics(const double q[4], const double qd[4],
     const double phi_ddot = qdd[3];
     const double Theta_2 = p->Theta_2;
     const double t36 = phi_ddot * Theta_2;
-    double rest = t35 - t35;
-    rest += t36 - t36;
-    if (isnan(rest) != 0) {
+    double rest = (t35 - t35) * t36;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     u[0] = t35;
@@ -2116,7 +2066,7 @@ rear_car_status rear_car_actuator_velocity(const double q[4], const double qd[4]
     (void)p;
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -2128,9 +2078,8 @@ rear_car_status rear_car_actuator_velocity(const double q[4], const double qd[4]
     const double t5 = y_dot * t2;
     const double t6 = t4 + t5;
     const double phi_dot = qd[3];
-    double rest = t6 - t6;
-    rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    double rest = (t6 - t6) * phi_dot;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     nu[0] = t6;
@@ -2141,7 +2090,7 @@ rear_car_status rear_car_actuator_velocity(const double q[4], const double qd[4]
 rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_params *p, double G_nu[4]) {
     const double phi = q[3];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -2153,7 +2102,7 @@ rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_
     const double t6 = 1.0 + t5;
     const double t7 = t6 * 1.262177448353619e-29;
     const double theta = q[2];
-    if (!(t5 > t7)) {
+    if (REAR_CAR_RARELY(!(t5 > t7))) {
         const double t8 = t2 * t2;
         double t9;
         double t10;
@@ -2185,9 +2134,8 @@ rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_
     const double t24 = t19 * t23;
     const double t25 = t18 + t24;
     const double Theta_2 = p->Theta_2;
-    double rest = t25 - t25;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t25 - t25) * Theta_2;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     G_nu[0] = t25;
@@ -2202,10 +2150,10 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2228,10 +2176,10 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    if (!(t15 > t17)) {
+    if (REAR_CAR_RARELY(!(t15 > t17))) {
         if (!(t14 > t17)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
@@ -2254,7 +2202,7 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
     const double t27 = t25 * t26;
     const double t28 = t22 * t27;
     double rest = t28 - t28;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     bias_nu[0] = t28;
@@ -2263,196 +2211,14 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
 }
 
 rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4], const double u[2], const rear_car_params *p, double qdd[4]) {
-    const double theta = q[2];
-    const double t1 = fabs(theta);
-    const double phi = q[3];
-    const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    if (!(100000.0 >= t2)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    const double angle[2] = {theta, phi};
-    double sine[2];
-    double cosine[2];
-    rear_car_sincos_group(2, angle, sine, cosine);
-    const double t5 = sine[1];
-    const double t7 = t5 * t5;
-    const double L = p->L;
-    const double t6 = cosine[1];
-    const double t8 = L * t6;
-    const double t3 = sine[0];
-    const double t9 = t3 * t8;
-    const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
-    const double t4 = cosine[0];
-    const double t12 = t4 * t8;
-    const double t13 = t12 * t12;
-    const double t14 = t11 + t13;
-    const double t15 = t8 * t8;
-    const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
-        return REAR_CAR_CONSTRAINT_RANK;
-    }
-    const double Theta_1 = p->Theta_1;
-    const double t18 = Theta_1 * t7;
-    const double t19 = L * L;
-    const double t20 = t6 * t6;
-    const double m_1 = p->m_1;
-    const double t21 = m_1 * t20;
-    const double m_2 = p->m_2;
-    const double t22 = m_2 + t21;
-    const double t23 = t19 * t22;
-    const double t24 = t18 + t23;
-    const double Theta_2 = p->Theta_2;
-    const double t25 = Theta_2 * t24;
-    const double t26 = fabs(t25);
-    const double t27 = fabs(Theta_1);
-    const double t28 = fabs(m_2);
-    const double t29 = fabs(L);
-    const double t30 = t29 * t29;
-    const double t31 = t28 * t30;
-    const double t32 = t27 + t31;
-    const double t33 = fabs(Theta_2);
-    const double t34 = t32 * t33;
-    const double t35 = t7 * t34;
-    const double t36 = fabs(m_1);
-    const double t37 = t36 + t28;
-    const double t38 = t37 * t33;
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
-        return REAR_CAR_MASS_RANK;
-    }
-    const double t44 = L * m_2;
-    const double theta_dot = qd[2];
-    const double t45 = theta_dot * t44;
-    const double t46 = theta_dot * t4;
-    const double t47 = t45 * t46;
-    const double K_r = u[0];
-    const double t48 = K_r * t4;
-    const double t49 = t47 + t48;
-    const double t50 = t12 * t49;
-    const double t51 = theta_dot * t3;
-    const double t52 = t45 * t51;
-    const double t53 = K_r * t3;
-    const double t54 = t52 + t53;
-    const double t55 = t9 * t54;
-    const double t56 = t50 + t55;
-    const double t57 = Theta_2 * t56;
-    const double t58 = t12 * t57;
-    const double t59 = 1.0 / t25;
-    const double t60 = t58 * t59;
-    const double y_dot = qd[1];
-    const double t61 = y_dot * t51;
-    const double x_dot = qd[0];
-    const double t62 = x_dot * t46;
-    const double t63 = t61 + t62;
-    const double t64 = t8 * t63;
-    const double t65 = L * Theta_2;
-    const double t66 = t3 * t6;
-    const double t67 = m_1 * t66;
-    const double t68 = t4 * t5;
-    const double t69 = t66 + t68;
-    const double t70 = m_2 * t69;
-    const double t71 = t67 + t70;
-    const double t72 = t65 * t71;
-    const double t73 = t64 * t72;
-    const double phi_dot = qd[3];
-    const double t74 = phi_dot * t5;
-    const double t75 = L * t74;
-    const double t76 = theta_dot * t75;
-    const double t77 = theta_dot + phi_dot;
-    const double t78 = t4 * t6;
-    const double t79 = t3 * t5;
-    const double t80 = t78 - t79;
-    const double t81 = t77 * t80;
-    const double t82 = x_dot * t81;
-    const double t83 = t77 * t69;
-    const double t84 = y_dot * t83;
-    const double t85 = t82 + t84;
-    const double t86 = t76 + t85;
-    const double t87 = t4 * t86;
-    const double t88 = t63 * t80;
-    const double t89 = t87 - t88;
-    const double t90 = L * t44;
-    const double t91 = Theta_1 + t90;
-    const double t92 = t5 * t91;
-    const double t93 = Theta_2 * t92;
-    const double t94 = t89 * t93;
-    const double t95 = t73 + t94;
-    const double t96 = t59 * t95;
-    const double t97 = t60 - t96;
-    const double t98 = t9 * t57;
-    const double t99 = t98 * t59;
-    const double t100 = t3 * t86;
-    const double t101 = t63 * t69;
-    const double t102 = t100 - t101;
-    const double t103 = t102 * t93;
-    const double t104 = m_1 * t78;
-    const double t105 = m_2 * t80;
-    const double t106 = t104 + t105;
-    const double t107 = t65 * t106;
-    const double t108 = t64 * t107;
-    const double t109 = t103 - t108;
-    const double t110 = t59 * t109;
-    const double t111 = t99 - t110;
-    const double t112 = t5 * t57;
-    const double t113 = t112 * t59;
-    const double t114 = t88 - t87;
-    const double t115 = t107 * t114;
-    const double t116 = t72 * t102;
-    const double t117 = t115 - t116;
-    const double t118 = t117 * t59;
-    const double t119 = t113 - t118;
-    const double t120 = m_1 + m_2;
-    const double T = u[1];
-    const double t121 = T * t12;
-    const double t122 = t120 * t121;
-    const double t123 = t3 * t44;
-    const double t124 = T * t5;
-    const double t125 = t123 * t124;
-    const double t126 = t122 - t125;
-    const double t127 = t12 * t126;
-    const double t128 = T * t9;
-    const double t129 = t120 * t128;
-    const double t130 = t4 * t44;
-    const double t131 = t130 * t124;
-    const double t132 = t129 + t131;
-    const double t133 = t9 * t132;
-    const double t134 = t127 + t133;
-    const double t135 = t124 * t91;
-    const double t136 = t5 * t135;
-    const double t137 = t134 + t136;
-    const double t138 = t59 * t137;
-    double rest = t97 - t97;
-    rest += t111 - t111;
-    rest += t119 - t119;
-    rest += t138 - t138;
-    if (isnan(rest) != 0) {
-        return REAR_CAR_NOT_FINITE;
-    }
-    qdd[0] = t97;
-    qdd[1] = t111;
-    qdd[2] = t119;
-    qdd[3] = t138;
-    return REAR_CAR_OK;
-}
-
-rear_car_status rear_car_multipliers(const double q[4], const double qd[4], const double u[2], const rear_car_params *p, double lambda_B[2]) {
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2475,7 +2241,7 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -2503,129 +2269,301 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t36 = fabs(m_1);
     const double t37 = t36 + t28;
     const double t38 = t37 * t33;
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (REAR_CAR_RARELY(!(t26 > t42))) {
         return REAR_CAR_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * Theta_2;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t45 * t51;
-    const double t53 = L * m_2;
+    const double t43 = 1.0 / t25;
+    const double t44 = L * m_2;
     const double theta_dot = qd[2];
-    const double t54 = theta_dot * t53;
-    const double t55 = theta_dot * t6;
-    const double t56 = t54 * t55;
+    const double t45 = theta_dot * t44;
+    const double t46 = theta_dot * t6;
+    const double t47 = t45 * t46;
     const double K_r = u[0];
-    const double t57 = K_r * t6;
-    const double t58 = t56 + t57;
-    const double t59 = m_1 + m_2;
-    const double t60 = theta_dot * t5;
+    const double t48 = K_r * t6;
+    const double t49 = t47 + t48;
+    const double t50 = t12 * t49;
+    const double t51 = theta_dot * t5;
+    const double t52 = t45 * t51;
+    const double t53 = K_r * t5;
+    const double t54 = t52 + t53;
+    const double t55 = t9 * t54;
+    const double t56 = t50 + t55;
+    const double t57 = Theta_2 * t56;
+    const double t58 = t12 * t57;
     const double y_dot = qd[1];
-    const double t61 = y_dot * t60;
+    const double t59 = y_dot * t51;
     const double x_dot = qd[0];
-    const double t62 = x_dot * t55;
-    const double t63 = t61 + t62;
-    const double t64 = t8 * t63;
-    const double t65 = t64 * t52;
+    const double t60 = x_dot * t46;
+    const double t61 = t59 + t60;
+    const double t62 = t8 * t61;
+    const double t63 = L * Theta_2;
+    const double t64 = t5 * t4;
+    const double t65 = m_1 * t64;
+    const double t66 = t6 * t3;
+    const double t67 = t64 + t66;
+    const double t68 = m_2 * t67;
+    const double t69 = t65 + t68;
+    const double t70 = t63 * t69;
+    const double t71 = t62 * t70;
+    const double t72 = L * t44;
+    const double t73 = Theta_1 + t72;
+    const double t74 = t3 * t73;
+    const double t75 = Theta_2 * t74;
     const double phi_dot = qd[3];
-    const double t66 = phi_dot * t3;
-    const double t67 = L * t66;
-    const double t68 = theta_dot * t67;
-    const double t69 = theta_dot + phi_dot;
-    const double t70 = t6 * t4;
-    const double t71 = t5 * t3;
-    const double t72 = t70 - t71;
-    const double t73 = t69 * t72;
-    const double t74 = x_dot * t73;
-    const double t75 = t69 * t49;
-    const double t76 = y_dot * t75;
-    const double t77 = t74 + t76;
-    const double t78 = t68 + t77;
-    const double t79 = t6 * t78;
-    const double t80 = t63 * t72;
-    const double t81 = t79 - t80;
-    const double t82 = L * t53;
-    const double t83 = Theta_1 + t82;
-    const double t84 = t3 * t83;
-    const double t85 = Theta_2 * t84;
-    const double t86 = t81 * t85;
-    const double t87 = t65 + t86;
-    const double t88 = t44 * t87;
-    const double t89 = t59 * t88;
-    const double t90 = t5 * t53;
-    const double t91 = m_1 * t70;
-    const double t92 = m_2 * t72;
-    const double t93 = t91 + t92;
-    const double t94 = t45 * t93;
-    const double t95 = t80 - t79;
-    const double t96 = t94 * t95;
-    const double t97 = t5 * t78;
-    const double t98 = t63 * t49;
-    const double t99 = t97 - t98;
-    const double t100 = t52 * t99;
-    const double t101 = t96 - t100;
-    const double t102 = t101 * t44;
-    const double t103 = t90 * t102;
-    const double t104 = t89 - t103;
-    const double t105 = t58 + t104;
-    const double t106 = t52 * t105;
-    const double t107 = t54 * t60;
-    const double t108 = K_r * t5;
-    const double t109 = t107 + t108;
-    const double t110 = t99 * t85;
-    const double t111 = t64 * t94;
+    const double t76 = phi_dot * t3;
+    const double t77 = L * t76;
+    const double t78 = theta_dot * t77;
+    const double t79 = theta_dot + phi_dot;
+    const double t80 = t6 * t4;
+    const double t81 = t5 * t3;
+    const double t82 = t80 - t81;
+    const double t83 = x_dot * t82;
+    const double t84 = y_dot * t67;
+    const double t85 = t83 + t84;
+    const double t86 = t79 * t85;
+    const double t87 = t78 + t86;
+    const double t88 = t6 * t87;
+    const double t89 = t61 * t82;
+    const double t90 = t88 - t89;
+    const double t91 = t75 * t90;
+    const double t92 = t71 + t91;
+    const double t93 = t58 - t92;
+    const double t94 = t43 * t93;
+    const double t95 = t9 * t57;
+    const double t96 = t5 * t87;
+    const double t97 = t61 * t67;
+    const double t98 = t96 - t97;
+    const double t99 = t75 * t98;
+    const double t100 = m_1 * t80;
+    const double t101 = m_2 * t82;
+    const double t102 = t100 + t101;
+    const double t103 = t63 * t102;
+    const double t104 = t62 * t103;
+    const double t105 = t99 - t104;
+    const double t106 = t95 - t105;
+    const double t107 = t43 * t106;
+    const double t108 = t3 * t57;
+    const double t109 = t89 - t88;
+    const double t110 = t103 * t109;
+    const double t111 = t70 * t98;
     const double t112 = t110 - t111;
-    const double t113 = t44 * t112;
-    const double t114 = t59 * t113;
-    const double t115 = t6 * t53;
-    const double t116 = t115 * t102;
-    const double t117 = t114 + t116;
-    const double t118 = t109 + t117;
-    const double t119 = t94 * t118;
-    const double t120 = t106 - t119;
-    const double t121 = t8 * t120;
-    const double t122 = t85 * t105;
-    const double t123 = t83 * t102;
-    const double t124 = t53 * t63;
-    const double t125 = t123 - t124;
-    const double t126 = t94 * t125;
-    const double t127 = t122 - t126;
-    const double t128 = t72 * t127;
-    const double t129 = t121 - t128;
-    const double t130 = t85 * t118;
-    const double t131 = t52 * t125;
-    const double t132 = t130 - t131;
-    const double t133 = t49 * t132;
-    const double t134 = t129 - t133;
-    const double t135 = t44 * t134;
-    const double t136 = t6 * t127;
-    const double t137 = t5 * t132;
-    const double t138 = t136 + t137;
-    const double t139 = t44 * t138;
-    double rest = t135 - t135;
-    rest += t139 - t139;
-    if (isnan(rest) != 0) {
+    const double t113 = t108 - t112;
+    const double t114 = t43 * t113;
+    const double t115 = m_1 + m_2;
+    const double T = u[1];
+    const double t116 = T * t12;
+    const double t117 = t115 * t116;
+    const double t118 = t5 * t44;
+    const double t119 = T * t3;
+    const double t120 = t118 * t119;
+    const double t121 = t117 - t120;
+    const double t122 = t12 * t121;
+    const double t123 = T * t9;
+    const double t124 = t115 * t123;
+    const double t125 = t6 * t44;
+    const double t126 = t125 * t119;
+    const double t127 = t124 + t126;
+    const double t128 = t9 * t127;
+    const double t129 = t122 + t128;
+    const double t130 = t119 * t73;
+    const double t131 = t3 * t130;
+    const double t132 = t129 + t131;
+    const double t133 = t43 * t132;
+    double rest = (t94 - t94) * t107 * t114;
+    rest += t133 - t133;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t135;
-    lambda_B[1] = t139;
+    qdd[0] = t94;
+    qdd[1] = t107;
+    qdd[2] = t114;
+    qdd[3] = t133;
+    return REAR_CAR_OK;
+}
+
+rear_car_status rear_car_multipliers(const double q[4], const double qd[4], const double u[2], const rear_car_params *p, double lambda_B[2]) {
+    const double phi = q[3];
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    rear_car_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
+    const double t7 = t3 * t3;
+    const double L = p->L;
+    const double t4 = cosine[0];
+    const double t8 = L * t4;
+    const double t5 = sine[1];
+    const double t9 = t5 * t8;
+    const double t10 = t9 * t9;
+    const double t11 = t7 + t10;
+    const double t6 = cosine[1];
+    const double t12 = t6 * t8;
+    const double t13 = t12 * t12;
+    const double t14 = t11 + t13;
+    const double t15 = t8 * t8;
+    const double t16 = 1.0 + t15;
+    const double t17 = t16 * 1.262177448353619e-29;
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
+        return REAR_CAR_CONSTRAINT_RANK;
+    }
+    const double Theta_1 = p->Theta_1;
+    const double t18 = Theta_1 * t7;
+    const double t19 = L * L;
+    const double t20 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double t21 = m_1 * t20;
+    const double m_2 = p->m_2;
+    const double t22 = m_2 + t21;
+    const double t23 = t19 * t22;
+    const double t24 = t18 + t23;
+    const double Theta_2 = p->Theta_2;
+    const double t25 = Theta_2 * t24;
+    const double t26 = fabs(t25);
+    const double t27 = fabs(Theta_1);
+    const double t28 = fabs(m_2);
+    const double t29 = fabs(L);
+    const double t30 = t29 * t29;
+    const double t31 = t28 * t30;
+    const double t32 = t27 + t31;
+    const double t33 = fabs(Theta_2);
+    const double t34 = t32 * t33;
+    const double t35 = t7 * t34;
+    const double t36 = fabs(m_1);
+    const double t37 = t36 + t28;
+    const double t38 = t37 * t33;
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (REAR_CAR_RARELY(!(t26 > t42))) {
+        return REAR_CAR_MASS_RANK;
+    }
+    const double t43 = 1.0 / t25;
+    const double t44 = L * Theta_2;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t44 * t50;
+    const double t52 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t53 = theta_dot * t52;
+    const double t54 = theta_dot * t6;
+    const double t55 = t53 * t54;
+    const double K_r = u[0];
+    const double t56 = K_r * t6;
+    const double t57 = t55 + t56;
+    const double t58 = m_1 + m_2;
+    const double t59 = theta_dot * t5;
+    const double y_dot = qd[1];
+    const double t60 = y_dot * t59;
+    const double x_dot = qd[0];
+    const double t61 = x_dot * t54;
+    const double t62 = t60 + t61;
+    const double t63 = t8 * t62;
+    const double t64 = t63 * t51;
+    const double t65 = L * t52;
+    const double t66 = Theta_1 + t65;
+    const double t67 = t3 * t66;
+    const double t68 = Theta_2 * t67;
+    const double phi_dot = qd[3];
+    const double t69 = phi_dot * t3;
+    const double t70 = L * t69;
+    const double t71 = theta_dot * t70;
+    const double t72 = theta_dot + phi_dot;
+    const double t73 = t6 * t4;
+    const double t74 = t5 * t3;
+    const double t75 = t73 - t74;
+    const double t76 = x_dot * t75;
+    const double t77 = y_dot * t48;
+    const double t78 = t76 + t77;
+    const double t79 = t72 * t78;
+    const double t80 = t71 + t79;
+    const double t81 = t6 * t80;
+    const double t82 = t62 * t75;
+    const double t83 = t81 - t82;
+    const double t84 = t68 * t83;
+    const double t85 = t64 + t84;
+    const double t86 = t43 * t85;
+    const double t87 = t58 * t86;
+    const double t88 = t5 * t52;
+    const double t89 = m_1 * t73;
+    const double t90 = m_2 * t75;
+    const double t91 = t89 + t90;
+    const double t92 = t44 * t91;
+    const double t93 = t82 - t81;
+    const double t94 = t92 * t93;
+    const double t95 = t5 * t80;
+    const double t96 = t62 * t48;
+    const double t97 = t95 - t96;
+    const double t98 = t51 * t97;
+    const double t99 = t94 - t98;
+    const double t100 = t43 * t99;
+    const double t101 = t88 * t100;
+    const double t102 = t87 - t101;
+    const double t103 = t57 + t102;
+    const double t104 = t51 * t103;
+    const double t105 = t53 * t59;
+    const double t106 = K_r * t5;
+    const double t107 = t105 + t106;
+    const double t108 = t68 * t97;
+    const double t109 = t63 * t92;
+    const double t110 = t108 - t109;
+    const double t111 = t43 * t110;
+    const double t112 = t58 * t111;
+    const double t113 = t6 * t52;
+    const double t114 = t113 * t100;
+    const double t115 = t112 + t114;
+    const double t116 = t107 + t115;
+    const double t117 = t92 * t116;
+    const double t118 = t104 - t117;
+    const double t119 = t8 * t118;
+    const double t120 = t68 * t103;
+    const double t121 = t66 * t100;
+    const double t122 = t52 * t62;
+    const double t123 = t121 - t122;
+    const double t124 = t92 * t123;
+    const double t125 = t120 - t124;
+    const double t126 = t75 * t125;
+    const double t127 = t119 - t126;
+    const double t128 = t68 * t116;
+    const double t129 = t51 * t123;
+    const double t130 = t128 - t129;
+    const double t131 = t48 * t130;
+    const double t132 = t127 - t131;
+    const double t133 = t43 * t132;
+    const double t134 = t6 * t125;
+    const double t135 = t5 * t130;
+    const double t136 = t134 + t135;
+    const double t137 = t43 * t136;
+    double rest = (t133 - t133) * t137;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
+        return REAR_CAR_NOT_FINITE;
+    }
+    lambda_B[0] = t133;
+    lambda_B[1] = t137;
     return REAR_CAR_OK;
 }
 
 rear_car_status rear_car_energy(const double q[4], const double qd[4], const rear_car_params *p, double T_U[2]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     double t2;
@@ -2663,7 +2601,7 @@ rear_car_status rear_car_energy(const double q[4], const double qd[4], const rea
     const double t24 = theta_dot * t23;
     const double t25 = t13 + t24;
     double rest = t25 - t25;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     T_U[0] = t25;
@@ -2676,10 +2614,10 @@ rear_car_status rear_car_singularity(const double q[4], const rear_car_params *p
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2727,9 +2665,8 @@ rear_car_status rear_car_singularity(const double q[4], const rear_car_params *p
     const double t40 = t37 + t39;
     const double t41 = t35 + t40;
     const double t42 = ((t41 != 0.0) ? t13 : 0.0) / ((t41 != 0.0) ? t41 : 1.0);
-    double rest = t33 - t33;
-    rest += t42 - t42;
-    if (isnan(rest) != 0) {
+    double rest = (t33 - t33) * t42;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     measure[0] = t33;

@@ -24,8 +24,8 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     47      3      0      2      0
- * weighted_nullspace_projector         14     52      4      0      2      0
+ * weighted_pseudoinverse               17     46      3      0      2      0
+ * weighted_nullspace_projector         14     51      4      0      2      0
  * control_matrix                        0      0      0      0      1      0
  * projected_control_matrix              3     11      3      0      2      0
  * projected_control_pseudoinverse       1      3      1      0      2      0
@@ -47,8 +47,8 @@
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                         5     16      1      0      2      0
- * forward_dynamics                     35     90      1      0      2      0
- * multipliers                          38     88      1      0      2      0
+ * forward_dynamics                     35     85      1      0      2      0
+ * multipliers                          38     86      1      0      2      0
  * energy                                7     15      0      0      1      0
  * singularity                           9     20      4      1      2      0
  * (changes of sign are not counted)

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define REAR_CAR_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define REAR_CAR_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define REAR_CAR_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define REAR_CAR_INLINE static inline __attribute__((always_inline))
 #else
@@ -161,10 +170,10 @@ rear_car_status rear_car_inverse_dynamics_prepared(const double q[4], const doub
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -177,7 +186,7 @@ rear_car_status rear_car_inverse_dynamics_prepared(const double q[4], const doub
     const double t8 = fabs(t7);
     const double t9 = p->value[2];
     const double t5 = sine[1];
-    if (!(t8 > t9)) {
+    if (REAR_CAR_RARELY(!(t8 > t9))) {
         const double t10 = t5 * t5;
         const double t11 = t7 * t7;
         const double t12 = t10 + t11;
@@ -217,9 +226,8 @@ rear_car_status rear_car_inverse_dynamics_prepared(const double q[4], const doub
     const double phi_ddot = qdd[3];
     const double Theta_2 = p->value[1];
     const double t36 = phi_ddot * Theta_2;
-    double rest = t35 - t35;
-    rest += t36 - t36;
-    if (isnan(rest) != 0) {
+    double rest = (t35 - t35) * t36;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     u[0] = t35;
@@ -228,186 +236,14 @@ rear_car_status rear_car_inverse_dynamics_prepared(const double q[4], const doub
 }
 
 rear_car_status rear_car_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const rear_car_prepared *p, double qdd[4]) {
-    const double theta = q[2];
-    const double t1 = fabs(theta);
-    const double phi = q[3];
-    const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    if (!(100000.0 >= t2)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    const double angle[2] = {theta, phi};
-    double sine[2];
-    double cosine[2];
-    rear_car_sincos_group(2, angle, sine, cosine);
-    const double t5 = sine[1];
-    const double t7 = t5 * t5;
-    const double L = p->value[0];
-    const double t6 = cosine[1];
-    const double t8 = L * t6;
-    const double t3 = sine[0];
-    const double t9 = t3 * t8;
-    const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
-    const double t4 = cosine[0];
-    const double t12 = t4 * t8;
-    const double t13 = t12 * t12;
-    const double t14 = t11 + t13;
-    const double t15 = t8 * t8;
-    const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
-        return REAR_CAR_CONSTRAINT_RANK;
-    }
-    const double Theta_1 = p->value[8];
-    const double t18 = Theta_1 * t7;
-    const double t20 = t6 * t6;
-    const double m_1 = p->value[6];
-    const double t21 = m_1 * t20;
-    const double m_2 = p->value[7];
-    const double t22 = m_2 + t21;
-    const double t19 = p->value[9];
-    const double t23 = t19 * t22;
-    const double t24 = t18 + t23;
-    const double Theta_2 = p->value[1];
-    const double t25 = Theta_2 * t24;
-    const double t26 = fabs(t25);
-    const double t34 = p->value[10];
-    const double t35 = t7 * t34;
-    const double t38 = p->value[11];
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
-        return REAR_CAR_MASS_RANK;
-    }
-    const double theta_dot = qd[2];
-    const double t44 = p->value[4];
-    const double t45 = theta_dot * t44;
-    const double t46 = theta_dot * t4;
-    const double t47 = t45 * t46;
-    const double K_r = u[0];
-    const double t48 = K_r * t4;
-    const double t49 = t47 + t48;
-    const double t50 = t12 * t49;
-    const double t51 = theta_dot * t3;
-    const double t52 = t45 * t51;
-    const double t53 = K_r * t3;
-    const double t54 = t52 + t53;
-    const double t55 = t9 * t54;
-    const double t56 = t50 + t55;
-    const double t57 = Theta_2 * t56;
-    const double t58 = t12 * t57;
-    const double t59 = 1.0 / t25;
-    const double t60 = t58 * t59;
-    const double y_dot = qd[1];
-    const double t61 = y_dot * t51;
-    const double x_dot = qd[0];
-    const double t62 = x_dot * t46;
-    const double t63 = t61 + t62;
-    const double t64 = t8 * t63;
-    const double t66 = t3 * t6;
-    const double t67 = m_1 * t66;
-    const double t68 = t4 * t5;
-    const double t69 = t66 + t68;
-    const double t70 = m_2 * t69;
-    const double t71 = t67 + t70;
-    const double t65 = p->value[12];
-    const double t72 = t65 * t71;
-    const double t73 = t64 * t72;
-    const double phi_dot = qd[3];
-    const double t74 = phi_dot * t5;
-    const double t75 = L * t74;
-    const double t76 = theta_dot * t75;
-    const double t77 = theta_dot + phi_dot;
-    const double t78 = t4 * t6;
-    const double t79 = t3 * t5;
-    const double t80 = t78 - t79;
-    const double t81 = t77 * t80;
-    const double t82 = x_dot * t81;
-    const double t83 = t77 * t69;
-    const double t84 = y_dot * t83;
-    const double t85 = t82 + t84;
-    const double t86 = t76 + t85;
-    const double t87 = t4 * t86;
-    const double t88 = t63 * t80;
-    const double t89 = t87 - t88;
-    const double t91 = p->value[5];
-    const double t92 = t5 * t91;
-    const double t93 = Theta_2 * t92;
-    const double t94 = t89 * t93;
-    const double t95 = t73 + t94;
-    const double t96 = t59 * t95;
-    const double t97 = t60 - t96;
-    const double t98 = t9 * t57;
-    const double t99 = t98 * t59;
-    const double t100 = t3 * t86;
-    const double t101 = t63 * t69;
-    const double t102 = t100 - t101;
-    const double t103 = t102 * t93;
-    const double t104 = m_1 * t78;
-    const double t105 = m_2 * t80;
-    const double t106 = t104 + t105;
-    const double t107 = t65 * t106;
-    const double t108 = t64 * t107;
-    const double t109 = t103 - t108;
-    const double t110 = t59 * t109;
-    const double t111 = t99 - t110;
-    const double t112 = t5 * t57;
-    const double t113 = t112 * t59;
-    const double t114 = t88 - t87;
-    const double t115 = t107 * t114;
-    const double t116 = t72 * t102;
-    const double t117 = t115 - t116;
-    const double t118 = t117 * t59;
-    const double t119 = t113 - t118;
-    const double T = u[1];
-    const double t121 = T * t12;
-    const double t120 = p->value[3];
-    const double t122 = t120 * t121;
-    const double t123 = t3 * t44;
-    const double t124 = T * t5;
-    const double t125 = t123 * t124;
-    const double t126 = t122 - t125;
-    const double t127 = t12 * t126;
-    const double t128 = T * t9;
-    const double t129 = t120 * t128;
-    const double t130 = t4 * t44;
-    const double t131 = t130 * t124;
-    const double t132 = t129 + t131;
-    const double t133 = t9 * t132;
-    const double t134 = t127 + t133;
-    const double t135 = t124 * t91;
-    const double t136 = t5 * t135;
-    const double t137 = t134 + t136;
-    const double t138 = t59 * t137;
-    double rest = t97 - t97;
-    rest += t111 - t111;
-    rest += t119 - t119;
-    rest += t138 - t138;
-    if (isnan(rest) != 0) {
-        return REAR_CAR_NOT_FINITE;
-    }
-    qdd[0] = t97;
-    qdd[1] = t111;
-    qdd[2] = t119;
-    qdd[3] = t138;
-    return REAR_CAR_OK;
-}
-
-rear_car_status rear_car_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const rear_car_prepared *p, double lambda_B[2]) {
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -430,7 +266,7 @@ rear_car_status rear_car_multipliers_prepared(const double q[4], const double qd
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->value[8];
@@ -448,121 +284,283 @@ rear_car_status rear_car_multipliers_prepared(const double q[4], const double qd
     const double t26 = fabs(t25);
     const double t34 = p->value[10];
     const double t35 = t7 * t34;
+    const double t39 = t10 + t13;
     const double t38 = p->value[11];
-    const double t39 = t10 * t38;
-    const double t40 = t35 + t39;
-    const double t41 = t13 * t38;
-    const double t42 = t40 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (REAR_CAR_RARELY(!(t26 > t42))) {
         return REAR_CAR_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t45 = p->value[12];
-    const double t52 = t45 * t51;
+    const double t43 = 1.0 / t25;
     const double theta_dot = qd[2];
-    const double t53 = p->value[4];
-    const double t54 = theta_dot * t53;
-    const double t55 = theta_dot * t6;
-    const double t56 = t54 * t55;
+    const double t44 = p->value[4];
+    const double t45 = theta_dot * t44;
+    const double t46 = theta_dot * t6;
+    const double t47 = t45 * t46;
     const double K_r = u[0];
-    const double t57 = K_r * t6;
-    const double t58 = t56 + t57;
-    const double t60 = theta_dot * t5;
+    const double t48 = K_r * t6;
+    const double t49 = t47 + t48;
+    const double t50 = t12 * t49;
+    const double t51 = theta_dot * t5;
+    const double t52 = t45 * t51;
+    const double t53 = K_r * t5;
+    const double t54 = t52 + t53;
+    const double t55 = t9 * t54;
+    const double t56 = t50 + t55;
+    const double t57 = Theta_2 * t56;
+    const double t58 = t12 * t57;
     const double y_dot = qd[1];
-    const double t61 = y_dot * t60;
+    const double t59 = y_dot * t51;
     const double x_dot = qd[0];
-    const double t62 = x_dot * t55;
-    const double t63 = t61 + t62;
-    const double t64 = t8 * t63;
-    const double t65 = t64 * t52;
+    const double t60 = x_dot * t46;
+    const double t61 = t59 + t60;
+    const double t62 = t8 * t61;
+    const double t64 = t5 * t4;
+    const double t65 = m_1 * t64;
+    const double t66 = t6 * t3;
+    const double t67 = t64 + t66;
+    const double t68 = m_2 * t67;
+    const double t69 = t65 + t68;
+    const double t63 = p->value[12];
+    const double t70 = t63 * t69;
+    const double t71 = t62 * t70;
+    const double t73 = p->value[5];
+    const double t74 = t3 * t73;
+    const double t75 = Theta_2 * t74;
     const double phi_dot = qd[3];
-    const double t66 = phi_dot * t3;
-    const double t67 = L * t66;
-    const double t68 = theta_dot * t67;
-    const double t69 = theta_dot + phi_dot;
-    const double t70 = t6 * t4;
-    const double t71 = t5 * t3;
-    const double t72 = t70 - t71;
-    const double t73 = t69 * t72;
-    const double t74 = x_dot * t73;
-    const double t75 = t69 * t49;
-    const double t76 = y_dot * t75;
-    const double t77 = t74 + t76;
-    const double t78 = t68 + t77;
-    const double t79 = t6 * t78;
-    const double t80 = t63 * t72;
-    const double t81 = t79 - t80;
-    const double t83 = p->value[5];
-    const double t84 = t3 * t83;
-    const double t85 = Theta_2 * t84;
-    const double t86 = t81 * t85;
-    const double t87 = t65 + t86;
-    const double t88 = t44 * t87;
-    const double t59 = p->value[3];
-    const double t89 = t59 * t88;
-    const double t90 = t5 * t53;
-    const double t91 = m_1 * t70;
-    const double t92 = m_2 * t72;
-    const double t93 = t91 + t92;
-    const double t94 = t45 * t93;
-    const double t95 = t80 - t79;
-    const double t96 = t94 * t95;
-    const double t97 = t5 * t78;
-    const double t98 = t63 * t49;
-    const double t99 = t97 - t98;
-    const double t100 = t52 * t99;
-    const double t101 = t96 - t100;
-    const double t102 = t101 * t44;
-    const double t103 = t90 * t102;
-    const double t104 = t89 - t103;
-    const double t105 = t58 + t104;
-    const double t106 = t52 * t105;
-    const double t107 = t54 * t60;
-    const double t108 = K_r * t5;
-    const double t109 = t107 + t108;
-    const double t110 = t99 * t85;
-    const double t111 = t64 * t94;
+    const double t76 = phi_dot * t3;
+    const double t77 = L * t76;
+    const double t78 = theta_dot * t77;
+    const double t79 = theta_dot + phi_dot;
+    const double t80 = t6 * t4;
+    const double t81 = t5 * t3;
+    const double t82 = t80 - t81;
+    const double t83 = x_dot * t82;
+    const double t84 = y_dot * t67;
+    const double t85 = t83 + t84;
+    const double t86 = t79 * t85;
+    const double t87 = t78 + t86;
+    const double t88 = t6 * t87;
+    const double t89 = t61 * t82;
+    const double t90 = t88 - t89;
+    const double t91 = t75 * t90;
+    const double t92 = t71 + t91;
+    const double t93 = t58 - t92;
+    const double t94 = t43 * t93;
+    const double t95 = t9 * t57;
+    const double t96 = t5 * t87;
+    const double t97 = t61 * t67;
+    const double t98 = t96 - t97;
+    const double t99 = t75 * t98;
+    const double t100 = m_1 * t80;
+    const double t101 = m_2 * t82;
+    const double t102 = t100 + t101;
+    const double t103 = t63 * t102;
+    const double t104 = t62 * t103;
+    const double t105 = t99 - t104;
+    const double t106 = t95 - t105;
+    const double t107 = t43 * t106;
+    const double t108 = t3 * t57;
+    const double t109 = t89 - t88;
+    const double t110 = t103 * t109;
+    const double t111 = t70 * t98;
     const double t112 = t110 - t111;
-    const double t113 = t44 * t112;
-    const double t114 = t59 * t113;
-    const double t115 = t6 * t53;
-    const double t116 = t115 * t102;
-    const double t117 = t114 + t116;
-    const double t118 = t109 + t117;
-    const double t119 = t94 * t118;
-    const double t120 = t106 - t119;
-    const double t121 = t8 * t120;
-    const double t122 = t85 * t105;
-    const double t123 = t83 * t102;
-    const double t124 = t53 * t63;
-    const double t125 = t123 - t124;
-    const double t126 = t94 * t125;
-    const double t127 = t122 - t126;
-    const double t128 = t72 * t127;
-    const double t129 = t121 - t128;
-    const double t130 = t85 * t118;
-    const double t131 = t52 * t125;
-    const double t132 = t130 - t131;
-    const double t133 = t49 * t132;
-    const double t134 = t129 - t133;
-    const double t135 = t44 * t134;
-    const double t136 = t6 * t127;
-    const double t137 = t5 * t132;
-    const double t138 = t136 + t137;
-    const double t139 = t44 * t138;
-    double rest = t135 - t135;
-    rest += t139 - t139;
-    if (isnan(rest) != 0) {
+    const double t113 = t108 - t112;
+    const double t114 = t43 * t113;
+    const double T = u[1];
+    const double t116 = T * t12;
+    const double t115 = p->value[3];
+    const double t117 = t115 * t116;
+    const double t118 = t5 * t44;
+    const double t119 = T * t3;
+    const double t120 = t118 * t119;
+    const double t121 = t117 - t120;
+    const double t122 = t12 * t121;
+    const double t123 = T * t9;
+    const double t124 = t115 * t123;
+    const double t125 = t6 * t44;
+    const double t126 = t125 * t119;
+    const double t127 = t124 + t126;
+    const double t128 = t9 * t127;
+    const double t129 = t122 + t128;
+    const double t130 = t119 * t73;
+    const double t131 = t3 * t130;
+    const double t132 = t129 + t131;
+    const double t133 = t43 * t132;
+    double rest = (t94 - t94) * t107 * t114;
+    rest += t133 - t133;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t135;
-    lambda_B[1] = t139;
+    qdd[0] = t94;
+    qdd[1] = t107;
+    qdd[2] = t114;
+    qdd[3] = t133;
+    return REAR_CAR_OK;
+}
+
+rear_car_status rear_car_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const rear_car_prepared *p, double lambda_B[2]) {
+    const double phi = q[3];
+    const double t1 = fabs(phi);
+    const double theta = q[2];
+    const double t2 = fabs(theta);
+    if (REAR_CAR_RARELY(!(100000.0 >= t1))) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    if (REAR_CAR_RARELY(!(100000.0 >= t2))) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    const double angle[2] = {phi, theta};
+    double sine[2];
+    double cosine[2];
+    rear_car_sincos_group(2, angle, sine, cosine);
+    const double t3 = sine[0];
+    const double t7 = t3 * t3;
+    const double L = p->value[0];
+    const double t4 = cosine[0];
+    const double t8 = L * t4;
+    const double t5 = sine[1];
+    const double t9 = t5 * t8;
+    const double t10 = t9 * t9;
+    const double t11 = t7 + t10;
+    const double t6 = cosine[1];
+    const double t12 = t6 * t8;
+    const double t13 = t12 * t12;
+    const double t14 = t11 + t13;
+    const double t15 = t8 * t8;
+    const double t16 = 1.0 + t15;
+    const double t17 = t16 * 1.262177448353619e-29;
+    if (REAR_CAR_RARELY(!(t14 > t17))) {
+        return REAR_CAR_CONSTRAINT_RANK;
+    }
+    const double Theta_1 = p->value[8];
+    const double t18 = Theta_1 * t7;
+    const double t20 = t4 * t4;
+    const double m_1 = p->value[6];
+    const double t21 = m_1 * t20;
+    const double m_2 = p->value[7];
+    const double t22 = m_2 + t21;
+    const double t19 = p->value[9];
+    const double t23 = t19 * t22;
+    const double t24 = t18 + t23;
+    const double Theta_2 = p->value[1];
+    const double t25 = Theta_2 * t24;
+    const double t26 = fabs(t25);
+    const double t34 = p->value[10];
+    const double t35 = t7 * t34;
+    const double t39 = t10 + t13;
+    const double t38 = p->value[11];
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (REAR_CAR_RARELY(!(t26 > t42))) {
+        return REAR_CAR_MASS_RANK;
+    }
+    const double t43 = 1.0 / t25;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t44 = p->value[12];
+    const double t51 = t44 * t50;
+    const double theta_dot = qd[2];
+    const double t52 = p->value[4];
+    const double t53 = theta_dot * t52;
+    const double t54 = theta_dot * t6;
+    const double t55 = t53 * t54;
+    const double K_r = u[0];
+    const double t56 = K_r * t6;
+    const double t57 = t55 + t56;
+    const double t59 = theta_dot * t5;
+    const double y_dot = qd[1];
+    const double t60 = y_dot * t59;
+    const double x_dot = qd[0];
+    const double t61 = x_dot * t54;
+    const double t62 = t60 + t61;
+    const double t63 = t8 * t62;
+    const double t64 = t63 * t51;
+    const double t66 = p->value[5];
+    const double t67 = t3 * t66;
+    const double t68 = Theta_2 * t67;
+    const double phi_dot = qd[3];
+    const double t69 = phi_dot * t3;
+    const double t70 = L * t69;
+    const double t71 = theta_dot * t70;
+    const double t72 = theta_dot + phi_dot;
+    const double t73 = t6 * t4;
+    const double t74 = t5 * t3;
+    const double t75 = t73 - t74;
+    const double t76 = x_dot * t75;
+    const double t77 = y_dot * t48;
+    const double t78 = t76 + t77;
+    const double t79 = t72 * t78;
+    const double t80 = t71 + t79;
+    const double t81 = t6 * t80;
+    const double t82 = t62 * t75;
+    const double t83 = t81 - t82;
+    const double t84 = t68 * t83;
+    const double t85 = t64 + t84;
+    const double t86 = t43 * t85;
+    const double t58 = p->value[3];
+    const double t87 = t58 * t86;
+    const double t88 = t5 * t52;
+    const double t89 = m_1 * t73;
+    const double t90 = m_2 * t75;
+    const double t91 = t89 + t90;
+    const double t92 = t44 * t91;
+    const double t93 = t82 - t81;
+    const double t94 = t92 * t93;
+    const double t95 = t5 * t80;
+    const double t96 = t62 * t48;
+    const double t97 = t95 - t96;
+    const double t98 = t51 * t97;
+    const double t99 = t94 - t98;
+    const double t100 = t43 * t99;
+    const double t101 = t88 * t100;
+    const double t102 = t87 - t101;
+    const double t103 = t57 + t102;
+    const double t104 = t51 * t103;
+    const double t105 = t53 * t59;
+    const double t106 = K_r * t5;
+    const double t107 = t105 + t106;
+    const double t108 = t68 * t97;
+    const double t109 = t63 * t92;
+    const double t110 = t108 - t109;
+    const double t111 = t43 * t110;
+    const double t112 = t58 * t111;
+    const double t113 = t6 * t52;
+    const double t114 = t113 * t100;
+    const double t115 = t112 + t114;
+    const double t116 = t107 + t115;
+    const double t117 = t92 * t116;
+    const double t118 = t104 - t117;
+    const double t119 = t8 * t118;
+    const double t120 = t68 * t103;
+    const double t121 = t66 * t100;
+    const double t122 = t52 * t62;
+    const double t123 = t121 - t122;
+    const double t124 = t92 * t123;
+    const double t125 = t120 - t124;
+    const double t126 = t75 * t125;
+    const double t127 = t119 - t126;
+    const double t128 = t68 * t116;
+    const double t129 = t51 * t123;
+    const double t130 = t128 - t129;
+    const double t131 = t48 * t130;
+    const double t132 = t127 - t131;
+    const double t133 = t43 * t132;
+    const double t134 = t6 * t125;
+    const double t135 = t5 * t130;
+    const double t136 = t134 + t135;
+    const double t137 = t43 * t136;
+    double rest = (t133 - t133) * t137;
+    if (REAR_CAR_RARELY(isnan(rest) != 0)) {
+        return REAR_CAR_NOT_FINITE;
+    }
+    lambda_B[0] = t133;
+    lambda_B[1] = t137;
     return REAR_CAR_OK;
 }

@@ -23,8 +23,8 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     17      1      0      2      0
 nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     47      3      0      2      0
-weighted_nullspace_projector         14     52      4      0      2      0
+weighted_pseudoinverse               17     46      3      0      2      0
+weighted_nullspace_projector         14     51      4      0      2      0
 control_matrix                        0      0      0      0      1      0
 projected_control_matrix              3     11      3      0      2      0
 projected_control_pseudoinverse       1      3      1      0      2      0
@@ -46,8 +46,8 @@ inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     1      2      0      0      1      0
 actuator_mass_matrix                  4      7      1      0      1      0
 actuator_bias                         5     16      1      0      2      0
-forward_dynamics                     35     90      1      0      2      0
-multipliers                          38     88      1      0      2      0
+forward_dynamics                     35     85      1      0      2      0
+multipliers                          38     86      1      0      2      0
 energy                                7     15      0      0      1      0
 singularity                           9     20      4      1      2      0
 (changes of sign are not counted)
@@ -728,57 +728,56 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t36 = np.abs(m_1)
         t37 = t36 + t28
         t38 = t37 * t33
-        t39 = t10 * t38
-        t40 = t35 + t39
-        t41 = t13 * t38
-        t42 = t40 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = L * Theta_2
-        t46 = t5 * t4
-        t47 = m_1 * t46
-        t48 = t6 * t3
-        t49 = t46 + t48
-        t50 = m_2 * t49
-        t51 = t47 + t50
-        t52 = t45 * t51
-        t53 = t8 * t52
-        t54 = t6 * t4
-        t55 = t5 * t3
-        t56 = t54 - t55
-        t57 = m_2 * t19
-        t58 = Theta_1 + t57
-        t59 = Theta_2 * t58
-        t60 = t3 * t59
-        t61 = t56 * t60
-        t62 = t53 - t61
-        t63 = t44 * t62
-        t64 = t59 / t25
-        t65 = t48 * t64
-        t66 = m_1 * t54
-        t67 = m_2 * t56
-        t68 = t66 + t67
-        t69 = t45 * t68
-        t70 = t8 * t69
-        t71 = t49 * t60
-        t72 = t70 + t71
-        t73 = t44 * t72
-        t74 = -t73
-        t75 = t55 * t64
-        t76 = t45 / t25
-        t77 = t22 * t76
-        t78 = m_1 + m_2
-        t79 = t4 * t78
-        t80 = t79 * t76
-        t81 = -t80
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
+        t44 = L * Theta_2
+        t45 = t5 * t4
+        t46 = m_1 * t45
+        t47 = t6 * t3
+        t48 = t45 + t47
+        t49 = m_2 * t48
+        t50 = t46 + t49
+        t51 = t44 * t50
+        t52 = t8 * t51
+        t53 = t6 * t4
+        t54 = t5 * t3
+        t55 = t53 - t54
+        t56 = m_2 * t19
+        t57 = Theta_1 + t56
+        t58 = Theta_2 * t57
+        t59 = t3 * t58
+        t60 = t55 * t59
+        t61 = t52 - t60
+        t62 = t43 * t61
+        t63 = t58 / t25
+        t64 = t47 * t63
+        t65 = m_1 * t53
+        t66 = m_2 * t55
+        t67 = t65 + t66
+        t68 = t44 * t67
+        t69 = t8 * t68
+        t70 = t48 * t59
+        t71 = t69 + t70
+        t72 = t43 * t71
+        t73 = -t72
+        t74 = t54 * t63
+        t75 = t44 / t25
+        t76 = t22 * t75
+        t77 = m_1 + m_2
+        t78 = t4 * t77
+        t79 = t78 * t75
+        t80 = -t79
         entries = (
-            t63,
-            t65,
+            t62,
+            t64,
+            t73,
             t74,
-            t75,
-            t77,
-            t81,
+            t76,
+            t80,
             0.0,
             0.0,
         )
@@ -838,63 +837,62 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t36 = np.abs(m_1)
         t37 = t36 + t28
         t38 = t37 * t33
-        t39 = t10 * t38
-        t40 = t35 + t39
-        t41 = t13 * t38
-        t42 = t40 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = Theta_2 * t19
-        t45 = t44 / t25
-        t46 = t6 * t4
-        t47 = m_1 * t46
-        t48 = t5 * t3
-        t49 = t46 - t48
-        t50 = m_2 * t49
-        t51 = t47 + t50
-        t52 = t46 * t51
-        t53 = t45 * t52
-        t54 = t5 * t4
-        t55 = m_1 * t54
-        t56 = t6 * t3
-        t57 = t54 + t56
-        t58 = m_2 * t57
-        t59 = t55 + t58
-        t60 = t46 * t59
-        t61 = t45 * t60
-        t62 = t3 * t46
-        t63 = m_2 * t19
-        t64 = Theta_1 + t63
-        t65 = L * Theta_2
-        t66 = t64 * t65
-        t67 = t66 / t25
-        t68 = t62 * t67
-        t69 = t54 * t51
-        t70 = t45 * t69
-        t71 = t54 * t59
-        t72 = t45 * t71
-        t73 = t3 * t54
-        t74 = t73 * t67
-        t75 = t65 / t25
-        t76 = t3 * t51
-        t77 = t75 * t76
-        t78 = t3 * t59
-        t79 = t75 * t78
-        t80 = Theta_2 * t64
-        t81 = t80 / t25
-        t82 = t7 * t81
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = Theta_2 * t19
+        t44 = t43 / t25
+        t45 = t6 * t4
+        t46 = m_1 * t45
+        t47 = t5 * t3
+        t48 = t45 - t47
+        t49 = m_2 * t48
+        t50 = t46 + t49
+        t51 = t45 * t50
+        t52 = t44 * t51
+        t53 = t5 * t4
+        t54 = m_1 * t53
+        t55 = t6 * t3
+        t56 = t53 + t55
+        t57 = m_2 * t56
+        t58 = t54 + t57
+        t59 = t45 * t58
+        t60 = t44 * t59
+        t61 = t3 * t45
+        t62 = m_2 * t19
+        t63 = Theta_1 + t62
+        t64 = L * Theta_2
+        t65 = t63 * t64
+        t66 = t65 / t25
+        t67 = t61 * t66
+        t68 = t53 * t50
+        t69 = t44 * t68
+        t70 = t53 * t58
+        t71 = t44 * t70
+        t72 = t3 * t53
+        t73 = t72 * t66
+        t74 = t64 / t25
+        t75 = t3 * t50
+        t76 = t74 * t75
+        t77 = t3 * t58
+        t78 = t74 * t77
+        t79 = Theta_2 * t63
+        t80 = t79 / t25
+        t81 = t7 * t80
         entries = (
-            t53,
-            t61,
-            t68,
+            t52,
+            t60,
+            t67,
             0.0,
-            t70,
-            t72,
-            t74,
+            t69,
+            t71,
+            t73,
             0.0,
-            t77,
-            t79,
-            t82,
+            t76,
+            t78,
+            t81,
             0.0,
             0.0,
             0.0,
@@ -2172,18 +2170,18 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(theta)
-        t2 = np.abs(phi)
+        t1 = np.abs(phi)
+        t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(theta)
-        t5, t6 = _sincos(phi)
-        t7 = t5 * t5
-        t8 = L * t6
-        t9 = t3 * t8
+        t3, t4 = _sincos(phi)
+        t5, t6 = _sincos(theta)
+        t7 = t3 * t3
+        t8 = L * t4
+        t9 = t5 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t4 * t8
+        t12 = t6 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
@@ -2192,7 +2190,7 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t6 * t6
+        t20 = t4 * t4
         t21 = m_1 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
@@ -2211,112 +2209,107 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t36 = np.abs(m_1)
         t37 = t36 + t28
         t38 = t37 * t33
-        t39 = t10 * t38
-        t40 = t35 + t39
-        t41 = t13 * t38
-        t42 = t40 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
         t44 = L * m_2
         t45 = theta_dot * t44
-        t46 = theta_dot * t4
+        t46 = theta_dot * t6
         t47 = t45 * t46
-        t48 = K_r * t4
+        t48 = K_r * t6
         t49 = t47 + t48
         t50 = t12 * t49
-        t51 = theta_dot * t3
+        t51 = theta_dot * t5
         t52 = t45 * t51
-        t53 = K_r * t3
+        t53 = K_r * t5
         t54 = t52 + t53
         t55 = t9 * t54
         t56 = t50 + t55
         t57 = Theta_2 * t56
         t58 = t12 * t57
-        t59 = 1.0 / t25
-        t60 = t58 * t59
-        t61 = y_dot * t51
-        t62 = x_dot * t46
-        t63 = t61 + t62
-        t64 = t8 * t63
-        t65 = L * Theta_2
-        t66 = t3 * t6
-        t67 = m_1 * t66
-        t68 = t4 * t5
-        t69 = t66 + t68
-        t70 = m_2 * t69
-        t71 = t67 + t70
-        t72 = t65 * t71
-        t73 = t64 * t72
-        t74 = phi_dot * t5
-        t75 = L * t74
-        t76 = theta_dot * t75
-        t77 = theta_dot + phi_dot
-        t78 = t4 * t6
-        t79 = t3 * t5
-        t80 = t78 - t79
-        t81 = t77 * t80
-        t82 = x_dot * t81
-        t83 = t77 * t69
-        t84 = y_dot * t83
-        t85 = t82 + t84
-        t86 = t76 + t85
-        t87 = t4 * t86
-        t88 = t63 * t80
-        t89 = t87 - t88
-        t90 = L * t44
-        t91 = Theta_1 + t90
-        t92 = t5 * t91
-        t93 = Theta_2 * t92
-        t94 = t89 * t93
-        t95 = t73 + t94
-        t96 = t59 * t95
-        t97 = t60 - t96
-        t98 = t9 * t57
-        t99 = t98 * t59
-        t100 = t3 * t86
-        t101 = t63 * t69
-        t102 = t100 - t101
-        t103 = t102 * t93
-        t104 = m_1 * t78
-        t105 = m_2 * t80
-        t106 = t104 + t105
-        t107 = t65 * t106
-        t108 = t64 * t107
-        t109 = t103 - t108
-        t110 = t59 * t109
-        t111 = t99 - t110
-        t112 = t5 * t57
-        t113 = t112 * t59
-        t114 = t88 - t87
-        t115 = t107 * t114
-        t116 = t72 * t102
-        t117 = t115 - t116
-        t118 = t117 * t59
-        t119 = t113 - t118
-        t120 = m_1 + m_2
-        t121 = T * t12
-        t122 = t120 * t121
-        t123 = t3 * t44
-        t124 = T * t5
-        t125 = t123 * t124
-        t126 = t122 - t125
-        t127 = t12 * t126
-        t128 = T * t9
-        t129 = t120 * t128
-        t130 = t4 * t44
-        t131 = t130 * t124
+        t59 = y_dot * t51
+        t60 = x_dot * t46
+        t61 = t59 + t60
+        t62 = t8 * t61
+        t63 = L * Theta_2
+        t64 = t5 * t4
+        t65 = m_1 * t64
+        t66 = t6 * t3
+        t67 = t64 + t66
+        t68 = m_2 * t67
+        t69 = t65 + t68
+        t70 = t63 * t69
+        t71 = t62 * t70
+        t72 = L * t44
+        t73 = Theta_1 + t72
+        t74 = t3 * t73
+        t75 = Theta_2 * t74
+        t76 = phi_dot * t3
+        t77 = L * t76
+        t78 = theta_dot * t77
+        t79 = theta_dot + phi_dot
+        t80 = t6 * t4
+        t81 = t5 * t3
+        t82 = t80 - t81
+        t83 = x_dot * t82
+        t84 = y_dot * t67
+        t85 = t83 + t84
+        t86 = t79 * t85
+        t87 = t78 + t86
+        t88 = t6 * t87
+        t89 = t61 * t82
+        t90 = t88 - t89
+        t91 = t75 * t90
+        t92 = t71 + t91
+        t93 = t58 - t92
+        t94 = t43 * t93
+        t95 = t9 * t57
+        t96 = t5 * t87
+        t97 = t61 * t67
+        t98 = t96 - t97
+        t99 = t75 * t98
+        t100 = m_1 * t80
+        t101 = m_2 * t82
+        t102 = t100 + t101
+        t103 = t63 * t102
+        t104 = t62 * t103
+        t105 = t99 - t104
+        t106 = t95 - t105
+        t107 = t43 * t106
+        t108 = t3 * t57
+        t109 = t89 - t88
+        t110 = t103 * t109
+        t111 = t70 * t98
+        t112 = t110 - t111
+        t113 = t108 - t112
+        t114 = t43 * t113
+        t115 = m_1 + m_2
+        t116 = T * t12
+        t117 = t115 * t116
+        t118 = t5 * t44
+        t119 = T * t3
+        t120 = t118 * t119
+        t121 = t117 - t120
+        t122 = t12 * t121
+        t123 = T * t9
+        t124 = t115 * t123
+        t125 = t6 * t44
+        t126 = t125 * t119
+        t127 = t124 + t126
+        t128 = t9 * t127
+        t129 = t122 + t128
+        t130 = t119 * t73
+        t131 = t3 * t130
         t132 = t129 + t131
-        t133 = t9 * t132
-        t134 = t127 + t133
-        t135 = t124 * t91
-        t136 = t5 * t135
-        t137 = t134 + t136
-        t138 = t59 * t137
+        t133 = t43 * t132
         entries = (
-            t97,
-            t111,
-            t119,
-            t138,
+            t94,
+            t107,
+            t114,
+            t133,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2382,111 +2375,109 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t36 = np.abs(m_1)
         t37 = t36 + t28
         t38 = t37 * t33
-        t39 = t10 * t38
-        t40 = t35 + t39
-        t41 = t13 * t38
-        t42 = t40 + t41
-        t43 = t42 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t43), 5)
-        t44 = 1.0 / t25
-        t45 = L * Theta_2
-        t46 = t5 * t4
-        t47 = m_1 * t46
-        t48 = t6 * t3
-        t49 = t46 + t48
-        t50 = m_2 * t49
-        t51 = t47 + t50
-        t52 = t45 * t51
-        t53 = L * m_2
-        t54 = theta_dot * t53
-        t55 = theta_dot * t6
-        t56 = t54 * t55
-        t57 = K_r * t6
-        t58 = t56 + t57
-        t59 = m_1 + m_2
-        t60 = theta_dot * t5
-        t61 = y_dot * t60
-        t62 = x_dot * t55
-        t63 = t61 + t62
-        t64 = t8 * t63
-        t65 = t64 * t52
-        t66 = phi_dot * t3
-        t67 = L * t66
-        t68 = theta_dot * t67
-        t69 = theta_dot + phi_dot
-        t70 = t6 * t4
-        t71 = t5 * t3
-        t72 = t70 - t71
-        t73 = t69 * t72
-        t74 = x_dot * t73
-        t75 = t69 * t49
-        t76 = y_dot * t75
-        t77 = t74 + t76
-        t78 = t68 + t77
-        t79 = t6 * t78
-        t80 = t63 * t72
-        t81 = t79 - t80
-        t82 = L * t53
-        t83 = Theta_1 + t82
-        t84 = t3 * t83
-        t85 = Theta_2 * t84
-        t86 = t81 * t85
-        t87 = t65 + t86
-        t88 = t44 * t87
-        t89 = t59 * t88
-        t90 = t5 * t53
-        t91 = m_1 * t70
-        t92 = m_2 * t72
-        t93 = t91 + t92
-        t94 = t45 * t93
-        t95 = t80 - t79
-        t96 = t94 * t95
-        t97 = t5 * t78
-        t98 = t63 * t49
-        t99 = t97 - t98
-        t100 = t52 * t99
-        t101 = t96 - t100
-        t102 = t101 * t44
-        t103 = t90 * t102
-        t104 = t89 - t103
-        t105 = t58 + t104
-        t106 = t52 * t105
-        t107 = t54 * t60
-        t108 = K_r * t5
-        t109 = t107 + t108
-        t110 = t99 * t85
-        t111 = t64 * t94
-        t112 = t110 - t111
-        t113 = t44 * t112
-        t114 = t59 * t113
-        t115 = t6 * t53
-        t116 = t115 * t102
-        t117 = t114 + t116
-        t118 = t109 + t117
-        t119 = t94 * t118
-        t120 = t106 - t119
-        t121 = t8 * t120
-        t122 = t85 * t105
-        t123 = t83 * t102
-        t124 = t53 * t63
-        t125 = t123 - t124
-        t126 = t94 * t125
-        t127 = t122 - t126
-        t128 = t72 * t127
-        t129 = t121 - t128
-        t130 = t85 * t118
-        t131 = t52 * t125
-        t132 = t130 - t131
-        t133 = t49 * t132
-        t134 = t129 - t133
-        t135 = t44 * t134
-        t136 = t6 * t127
-        t137 = t5 * t132
-        t138 = t136 + t137
-        t139 = t44 * t138
+        t39 = t10 + t13
+        t40 = t38 * t39
+        t41 = t35 + t40
+        t42 = t41 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t42), 5)
+        t43 = 1.0 / t25
+        t44 = L * Theta_2
+        t45 = t5 * t4
+        t46 = m_1 * t45
+        t47 = t6 * t3
+        t48 = t45 + t47
+        t49 = m_2 * t48
+        t50 = t46 + t49
+        t51 = t44 * t50
+        t52 = L * m_2
+        t53 = theta_dot * t52
+        t54 = theta_dot * t6
+        t55 = t53 * t54
+        t56 = K_r * t6
+        t57 = t55 + t56
+        t58 = m_1 + m_2
+        t59 = theta_dot * t5
+        t60 = y_dot * t59
+        t61 = x_dot * t54
+        t62 = t60 + t61
+        t63 = t8 * t62
+        t64 = t63 * t51
+        t65 = L * t52
+        t66 = Theta_1 + t65
+        t67 = t3 * t66
+        t68 = Theta_2 * t67
+        t69 = phi_dot * t3
+        t70 = L * t69
+        t71 = theta_dot * t70
+        t72 = theta_dot + phi_dot
+        t73 = t6 * t4
+        t74 = t5 * t3
+        t75 = t73 - t74
+        t76 = x_dot * t75
+        t77 = y_dot * t48
+        t78 = t76 + t77
+        t79 = t72 * t78
+        t80 = t71 + t79
+        t81 = t6 * t80
+        t82 = t62 * t75
+        t83 = t81 - t82
+        t84 = t68 * t83
+        t85 = t64 + t84
+        t86 = t43 * t85
+        t87 = t58 * t86
+        t88 = t5 * t52
+        t89 = m_1 * t73
+        t90 = m_2 * t75
+        t91 = t89 + t90
+        t92 = t44 * t91
+        t93 = t82 - t81
+        t94 = t92 * t93
+        t95 = t5 * t80
+        t96 = t62 * t48
+        t97 = t95 - t96
+        t98 = t51 * t97
+        t99 = t94 - t98
+        t100 = t43 * t99
+        t101 = t88 * t100
+        t102 = t87 - t101
+        t103 = t57 + t102
+        t104 = t51 * t103
+        t105 = t53 * t59
+        t106 = K_r * t5
+        t107 = t105 + t106
+        t108 = t68 * t97
+        t109 = t63 * t92
+        t110 = t108 - t109
+        t111 = t43 * t110
+        t112 = t58 * t111
+        t113 = t6 * t52
+        t114 = t113 * t100
+        t115 = t112 + t114
+        t116 = t107 + t115
+        t117 = t92 * t116
+        t118 = t104 - t117
+        t119 = t8 * t118
+        t120 = t68 * t103
+        t121 = t66 * t100
+        t122 = t52 * t62
+        t123 = t121 - t122
+        t124 = t92 * t123
+        t125 = t120 - t124
+        t126 = t75 * t125
+        t127 = t119 - t126
+        t128 = t68 * t116
+        t129 = t51 * t123
+        t130 = t128 - t129
+        t131 = t48 * t130
+        t132 = t127 - t131
+        t133 = t43 * t132
+        t134 = t6 * t125
+        t135 = t5 * t130
+        t136 = t134 + t135
+        t137 = t43 * t136
         entries = (
-            t135,
-            t139,
+            t133,
+            t137,
         )
         return _result("multipliers", status, batch, (2,), entries)
 

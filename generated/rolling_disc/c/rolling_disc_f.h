@@ -18,9 +18,9 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      21     53      5      2      2      0
- * forward_dynamics     126    254     17      4      3      0
- * multipliers          108    225     20      4      3      0
+ * inverse_dynamics      20     50      5      2      2      0
+ * forward_dynamics     129    245     19      6      3      0
+ * multipliers          111    217     22      6      3      0
  * singularity           30     72     15      4      2      0
  * (changes of sign are not counted)
  *

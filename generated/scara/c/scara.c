@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SCARA_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SCARA_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SCARA_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SCARA_INLINE static inline __attribute__((always_inline))
 #else
@@ -138,7 +147,7 @@ scara_params scara_default_params(void) {
 scara_status scara_inverse_dynamics(const double q[4], const double qd[4], const double qdd[4], const scara_params *p, double u[4]) {
     const double q_2 = q[2];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (SCARA_RARELY(!(100000.0 >= t1))) {
         return SCARA_ANGLE_RANGE;
     }
     double t2;
@@ -203,56 +212,53 @@ scara_status scara_inverse_dynamics(const double q[4], const double qd[4], const
     const double t46 = t38 + t45;
     const double t47 = t36 + t46;
     const double t48 = t26 + t47;
-    const double t49 = t3 * t8;
-    const double t50 = l_1 * t49;
-    const double t51 = l_2 * t20;
-    const double t52 = t50 + t51;
-    const double t53 = q_1_ddot * t52;
-    const double t54 = q_1_dot * t2;
-    const double t55 = t8 * t54;
-    const double t56 = l_1 * t55;
-    const double t57 = q_1_dot * t56;
-    const double t58 = l_2 * t22;
-    const double t59 = t57 + t58;
-    const double t60 = t53 + t59;
-    const double t61 = l_2 * t60;
-    const double t62 = J_r + t37;
-    const double t63 = q_2_ddot * t62;
-    const double t64 = q_1_ddot * t37;
-    const double t65 = 50.0 * q_2_dot;
-    const double t66 = tanh(t65);
-    const double t67 = 0.5 * q_2_dot;
-    const double t68 = t67 - t43;
-    const double t69 = t66 + t68;
-    const double t70 = t64 + t69;
-    const double t71 = t63 + t70;
-    const double t72 = t61 + t71;
+    const double t49 = J_r + t37;
+    const double t50 = q_2_ddot * t49;
+    const double t51 = q_1_ddot * t37;
+    const double t52 = 50.0 * q_2_dot;
+    const double t53 = tanh(t52);
+    const double t54 = 0.5 * q_2_dot;
+    const double t55 = t54 - t43;
+    const double t56 = t53 + t55;
+    const double t57 = t51 + t56;
+    const double t58 = t50 + t57;
+    const double t59 = l_2 * t20;
+    const double t60 = l_1 * t8;
+    const double t61 = t3 * t60;
+    const double t62 = t59 + t61;
+    const double t63 = q_1_ddot * t62;
+    const double t64 = l_2 * t22;
+    const double t65 = q_1_dot * t2;
+    const double t66 = t65 * t60;
+    const double t67 = q_1_dot * t66;
+    const double t68 = t64 + t67;
+    const double t69 = t63 + t68;
+    const double t70 = l_2 * t69;
+    const double t71 = t58 + t70;
     const double z_dot = qd[0];
-    const double t73 = 20.0 * z_dot;
-    const double t74 = 200.0 * z_dot;
-    const double t75 = tanh(t74);
-    const double t76 = 5.0 * t75;
-    const double t77 = t73 + t76;
+    const double t72 = 20.0 * z_dot;
+    const double t73 = 200.0 * z_dot;
+    const double t74 = tanh(t73);
+    const double t75 = 5.0 * t74;
+    const double t76 = t72 + t75;
     const double g = p->g;
     const double z_ddot = qdd[0];
-    const double t78 = g - z_ddot;
-    const double t79 = m_3 * t78;
-    const double t80 = t77 - t79;
-    const double t81 = q_1_ddot + q_2_ddot;
-    const double t82 = t81 - q_4_ddot;
-    const double t83 = J_3 * t82;
-    const double t84 = -t83;
-    double rest = t48 - t48;
-    rest += t72 - t72;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    const double t77 = g - z_ddot;
+    const double t78 = m_3 * t77;
+    const double t79 = t76 - t78;
+    const double t80 = q_1_ddot + q_2_ddot;
+    const double t81 = t80 - q_4_ddot;
+    const double t82 = J_3 * t81;
+    const double t83 = -t82;
+    double rest = (t48 - t48) * t71 * t79;
+    rest += t83 - t83;
+    if (SCARA_RARELY(isnan(rest) != 0)) {
         return SCARA_NOT_FINITE;
     }
     u[0] = t48;
-    u[1] = t72;
-    u[2] = t80;
-    u[3] = t84;
+    u[1] = t71;
+    u[2] = t79;
+    u[3] = t83;
     return SCARA_OK;
 }
 
@@ -261,10 +267,10 @@ scara_status scara_forward_dynamics(const double q[4], const double qd[4], const
     const double t1 = fabs(q_4);
     const double q_2 = q[2];
     const double t2 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (SCARA_RARELY(!(100000.0 >= t1))) {
         return SCARA_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SCARA_RARELY(!(100000.0 >= t2))) {
         return SCARA_ANGLE_RANGE;
     }
     const double angle[2] = {q_4, q_2};
@@ -273,225 +279,192 @@ scara_status scara_forward_dynamics(const double q[4], const double qd[4], const
     scara_sincos_group(2, angle, sine, cosine);
     const double m_3 = p->m_3;
     const double t7 = fabs(m_3);
-    if (!(t7 > 0.0)) {
+    const double t8 = m_3 * 3.552713678800501e-15;
+    if (SCARA_RARELY(!(t7 > t8))) {
         return SCARA_MASS_RANK;
     }
-    const double l_1 = p->l_1;
-    const double t5 = sine[1];
-    const double t8 = l_1 * t5;
-    const double m_2 = p->m_2;
-    const double t9 = m_2 * t8;
-    const double t4 = cosine[0];
-    const double t10 = t4 * t8;
-    const double t6 = cosine[1];
-    const double t11 = l_1 * t6;
     const double l_2 = p->l_2;
-    const double t12 = l_2 + t11;
-    const double t3 = sine[0];
-    const double t13 = t3 * t12;
-    const double t14 = t10 - t13;
-    const double t15 = m_3 * t14;
-    const double t16 = t4 * t15;
-    const double t17 = t9 + t16;
-    const double t18 = t3 * t8;
-    const double t19 = t4 * t12;
-    const double t20 = t18 + t19;
-    const double t21 = m_3 * t20;
-    const double t22 = t3 * t21;
-    const double t23 = t17 + t22;
-    const double t24 = t5 * t23;
-    const double m_1 = p->m_1;
-    const double t25 = l_1 * m_1;
-    const double t26 = 0.25 * t25;
-    const double t27 = 0.5 * l_2;
-    const double t28 = t27 + t11;
-    const double t29 = m_2 * t28;
-    const double t30 = t4 * t20;
-    const double t31 = t3 * t14;
-    const double t32 = t30 - t31;
-    const double t33 = m_3 * t32;
-    const double t34 = t29 + t33;
-    const double t35 = t6 * t34;
-    const double t36 = t26 + t35;
-    const double t37 = t24 + t36;
-    const double t38 = l_1 * t37;
-    const double t39 = 0.5 * t29;
-    const double t40 = t39 + t33;
-    const double t41 = l_2 * t40;
-    const double J_3 = p->J_3;
-    const double t42 = J_3 + t41;
+    const double m_2 = p->m_2;
+    const double t9 = l_2 * m_2;
+    const double t10 = 0.25 * t9;
+    const double t11 = l_2 * m_3;
+    const double t12 = t10 + t11;
+    const double t13 = l_2 * t12;
     const double J_2 = p->J_2;
-    const double t43 = J_2 + t42;
-    const double t44 = t38 + t43;
+    const double t14 = J_2 + t13;
     const double J_r = p->J_r;
-    const double t45 = J_r + t44;
+    const double t15 = J_r + t14;
+    const double t16 = t14 / t15;
+    const double t17 = J_r * t16;
+    const double t18 = 0.5 * t9;
+    const double t19 = t18 + t11;
+    const double t20 = t19 / t15;
+    const double t21 = J_r * t20;
+    const double t6 = cosine[1];
+    const double t22 = t6 * t21;
+    const double l_1 = p->l_1;
+    const double m_1 = p->m_1;
+    const double t23 = l_1 * m_1;
+    const double t24 = 0.25 * t23;
+    const double t25 = m_2 + m_3;
+    const double t5 = sine[1];
+    const double t26 = t5 * t25;
+    const double t27 = t5 * t26;
+    const double t28 = t19 * t20;
+    const double t29 = t25 - t28;
+    const double t30 = t6 * t29;
+    const double t31 = t6 * t30;
+    const double t32 = t27 + t31;
+    const double t33 = l_1 * t32;
+    const double t34 = t22 + t33;
+    const double t35 = t24 + t34;
+    const double t36 = t22 + t35;
+    const double t37 = l_1 * t36;
     const double J_1 = p->J_1;
-    const double t46 = J_1 + t45;
-    const double t47 = fabs(t46);
-    const double t48 = fabs(J_1);
-    const double t49 = fabs(J_r);
-    const double t50 = fabs(l_1);
-    const double t51 = fabs(m_1);
-    const double t52 = t50 * t51;
-    const double t53 = 0.25 * t52;
-    const double t54 = fabs(m_2);
-    const double t55 = fabs(l_2);
-    const double t56 = 0.5 * t55;
-    const double t57 = t50 + t56;
-    const double t58 = t54 * t57;
-    const double t59 = t50 + t55;
-    const double t60 = t50 + t59;
-    const double t61 = t7 * t60;
-    const double t62 = 2.0 * t61;
-    const double t63 = t58 + t62;
-    const double t64 = t53 + t63;
-    const double t65 = t50 * t54;
-    const double t66 = t61 + t65;
-    const double t67 = t61 + t66;
-    const double t68 = t64 + t67;
-    const double t69 = t50 * t68;
-    const double t70 = fabs(J_2);
-    const double t71 = fabs(J_3);
-    const double t72 = 0.5 * t58;
-    const double t73 = t62 + t72;
-    const double t74 = t55 * t73;
-    const double t75 = t71 + t74;
-    const double t76 = t70 + t75;
-    const double t77 = t69 + t76;
-    const double t78 = t49 + t77;
-    const double t79 = t48 + t78;
-    const double t80 = t79 * 3.552713678800501e-15;
-    if (!(t47 > t80)) {
+    const double t38 = J_1 + J_r;
+    const double t39 = t37 + t38;
+    const double t40 = t17 + t39;
+    const double t41 = fabs(t40);
+    const double t42 = fabs(J_2);
+    const double t43 = 0.06 + t42;
+    const double t44 = fabs(l_2);
+    const double t45 = 0.5 * t44;
+    const double t46 = 0.05 + t45;
+    const double t47 = m_2 * t46;
+    const double t48 = t46 * t47;
+    const double t49 = t43 + t48;
+    const double J_3 = p->J_3;
+    const double t50 = fabs(J_3);
+    const double t51 = 0.008 + t50;
+    const double t52 = t49 + t51;
+    const double z = q[0];
+    const double t53 = fabs(z);
+    const double t54 = t44 + t53;
+    const double t55 = m_3 * t54;
+    const double t56 = t54 * t55;
+    const double t57 = t52 + t56;
+    const double t58 = fabs(l_1);
+    const double t59 = t47 + t55;
+    const double t60 = 2.0 * t59;
+    const double t61 = t58 * t25;
+    const double t62 = t60 + t61;
+    const double t63 = m_1 * t58;
+    const double t64 = 0.25 * t63;
+    const double t65 = t62 + t64;
+    const double t66 = t58 * t65;
+    const double t67 = fabs(J_1);
+    const double t68 = 0.09 + J_r;
+    const double t69 = t67 + t68;
+    const double t70 = t66 + t69;
+    const double t71 = t57 + t70;
+    const double t72 = t71 * 3.552713678800501e-15;
+    if (SCARA_RARELY(!(t41 > t72))) {
         return SCARA_MASS_RANK;
     }
-    const double t81 = 0.25 * m_2;
-    const double t82 = m_3 + t81;
-    const double t83 = l_2 * t82;
-    const double t84 = l_2 * t83;
-    const double t85 = J_3 + t84;
-    const double t86 = J_2 + t85;
-    const double t87 = J_r + t86;
-    const double t88 = t43 / t46;
-    const double t89 = t43 * t88;
-    const double t90 = t87 - t89;
-    const double t91 = fabs(t90);
-    const double t92 = t54 * t55;
-    const double t93 = 0.25 * t92;
-    const double t94 = t7 * t55;
-    const double t95 = t93 + t94;
-    const double t96 = t55 * t95;
-    const double t97 = t71 + t96;
-    const double t98 = t70 + t97;
-    const double t99 = t49 + t98;
-    const double t100 = t99 * 3.552713678800501e-15;
-    if (!(t91 > t100)) {
+    const double t73 = fabs(t15);
+    const double t74 = J_r + t57;
+    const double t75 = t74 * 3.552713678800501e-15;
+    if (SCARA_RARELY(!(t73 > t75))) {
         return SCARA_MASS_RANK;
     }
-    const double t101 = J_3 / t46;
-    const double t102 = J_3 * t101;
-    const double t103 = J_3 * t88;
-    const double t104 = t103 - J_3;
-    const double t105 = t104 / t90;
-    const double t106 = t104 * t105;
-    const double t107 = t102 + t106;
-    const double t108 = J_3 - t107;
-    const double t109 = fabs(t108);
-    const double t110 = t71 * 3.552713678800501e-15;
-    if (!(t109 > t110)) {
+    const double t76 = t51 * 3.552713678800501e-15;
+    if (SCARA_RARELY(!(t50 > t76))) {
         return SCARA_MASS_RANK;
     }
     const double z_dot = qd[0];
-    const double t111 = 20.0 * z_dot;
-    const double t112 = 200.0 * z_dot;
-    const double t113 = tanh(t112);
-    const double t114 = 5.0 * t113;
-    const double t115 = t111 + t114;
+    const double t77 = 20.0 * z_dot;
+    const double t78 = 200.0 * z_dot;
+    const double t79 = tanh(t78);
+    const double t80 = 5.0 * t79;
+    const double t81 = t77 + t80;
     const double g = p->g;
-    const double t116 = m_3 * g;
-    const double t117 = t115 - t116;
+    const double t82 = m_3 * g;
+    const double t83 = t81 - t82;
     const double u_3 = u[2];
-    const double t118 = u_3 - t117;
-    const double t119 = t118 / m_3;
+    const double t84 = u_3 - t83;
+    const double t85 = t84 / m_3;
     const double q_1_dot = qd[1];
-    const double t120 = 0.8 * q_1_dot;
-    const double t121 = 50.0 * q_1_dot;
-    const double t122 = tanh(t121);
-    const double t123 = 1.5 * t122;
-    const double t124 = t120 + t123;
-    const double t125 = q_1_dot * l_1;
-    const double t126 = q_1_dot * t125;
-    const double t127 = t6 * t126;
+    const double t86 = q_1_dot * q_1_dot;
+    const double t87 = l_1 * t86;
+    const double t88 = t6 * t87;
     const double q_2_dot = qd[2];
-    const double t128 = q_1_dot + q_2_dot;
-    const double t129 = l_2 * t128;
-    const double t130 = t128 * t129;
-    const double t131 = t127 + t130;
-    const double t132 = t4 * t131;
-    const double t133 = t5 * t126;
-    const double t134 = t3 * t133;
-    const double t135 = t132 + t134;
-    const double t136 = t3 * t135;
-    const double t137 = t4 * t133;
-    const double t138 = t3 * t131;
-    const double t139 = t137 - t138;
-    const double t140 = t4 * t139;
-    const double t141 = t136 + t140;
-    const double t142 = m_3 * t141;
-    const double t143 = m_2 * t133;
-    const double t144 = 0.5 * t143;
-    const double t145 = t142 + t144;
-    const double t146 = l_2 * t145;
-    const double t147 = t3 * t139;
-    const double t148 = t4 * t135;
-    const double t149 = t147 - t148;
-    const double t150 = m_3 * t149;
-    const double t151 = 0.5 * t130;
-    const double t152 = t127 + t151;
-    const double t153 = m_2 * t152;
-    const double t154 = t150 - t153;
-    const double t155 = t5 * t154;
-    const double t156 = t143 + t142;
-    const double t157 = t6 * t156;
-    const double t158 = t155 + t157;
-    const double t159 = l_1 * t158;
-    const double t160 = t146 + t159;
-    const double t161 = t124 + t160;
+    const double t89 = q_1_dot + q_2_dot;
+    const double t90 = t89 * t89;
+    const double t91 = l_2 * t90;
+    const double t92 = t88 + t91;
+    const double t4 = cosine[0];
+    const double t93 = t4 * t92;
+    const double t94 = t5 * t87;
+    const double t3 = sine[0];
+    const double t95 = t3 * t94;
+    const double t96 = t93 + t95;
+    const double t97 = m_3 * t96;
+    const double t98 = t3 * t97;
+    const double t99 = t4 * t94;
+    const double t100 = t3 * t92;
+    const double t101 = t99 - t100;
+    const double t102 = m_3 * t101;
+    const double t103 = t4 * t102;
+    const double t104 = t98 + t103;
+    const double t105 = m_2 * t94;
+    const double t106 = 0.5 * t105;
+    const double t107 = t104 + t106;
+    const double t108 = l_2 * t107;
     const double u_1 = u[0];
-    const double t162 = u_1 - t161;
-    const double t163 = t162 / t46;
-    const double t164 = 0.5 * q_2_dot;
-    const double t165 = 50.0 * q_2_dot;
-    const double t166 = tanh(t165);
-    const double t167 = t164 + t166;
-    const double t168 = t167 + t146;
+    const double t109 = u_1 - t108;
+    const double t110 = t3 * t102;
+    const double t111 = t4 * t97;
+    const double t112 = t110 - t111;
+    const double t113 = 0.5 * t91;
+    const double t114 = t88 + t113;
+    const double t115 = m_2 * t114;
+    const double t116 = t112 - t115;
+    const double t117 = t5 * t116;
+    const double t118 = t105 + t104;
+    const double t119 = t6 * t118;
+    const double t120 = t117 + t119;
+    const double t121 = 0.5 * q_2_dot;
+    const double t122 = 50.0 * q_2_dot;
+    const double t123 = tanh(t122);
+    const double t124 = t121 + t123;
+    const double t125 = t124 + t108;
     const double u_2 = u[1];
-    const double t169 = u_2 - t168;
-    const double t170 = t162 * t88;
-    const double t171 = t169 - t170;
-    const double t172 = t171 / t90;
-    const double t173 = t171 * t105;
-    const double t174 = t162 * t101;
-    const double t175 = t173 - t174;
+    const double t126 = u_2 - t125;
     const double u_4 = u[3];
-    const double t176 = u_4 - t175;
-    const double t177 = t176 / t108;
-    const double t178 = t105 * t177;
-    const double t179 = t172 - t178;
-    const double t180 = t88 * t179;
-    const double t181 = t163 - t180;
-    const double t182 = t101 * t177;
-    const double t183 = t181 + t182;
-    double rest = t119 - t119;
-    rest += t183 - t183;
-    rest += t179 - t179;
-    rest += t177 - t177;
-    if (isnan(rest) != 0) {
+    const double t127 = u_4 + t126;
+    const double t128 = t20 * t127;
+    const double t129 = t6 * t128;
+    const double t130 = t120 + t129;
+    const double t131 = l_1 * t130;
+    const double t132 = t109 - t131;
+    const double t133 = 0.8 * q_1_dot;
+    const double t134 = t132 - t133;
+    const double t135 = 50.0 * q_1_dot;
+    const double t136 = tanh(t135);
+    const double t137 = 1.5 * t136;
+    const double t138 = t134 - t137;
+    const double t139 = u_4 + t138;
+    const double t140 = t16 * t127;
+    const double t141 = t139 - t140;
+    const double t142 = t141 / t40;
+    const double t143 = t127 / t15;
+    const double t144 = l_1 * t6;
+    const double t145 = t144 * t20;
+    const double t146 = t16 + t145;
+    const double t147 = t146 * t142;
+    const double t148 = t143 - t147;
+    const double t149 = u_4 / J_3;
+    const double t150 = t142 + t148;
+    const double t151 = t149 + t150;
+    double rest = (t85 - t85) * t142 * t148;
+    rest += t151 - t151;
+    if (SCARA_RARELY(isnan(rest) != 0)) {
         return SCARA_NOT_FINITE;
     }
-    qdd[0] = t119;
-    qdd[1] = t183;
-    qdd[2] = t179;
-    qdd[3] = t177;
+    qdd[0] = t85;
+    qdd[1] = t142;
+    qdd[2] = t148;
+    qdd[3] = t151;
     return SCARA_OK;
 }
 

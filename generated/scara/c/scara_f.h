@@ -15,8 +15,8 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      34     43      0      0      1      3
- * forward_dynamics      69     86      7      0      2      3
+ * inverse_dynamics      34     42      0      0      1      3
+ * forward_dynamics      57     70      6      0      2      3
  * singularity            0      0      0      0      0      0
  * (changes of sign are not counted)
  *

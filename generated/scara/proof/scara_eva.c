@@ -56,8 +56,10 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t46, t90, t108. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t40. */
 void eva_forward_dynamics(void) {
+    static const double low_2[] = {-0x1.921fb54442d18p+1, -0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d1p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d2p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1};
+    static const double high_2[] = {-0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d2p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d1p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1, 0x1.921fb54442d18p+1};
     double q[4];
     double qd[4];
     double u[4];
@@ -65,7 +67,6 @@ void eva_forward_dynamics(void) {
     double y[4];
     q[0] = Frama_C_double_interval(0.0, 0.2);
     q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
-    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
     q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
     qd[0] = Frama_C_double_interval(-1.0, 1.0);
     qd[1] = Frama_C_double_interval(-1.0, 1.0);
@@ -86,9 +87,13 @@ void eva_forward_dynamics(void) {
     p.J_3 = Frama_C_double_interval(0.002, 0.002);
     p.J_r = Frama_C_double_interval(0.3, 0.3);
     p.g = Frama_C_double_interval(9.81, 9.81);
+    //@ loop unroll 29;
+    for (int i_2 = 0; i_2 < 29; i_2++) {
+    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
     scara_status status = scara_forward_dynamics(q, qd, u, &p, y);
     //@ assert regular: status == SCARA_OK || status == SCARA_NOT_FINITE;
     (void)status;
+    }
 }
 
 void eva_singularity(void);

@@ -56,8 +56,10 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t46, t90, t108. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t40. */
 void eva_forward_dynamics(void) {
+    static const float low_2[] = {-0x1.921fb6p+1f, -0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c6p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb6p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb8p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c8p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f};
+    static const float high_2[] = {-0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c8p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb8p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb6p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c6p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f, 0x1.921fb6p+1f};
     float q[4];
     float qd[4];
     float u[4];
@@ -65,7 +67,6 @@ void eva_forward_dynamics(void) {
     float y[4];
     q[0] = Frama_C_float_interval(0.0f, 0.2f);
     q[1] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
-    q[2] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
     q[3] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
     qd[0] = Frama_C_float_interval(-1.0f, 1.0f);
     qd[1] = Frama_C_float_interval(-1.0f, 1.0f);
@@ -86,9 +87,13 @@ void eva_forward_dynamics(void) {
     p.J_3 = Frama_C_float_interval(0.002f, 0.002f);
     p.J_r = Frama_C_float_interval(0.3f, 0.3f);
     p.g = Frama_C_float_interval(9.81f, 9.81f);
+    //@ loop unroll 29;
+    for (int i_2 = 0; i_2 < 29; i_2++) {
+    q[2] = Frama_C_float_interval(low_2[i_2], high_2[i_2]);
     scara_status status = scara_forward_dynamics_f(q, qd, u, &p, y);
     //@ assert regular: status == SCARA_OK || status == SCARA_NOT_FINITE;
     (void)status;
+    }
 }
 
 void eva_singularity(void);

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SKATE_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SKATE_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SKATE_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SKATE_INLINE static inline __attribute__((always_inline))
 #else
@@ -93,9 +102,8 @@ skate_status skate_mass_matrix(const double q[3], const skate_params *p, double 
     (void)q;
     const double Theta_s = p->Theta_s;
     const double m_s = p->m_s;
-    double rest = Theta_s - Theta_s;
-    rest += m_s - m_s;
-    if (isnan(rest) != 0) {
+    double rest = (Theta_s - Theta_s) * m_s;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G[0] = Theta_s;
@@ -159,16 +167,15 @@ skate_status skate_constraint_jacobian(const double q[3], const skate_params *p,
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = -t3;
-    double rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t4;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B[0] = 0.0;
@@ -181,7 +188,7 @@ skate_status skate_constraint_jacobian_dot(const double q[3], const double qd[3]
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -190,9 +197,8 @@ skate_status skate_constraint_jacobian_dot(const double q[3], const double qd[3]
     const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
     const double t5 = phi_dot * t2;
-    double rest = t4 - t4;
-    rest += t5 - t5;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t5;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_dot[0] = 0.0;
@@ -205,16 +211,15 @@ skate_status skate_constraint_pseudoinverse(const double q[3], const skate_param
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = -t3;
-    double rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t4;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_pinv[0] = 0.0;
@@ -227,7 +232,7 @@ skate_status skate_nullspace_projector(const double q[3], const skate_params *p,
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -236,10 +241,8 @@ skate_status skate_nullspace_projector(const double q[3], const skate_params *p,
     const double t4 = t3 * t3;
     const double t5 = t2 * t3;
     const double t6 = t2 * t2;
-    double rest = t4 - t4;
-    rest += t5 - t5;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t5 * t6;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_B[0] = 1.0;
@@ -258,7 +261,7 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -273,10 +276,8 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
     const double t9 = 2.0 * t8;
     const double t10 = (-1.0) + t9;
     const double t11 = phi_dot * t10;
-    double rest = t7 - t7;
-    rest += t11 - t11;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    double rest = (t7 - t7) * t11 * t6;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_B_dot[0] = 0.0;
@@ -294,7 +295,7 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
 skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params *p, double B_G_pinv[3]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -308,13 +309,12 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double t10 = -t3;
-    double rest = t2 - t2;
-    rest += t10 - t10;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t10;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_G_pinv[0] = 0.0;
@@ -326,7 +326,7 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
 skate_status skate_weighted_nullspace_projector(const double q[3], const skate_params *p, double N_BG[9]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -340,16 +340,14 @@ skate_status skate_weighted_nullspace_projector(const double q[3], const skate_p
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double t10 = t3 * t3;
     const double t11 = t2 * t3;
     const double t12 = t2 * t2;
-    double rest = t10 - t10;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    double rest = (t10 - t10) * t11 * t12;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_BG[0] = 1.0;
@@ -368,15 +366,14 @@ skate_status skate_control_matrix(const double q[3], const skate_params *p, doub
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t2;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M[0] = 1.0;
@@ -392,15 +389,14 @@ skate_status skate_projected_control_matrix(const double q[3], const skate_param
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t2;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_tilde[0] = 1.0;
@@ -416,15 +412,14 @@ skate_status skate_projected_control_pseudoinverse(const double q[3], const skat
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t2;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_tilde_pinv[0] = 1.0;
@@ -440,14 +435,14 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (!(t4 > 7.099748146989106e-30)) {
+    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -455,7 +450,7 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     }
     const double t5 = t2 / t3;
     double rest = t5 - t5;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     F_B[0] = 1.0;
@@ -470,7 +465,7 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
 skate_status skate_projected_mass_matrix(const double q[3], const skate_params *p, double G_tilde[9]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -484,11 +479,9 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
     const double t8 = t2 * t2;
     const double t9 = m_s * t8;
     const double Theta_s = p->Theta_s;
-    double rest = Theta_s - Theta_s;
-    rest += t5 - t5;
-    rest += t7 - t7;
+    double rest = (Theta_s - Theta_s) * t5 * t7;
     rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_tilde[0] = Theta_s;
@@ -506,7 +499,7 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
 skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[3], const skate_params *p, double C_tilde[9]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -524,11 +517,9 @@ skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[
     const double t11 = t2 * t10;
     const double t12 = m_s * t11;
     const double t13 = -t12;
-    double rest = t7 - t7;
-    rest += t9 - t9;
-    rest += t13 - t13;
+    double rest = (t7 - t7) * t9 * t13;
     rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     C_tilde[0] = 0.0;
@@ -565,14 +556,14 @@ skate_status skate_projected_applied_force(const double q[3], const double qd[3]
 skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p, double G_bar[4]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (!(t4 > 7.099748146989106e-30)) {
+    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -581,9 +572,8 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
     const double m_s = p->m_s;
     const double t5 = m_s / t4;
     const double Theta_s = p->Theta_s;
-    double rest = Theta_s - Theta_s;
-    rest += t5 - t5;
-    if (isnan(rest) != 0) {
+    double rest = (Theta_s - Theta_s) * t5;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_bar[0] = Theta_s;
@@ -596,14 +586,14 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
 skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3], const skate_params *p, double C_bar[4]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (!(t4 > 7.099748146989106e-30)) {
+    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -616,7 +606,7 @@ skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3]
     const double t7 = m_s / t6;
     const double t8 = t5 * t7;
     double rest = t8 - t8;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     C_bar[0] = 0.0;
@@ -647,14 +637,14 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (!(t4 > 7.099748146989106e-30)) {
+    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -662,7 +652,7 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     }
     const double t5 = 1.0 / t3;
     double rest = t5 - t5;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_bar[0] = 1.0;
@@ -676,7 +666,7 @@ skate_status skate_admissible_velocity(const double q[3], const double qd[3], co
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -690,10 +680,8 @@ skate_status skate_admissible_velocity(const double q[3], const double qd[3], co
     const double t7 = t3 * t6;
     const double t8 = t2 * t6;
     const double phi_dot = qd[0];
-    double rest = phi_dot - phi_dot;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    double rest = (phi_dot - phi_dot) * t7 * t8;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qd_admissible[0] = phi_dot;
@@ -706,7 +694,7 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -734,10 +722,8 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     const double t18 = t2 * t17;
     const double t19 = t14 + t18;
     const double phi_ddot = qdd[0];
-    double rest = phi_ddot - phi_ddot;
-    rest += t13 - t13;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    double rest = (phi_ddot - phi_ddot) * t13 * t19;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd_admissible[0] = phi_ddot;
@@ -751,10 +737,8 @@ skate_status skate_projected_configuration(const double q[3], const skate_params
     const double phi = q[0];
     const double x = q[1];
     const double y = q[2];
-    double rest = phi - phi;
-    rest += x - x;
-    rest += y - y;
-    if (isnan(rest) != 0) {
+    double rest = (phi - phi) * x * y;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     q_projected[0] = phi;
@@ -767,7 +751,7 @@ skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const
     (void)qd;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -783,9 +767,8 @@ skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const
     const double t7 = t5 + t6;
     const double m_s = p->m_s;
     const double t8 = m_s * t7;
-    double rest = t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t8;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -808,7 +791,7 @@ skate_status skate_actuator_velocity(const double q[3], const double qd[3], cons
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -820,9 +803,8 @@ skate_status skate_actuator_velocity(const double q[3], const double qd[3], cons
     const double t5 = y_dot * t2;
     const double t6 = t4 + t5;
     const double phi_dot = qd[0];
-    double rest = phi_dot - phi_dot;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    double rest = (phi_dot - phi_dot) * t6;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     nu[0] = phi_dot;
@@ -834,9 +816,8 @@ skate_status skate_actuator_mass_matrix(const double q[3], const skate_params *p
     (void)q;
     const double Theta_s = p->Theta_s;
     const double m_s = p->m_s;
-    double rest = Theta_s - Theta_s;
-    rest += m_s - m_s;
-    if (isnan(rest) != 0) {
+    double rest = (Theta_s - Theta_s) * m_s;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_nu[0] = Theta_s;
@@ -858,7 +839,7 @@ skate_status skate_actuator_bias(const double q[3], const double qd[3], const sk
 skate_status skate_forward_dynamics(const double q[3], const double qd[3], const double u[2], const skate_params *p, double qdd[3]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -872,7 +853,7 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double T = u[0];
@@ -896,10 +877,8 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     const double t23 = m_s * t22;
     const double t24 = t21 + t23;
     const double t25 = t11 * t24;
-    double rest = t10 - t10;
-    rest += t20 - t20;
-    rest += t25 - t25;
-    if (isnan(rest) != 0) {
+    double rest = (t10 - t10) * t20 * t25;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
@@ -912,7 +891,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     (void)u;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -926,7 +905,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double x_dot = qd[1];
@@ -938,7 +917,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
     double rest = t14 - t14;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;
@@ -962,7 +941,7 @@ skate_status skate_energy(const double q[3], const double qd[3], const skate_par
     const double t8 = 0.5 * t7;
     const double t9 = t3 + t8;
     double rest = t9 - t9;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     T_U[0] = t9;

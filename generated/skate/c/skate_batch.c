@@ -120,7 +120,7 @@ size_t skate_inverse_dynamics_batch(size_t count, size_t stride, const double *q
             const double t6 = y_ddot * t2;
             const double t7 = t5 + t6;
             const double t8 = m_s * t7;
-            double rest = (t4 - t4) + (t8 - t8);
+            double rest = (t4 - t4) * t8;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             flag[k] = rest;
             result[0][k] = t4;
@@ -226,7 +226,7 @@ size_t skate_forward_dynamics_batch(size_t count, size_t stride, const double *q
             const double t23 = m_s * t22;
             const double t24 = t21 + t23;
             const double t25 = t11 * t24;
-            double rest = (t10 - t10) + (t20 - t20) + (t25 - t25);
+            double rest = (t10 - t10) * t20 * t25;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += t5 > t9 ? 0.0 : 1.0;
             flag[k] = rest;
@@ -319,7 +319,7 @@ size_t skate_multipliers_batch(size_t count, size_t stride, const double *q, con
             const double t12 = t10 + t11;
             const double t13 = phi_dot * m_s;
             const double t14 = t12 * t13;
-            double rest = (t14 - t14);
+            double rest = t14 - t14;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += t5 > t9 ? 0.0 : 1.0;
             flag[k] = rest;

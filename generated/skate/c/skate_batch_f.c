@@ -112,7 +112,7 @@ size_t skate_inverse_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t6 = y_ddot * t2;
             const float t7 = t5 + t6;
             const float t8 = m_s * t7;
-            float rest = (t4 - t4) + (t8 - t8);
+            float rest = (t4 - t4) * t8;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             flag[k] = rest;
             result[0][k] = t4;
@@ -218,7 +218,7 @@ size_t skate_forward_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t23 = m_s * t22;
             const float t24 = t21 + t23;
             const float t25 = t11 * t24;
-            float rest = (t10 - t10) + (t20 - t20) + (t25 - t25);
+            float rest = (t10 - t10) * t20 * t25;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += t5 > t9 ? 0.0f : 1.0f;
             flag[k] = rest;
@@ -311,7 +311,7 @@ size_t skate_multipliers_batch_f(size_t count, size_t stride, const float *q, co
             const float t12 = t10 + t11;
             const float t13 = phi_dot * m_s;
             const float t14 = t12 * t13;
-            float rest = (t14 - t14);
+            float rest = t14 - t14;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += t5 > t9 ? 0.0f : 1.0f;
             flag[k] = rest;

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SKATE_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SKATE_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SKATE_RARELY_F(condition) (condition)
+#endif
+
 skate_status skate_inverse_dynamics_sc_f(const skate_trig_f *sc, const float q[3], const float qd[3], const float qdd[3], const skate_params_f *p, float u[2]) {
     (void)q;
     (void)qd;
@@ -31,9 +40,8 @@ skate_status skate_inverse_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     const float t7 = t5 + t6;
     const float m_s = p->m_s;
     const float t8 = m_s * t7;
-    float rest = t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    float rest = (t4 - t4) * t8;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -51,7 +59,7 @@ skate_status skate_forward_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const float T = u[0];
@@ -77,10 +85,8 @@ skate_status skate_forward_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     const float t23 = m_s * t22;
     const float t24 = t21 + t23;
     const float t25 = t11 * t24;
-    float rest = t10 - t10;
-    rest += t20 - t20;
-    rest += t25 - t25;
-    if (isnan(rest) != 0) {
+    float rest = (t10 - t10) * t20 * t25;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
@@ -100,7 +106,7 @@ skate_status skate_multipliers_sc_f(const skate_trig_f *sc, const float q[3], co
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const float x_dot = qd[1];
@@ -114,7 +120,7 @@ skate_status skate_multipliers_sc_f(const skate_trig_f *sc, const float q[3], co
     const float t13 = phi_dot * m_s;
     const float t14 = t12 * t13;
     float rest = t14 - t14;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;

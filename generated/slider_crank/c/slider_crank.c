@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SLIDER_CRANK_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SLIDER_CRANK_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SLIDER_CRANK_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SLIDER_CRANK_INLINE static inline __attribute__((always_inline))
 #else
@@ -140,7 +149,7 @@ slider_crank_status slider_crank_mass_matrix(const double q[3], const slider_cra
     const double beta = q[1];
     const double t1 = alpha + beta;
     const double t2 = fabs(t1);
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     double t3;
@@ -169,11 +178,9 @@ slider_crank_status slider_crank_mass_matrix(const double q[3], const slider_cra
     const double t20 = t16 + t19;
     const double t21 = 2.0 * t20;
     const double m_s = p->m_s;
-    double rest = t10 - t10;
-    rest += t15 - t15;
-    rest += t21 - t21;
+    double rest = (t10 - t10) * t15 * t21;
     rest += m_s - m_s;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G[0] = t10;
@@ -193,7 +200,7 @@ slider_crank_status slider_crank_coriolis_matrix(const double q[3], const double
     const double beta = q[1];
     const double t1 = alpha + beta;
     const double t2 = fabs(t1);
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     double t3;
@@ -210,9 +217,8 @@ slider_crank_status slider_crank_coriolis_matrix(const double q[3], const double
     const double t9 = beta_dot * t8;
     const double alpha_dot = qd[0];
     const double t10 = alpha_dot * t8;
-    double rest = t9 - t9;
-    rest += t10 - t10;
-    if (isnan(rest) != 0) {
+    double rest = (t9 - t9) * t10;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     C[0] = 0.0;
@@ -232,7 +238,7 @@ slider_crank_status slider_crank_coriolis_force(const double q[3], const double 
     const double beta = q[1];
     const double t1 = alpha + beta;
     const double t2 = fabs(t1);
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     double t3;
@@ -251,9 +257,8 @@ slider_crank_status slider_crank_coriolis_force(const double q[3], const double 
     const double alpha_dot = qd[0];
     const double t11 = alpha_dot * alpha_dot;
     const double t12 = t11 * t9;
-    double rest = t10 - t10;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    double rest = (t10 - t10) * t12;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     C_qd[0] = t10;
@@ -267,29 +272,29 @@ slider_crank_status slider_crank_potential_force(const double q[3], const slider
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
     double sine[2];
     double cosine[2];
     slider_crank_sincos_group(2, angle, sine, cosine);
-    const double m_crank = p->m_crank;
-    const double t7 = 0.5 * m_crank;
     const double m_rod = p->m_rod;
-    const double t8 = m_rod + t7;
-    const double r = p->r;
     const double g = p->g;
-    const double t9 = r * g;
-    const double t10 = t8 * t9;
+    const double t7 = m_rod * g;
+    const double m_crank = p->m_crank;
+    const double t8 = m_crank * g;
+    const double t9 = 0.5 * t8;
+    const double t10 = t7 + t9;
+    const double r = p->r;
+    const double t11 = r * t10;
     const double t4 = cosine[0];
-    const double t11 = t4 * t10;
-    const double t12 = m_rod * g;
+    const double t12 = t4 * t11;
     const double l = p->l;
-    const double t13 = l * t12;
+    const double t13 = l * t7;
     const double t6 = cosine[1];
     const double t14 = t6 * t13;
     const double t15 = 0.5 * t14;
@@ -298,13 +303,11 @@ slider_crank_status slider_crank_potential_force(const double q[3], const slider
     const double t17 = s - l;
     const double k = p->k;
     const double t18 = k * t17;
-    double rest = t11 - t11;
-    rest += t16 - t16;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    double rest = (t12 - t12) * t16 * t18;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    Q[0] = t11;
+    Q[0] = t12;
     Q[1] = t16;
     Q[2] = t18;
     return SLIDER_CRANK_OK;
@@ -317,7 +320,7 @@ slider_crank_status slider_crank_applied_force(const double q[3], const double q
     const double t1 = s_dot * d;
     const double t2 = -t1;
     double rest = t2 - t2;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a[0] = 0.0;
@@ -331,10 +334,10 @@ slider_crank_status slider_crank_constraint_residual(const double q[3], const sl
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -357,9 +360,8 @@ slider_crank_status slider_crank_constraint_residual(const double q[3], const sl
     const double t13 = t11 - t12;
     const double e = p->e;
     const double t14 = t13 - e;
-    double rest = t10 - t10;
-    rest += t14 - t14;
-    if (isnan(rest) != 0) {
+    double rest = (t10 - t10) * t14;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     g_out[0] = t10;
@@ -372,10 +374,10 @@ slider_crank_status slider_crank_constraint_jacobian(const double q[3], const sl
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -395,11 +397,9 @@ slider_crank_status slider_crank_constraint_jacobian(const double q[3], const sl
     const double t6 = cosine[1];
     const double t12 = l * t6;
     const double t13 = -t12;
-    double rest = t8 - t8;
-    rest += t10 - t10;
-    rest += t11 - t11;
+    double rest = (t8 - t8) * t10 * t11;
     rest += t13 - t13;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B[0] = t8;
@@ -416,10 +416,10 @@ slider_crank_status slider_crank_constraint_jacobian_dot(const double q[3], cons
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -445,11 +445,9 @@ slider_crank_status slider_crank_constraint_jacobian_dot(const double q[3], cons
     const double t5 = sine[1];
     const double t16 = beta_dot * t5;
     const double t17 = l * t16;
-    double rest = t9 - t9;
-    rest += t12 - t12;
-    rest += t15 - t15;
+    double rest = (t9 - t9) * t12 * t15;
     rest += t17 - t17;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B_dot[0] = t9;
@@ -466,10 +464,10 @@ slider_crank_status slider_crank_constraint_pseudoinverse(const double q[3], con
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -503,7 +501,7 @@ slider_crank_status slider_crank_constraint_pseudoinverse(const double q[3], con
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = 1.0 / t18;
@@ -526,13 +524,9 @@ slider_crank_status slider_crank_constraint_pseudoinverse(const double q[3], con
     const double t45 = t9 * t19;
     const double t46 = t44 - t45;
     const double t47 = t46 * t28;
-    double rest = t31 - t31;
-    rest += t34 - t34;
-    rest += t37 - t37;
-    rest += t41 - t41;
-    rest += t43 - t43;
-    rest += t47 - t47;
-    if (isnan(rest) != 0) {
+    double rest = (t31 - t31) * t34 * t37;
+    rest += (t41 - t41) * t43 * t47;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B_pinv[0] = t31;
@@ -549,10 +543,10 @@ slider_crank_status slider_crank_nullspace_projector(const double q[3], const sl
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -586,7 +580,7 @@ slider_crank_status slider_crank_nullspace_projector(const double q[3], const sl
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = 1.0 / t18;
@@ -601,13 +595,9 @@ slider_crank_status slider_crank_nullspace_projector(const double q[3], const sl
     const double t37 = t28 * t36;
     const double t38 = -t37;
     const double t39 = t16 * t28;
-    double rest = t29 - t29;
-    rest += t31 - t31;
-    rest += t34 - t34;
-    rest += t35 - t35;
-    rest += t38 - t38;
-    rest += t39 - t39;
-    if (isnan(rest) != 0) {
+    double rest = (t29 - t29) * t31 * t34;
+    rest += (t35 - t35) * t38 * t39;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     N_B[0] = t29;
@@ -627,10 +617,10 @@ slider_crank_status slider_crank_nullspace_projector_dot(const double q[3], cons
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -664,7 +654,7 @@ slider_crank_status slider_crank_nullspace_projector_dot(const double q[3], cons
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = 1.0 / t18;
@@ -752,13 +742,9 @@ slider_crank_status slider_crank_nullspace_projector_dot(const double q[3], cons
     const double t108 = t106 - t107;
     const double t109 = 2.0 * t108;
     const double t110 = -t109;
-    double rest = t55 - t55;
-    rest += t72 - t72;
-    rest += t93 - t93;
-    rest += t98 - t98;
-    rest += t105 - t105;
-    rest += t110 - t110;
-    if (isnan(rest) != 0) {
+    double rest = (t55 - t55) * t72 * t93;
+    rest += (t98 - t98) * t105 * t110;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     N_B_dot[0] = t55;
@@ -778,10 +764,10 @@ slider_crank_status slider_crank_weighted_pseudoinverse(const double q[3], const
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -815,7 +801,7 @@ slider_crank_status slider_crank_weighted_pseudoinverse(const double q[3], const
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = t4 * t4;
@@ -875,7 +861,7 @@ slider_crank_status slider_crank_weighted_pseudoinverse(const double q[3], const
     const double t78 = t75 + t77;
     const double t79 = t66 + t78;
     const double t80 = 2.6645352591003757e-15 * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
     const double t81 = l * t11;
@@ -946,13 +932,9 @@ slider_crank_status slider_crank_weighted_pseudoinverse(const double q[3], const
     const double t146 = t32 * t145;
     const double t147 = t136 + t146;
     const double t148 = t104 * t147;
-    double rest = t86 - t86;
-    rest += t105 - t105;
-    rest += t111 - t111;
-    rest += t123 - t123;
-    rest += t134 - t134;
-    rest += t148 - t148;
-    if (isnan(rest) != 0) {
+    double rest = (t86 - t86) * t105 * t111;
+    rest += (t123 - t123) * t134 * t148;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B_G_pinv[0] = t86;
@@ -969,10 +951,10 @@ slider_crank_status slider_crank_weighted_nullspace_projector(const double q[3],
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -1006,7 +988,7 @@ slider_crank_status slider_crank_weighted_nullspace_projector(const double q[3],
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = t4 * t4;
@@ -1066,7 +1048,7 @@ slider_crank_status slider_crank_weighted_nullspace_projector(const double q[3],
     const double t78 = t75 + t77;
     const double t79 = t66 + t78;
     const double t80 = 2.6645352591003757e-15 * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
     const double t81 = t6 * t4;
@@ -1118,16 +1100,10 @@ slider_crank_status slider_crank_weighted_nullspace_projector(const double q[3],
     const double t127 = t126 * t96;
     const double t128 = t15 * t111;
     const double t129 = t128 * t96;
-    double rest = t98 - t98;
-    rest += t110 - t110;
-    rest += t114 - t114;
-    rest += t117 - t117;
-    rest += t120 - t120;
-    rest += t123 - t123;
-    rest += t125 - t125;
-    rest += t127 - t127;
-    rest += t129 - t129;
-    if (isnan(rest) != 0) {
+    double rest = (t98 - t98) * t110 * t114;
+    rest += (t117 - t117) * t120 * t123;
+    rest += (t125 - t125) * t127 * t129;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     N_BG[0] = t98;
@@ -1156,10 +1132,10 @@ slider_crank_status slider_crank_projected_control_matrix(const double q[3], con
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -1193,7 +1169,7 @@ slider_crank_status slider_crank_projected_control_matrix(const double q[3], con
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = 1.0 / t18;
@@ -1203,10 +1179,8 @@ slider_crank_status slider_crank_projected_control_matrix(const double q[3], con
     const double t32 = t7 * t15;
     const double t33 = t28 * t32;
     const double t34 = -t33;
-    double rest = t29 - t29;
-    rest += t31 - t31;
-    rest += t34 - t34;
-    if (isnan(rest) != 0) {
+    double rest = (t29 - t29) * t31 * t34;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     M_tilde[0] = t29;
@@ -1220,10 +1194,10 @@ slider_crank_status slider_crank_projected_control_pseudoinverse(const double q[
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -1249,7 +1223,7 @@ slider_crank_status slider_crank_projected_control_pseudoinverse(const double q[
     const double t19 = t18 * 7.099748146989106e-30;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         const double t20 = r * l;
         const double t21 = t4 * t5;
         const double t22 = t6 * t3;
@@ -1278,9 +1252,8 @@ slider_crank_status slider_crank_projected_control_pseudoinverse(const double q[
     const double t40 = r / t6;
     const double t41 = t39 * t40;
     const double t42 = -t41;
-    double rest = t36 - t36;
-    rest += t42 - t42;
-    if (isnan(rest) != 0) {
+    double rest = (t36 - t36) * t42;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     M_tilde_pinv[0] = 1.0;
@@ -1294,10 +1267,10 @@ slider_crank_status slider_crank_orthogonal_complement(const double q[3], const 
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -1323,7 +1296,7 @@ slider_crank_status slider_crank_orthogonal_complement(const double q[3], const 
     const double t19 = t18 * 7.099748146989106e-30;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         const double t20 = r * l;
         const double t21 = t4 * t5;
         const double t22 = t6 * t3;
@@ -1352,9 +1325,8 @@ slider_crank_status slider_crank_orthogonal_complement(const double q[3], const 
     const double t40 = r / t6;
     const double t41 = t39 * t40;
     const double t42 = -t41;
-    double rest = t36 - t36;
-    rest += t42 - t42;
-    if (isnan(rest) != 0) {
+    double rest = (t36 - t36) * t42;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     F_B[0] = 1.0;
@@ -1368,10 +1340,10 @@ slider_crank_status slider_crank_projected_mass_matrix(const double q[3], const 
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -1405,7 +1377,7 @@ slider_crank_status slider_crank_projected_mass_matrix(const double q[3], const 
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = 1.0 / t18;
@@ -1492,13 +1464,9 @@ slider_crank_status slider_crank_projected_mass_matrix(const double q[3], const 
     const double t105 = t65 * t104;
     const double t106 = t101 + t105;
     const double t107 = t97 - t106;
-    double rest = t63 - t63;
-    rest += t71 - t71;
-    rest += t78 - t78;
-    rest += t89 - t89;
-    rest += t95 - t95;
-    rest += t107 - t107;
-    if (isnan(rest) != 0) {
+    double rest = (t63 - t63) * t71 * t78;
+    rest += (t89 - t89) * t95 * t107;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G_tilde[0] = t63;
@@ -1518,10 +1486,10 @@ slider_crank_status slider_crank_projected_coriolis_matrix(const double q[3], co
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -1555,335 +1523,324 @@ slider_crank_status slider_crank_projected_coriolis_matrix(const double q[3], co
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = 1.0 / t18;
-    const double t29 = t8 * t28;
-    const double t30 = t9 * t7;
-    const double t31 = t30 * t28;
+    const double t29 = t7 * t15;
+    const double t30 = t28 * t29;
+    const double t31 = t25 * t28;
+    const double t32 = t9 * t7;
+    const double t33 = t32 * t28;
+    const double t34 = t8 * t28;
     const double alpha_dot = qd[0];
-    const double t32 = alpha_dot * t31;
-    const double t33 = t10 * t28;
+    const double t35 = alpha_dot * t34;
     const double beta_dot = qd[1];
-    const double t34 = beta_dot * t33;
-    const double t35 = t32 + t34;
-    const double t36 = t9 * t15;
-    const double t37 = t28 * t36;
+    const double t36 = beta_dot * t33;
+    const double t37 = t35 + t36;
     const double s_dot = qd[2];
-    const double t38 = s_dot * t37;
-    const double t39 = t35 - t38;
-    const double m_rod = p->m_rod;
-    const double t40 = m_rod * t15;
-    const double t41 = t39 * t40;
-    const double t42 = t31 * t41;
-    const double t43 = 0.5 * t42;
-    const double t44 = t6 * t4;
-    const double t45 = t5 * t3;
-    const double t46 = t44 - t45;
-    const double t47 = t11 * t46;
-    const double t48 = m_rod * t47;
-    const double t49 = t7 * t15;
-    const double t50 = t28 * t49;
-    const double t51 = alpha_dot * t29;
-    const double t52 = beta_dot * t31;
-    const double t53 = t51 + t52;
-    const double t54 = s_dot * t50;
-    const double t55 = t53 - t54;
-    const double t56 = t6 * t55;
-    const double t57 = r * t56;
-    const double t58 = t31 * t57;
-    const double t59 = t33 * t57;
-    const double t60 = t58 + t59;
-    const double t61 = t50 * t60;
-    const double t62 = t21 * t15;
-    const double t63 = t9 + t62;
-    const double t64 = t28 * t63;
-    const double t65 = t3 * t39;
-    const double t66 = l * t65;
-    const double t67 = t33 * t66;
-    const double t68 = t5 * t55;
-    const double t69 = r * t68;
-    const double t70 = t31 * t69;
-    const double t71 = t67 - t70;
-    const double t72 = t64 * t71;
-    const double t73 = t61 + t72;
-    const double t74 = t19 * t15;
-    const double t75 = t7 + t74;
-    const double t76 = t28 * t75;
-    const double t77 = t31 * t66;
-    const double t78 = t29 * t69;
-    const double t79 = t77 - t78;
-    const double t80 = t76 * t79;
-    const double t81 = t61 - t80;
-    const double t82 = t73 + t81;
-    const double t83 = t48 * t82;
-    const double t84 = 0.5 * t83;
-    const double J_crank = p->J_crank;
-    const double t85 = 0.5 * J_crank;
-    const double t86 = r * r;
-    const double t87 = m_rod * t86;
-    const double t88 = 0.5 * t87;
-    const double t89 = t85 + t88;
-    const double t90 = t29 * t57;
-    const double t91 = t58 + t90;
-    const double t92 = t50 * t91;
-    const double t93 = t64 * t79;
-    const double t94 = t92 + t93;
-    const double t95 = t89 * t94;
-    const double t96 = 4.0 * t95;
-    const double t97 = t84 - t96;
-    const double t98 = t43 + t97;
-    const double t99 = t29 * t98;
-    const double t100 = t40 * t55;
-    const double t101 = t29 * t100;
-    const double t102 = 0.5 * t101;
-    const double t103 = t48 * t94;
-    const double J_rod = p->J_rod;
-    const double t104 = 0.5 * J_rod;
-    const double t105 = l * l;
-    const double t106 = m_rod * t105;
-    const double t107 = 0.125 * t106;
-    const double t108 = t104 + t107;
-    const double t109 = t108 * t82;
-    const double t110 = 2.0 * t109;
-    const double t111 = t103 - t110;
-    const double t112 = t102 + t111;
-    const double t113 = t31 * t112;
-    const double t114 = t99 + t113;
-    const double t115 = t50 * t69;
-    const double t116 = t37 * t66;
-    const double t117 = t115 - t116;
-    const double t118 = t64 * t117;
-    const double t119 = t50 * t57;
-    const double t120 = t37 * t57;
-    const double t121 = t119 + t120;
-    const double t122 = t50 * t121;
-    const double t123 = t118 - t122;
-    const double t124 = t25 * t28;
-    const double t125 = t124 * t91;
-    const double t126 = t7 * t21;
-    const double t127 = t9 * t19;
-    const double t128 = t126 - t127;
-    const double t129 = t128 * t28;
-    const double t130 = t129 * t79;
-    const double t131 = t125 + t130;
-    const double t132 = t123 + t131;
+    const double t38 = s_dot * t30;
+    const double t39 = t37 - t38;
+    const double t40 = t6 * t39;
+    const double t41 = r * t40;
+    const double t42 = t33 * t41;
+    const double t43 = t34 * t41;
+    const double t44 = t42 + t43;
+    const double t45 = t31 * t44;
+    const double t46 = t7 * t21;
+    const double t47 = t9 * t19;
+    const double t48 = t46 - t47;
+    const double t49 = t48 * t28;
+    const double t50 = alpha_dot * t33;
+    const double t51 = t10 * t28;
+    const double t52 = beta_dot * t51;
+    const double t53 = t50 + t52;
+    const double t54 = t9 * t15;
+    const double t55 = t28 * t54;
+    const double t56 = s_dot * t55;
+    const double t57 = t53 - t56;
+    const double t58 = t3 * t57;
+    const double t59 = l * t58;
+    const double t60 = t33 * t59;
+    const double t61 = t5 * t39;
+    const double t62 = r * t61;
+    const double t63 = t34 * t62;
+    const double t64 = t60 - t63;
+    const double t65 = t49 * t64;
+    const double t66 = t45 + t65;
+    const double t67 = t21 * t15;
+    const double t68 = t9 + t67;
+    const double t69 = t28 * t68;
+    const double t70 = t30 * t62;
+    const double t71 = t55 * t59;
+    const double t72 = t70 - t71;
+    const double t73 = t69 * t72;
+    const double t74 = t30 + t55;
+    const double t75 = t41 * t74;
+    const double t76 = t30 * t75;
+    const double t77 = t73 - t76;
+    const double t78 = t66 + t77;
     const double m_s = p->m_s;
-    const double t133 = m_s * t132;
-    const double t134 = t50 * t133;
-    const double t135 = t114 + t134;
-    const double t136 = t33 * t41;
-    const double t137 = 0.5 * t136;
-    const double t138 = t37 * t60;
-    const double t139 = t76 * t71;
-    const double t140 = t138 - t139;
-    const double t141 = t48 * t140;
-    const double t142 = t89 * t82;
-    const double t143 = 2.0 * t142;
-    const double t144 = t141 - t143;
-    const double t145 = t137 + t144;
-    const double t146 = t29 * t145;
-    const double t147 = t31 * t100;
-    const double t148 = 0.5 * t147;
-    const double t149 = t108 * t140;
-    const double t150 = 4.0 * t149;
-    const double t151 = t84 - t150;
-    const double t152 = t148 + t151;
-    const double t153 = t31 * t152;
-    const double t154 = t146 + t153;
-    const double t155 = t37 * t121;
-    const double t156 = t76 * t117;
-    const double t157 = t155 + t156;
-    const double t158 = t124 * t60;
-    const double t159 = t129 * t71;
-    const double t160 = t158 + t159;
-    const double t161 = t157 - t160;
-    const double t162 = m_s * t161;
-    const double t163 = t50 * t162;
-    const double t164 = t154 - t163;
-    const double t165 = t48 * t132;
-    const double t166 = 0.5 * t165;
-    const double t167 = t108 * t161;
-    const double t168 = 2.0 * t167;
-    const double t169 = t166 + t168;
-    const double t170 = t50 * t100;
+    const double t79 = m_s * t78;
+    const double t80 = t30 * t79;
+    const double m_rod = p->m_rod;
+    const double t81 = m_rod * t15;
+    const double t82 = t81 * t39;
+    const double t83 = t34 * t82;
+    const double t84 = 0.5 * t83;
+    const double t85 = t6 * t4;
+    const double t86 = t5 * t3;
+    const double t87 = t85 - t86;
+    const double t88 = t11 * t87;
+    const double t89 = m_rod * t88;
+    const double t90 = t30 * t44;
+    const double t91 = t69 * t64;
+    const double t92 = t90 + t91;
+    const double t93 = t89 * t92;
+    const double J_rod = p->J_rod;
+    const double t94 = 0.5 * J_rod;
+    const double t95 = l * l;
+    const double t96 = m_rod * t95;
+    const double t97 = 0.125 * t96;
+    const double t98 = t94 + t97;
+    const double t99 = t51 * t41;
+    const double t100 = t42 + t99;
+    const double t101 = t30 * t100;
+    const double t102 = t51 * t59;
+    const double t103 = t33 * t62;
+    const double t104 = t102 - t103;
+    const double t105 = t69 * t104;
+    const double t106 = t101 + t105;
+    const double t107 = t19 * t15;
+    const double t108 = t7 + t107;
+    const double t109 = t28 * t108;
+    const double t110 = t109 * t64;
+    const double t111 = t101 - t110;
+    const double t112 = t106 + t111;
+    const double t113 = t98 * t112;
+    const double t114 = 2.0 * t113;
+    const double t115 = t93 - t114;
+    const double t116 = t84 + t115;
+    const double t117 = t33 * t116;
+    const double t118 = t57 * t81;
+    const double t119 = t33 * t118;
+    const double t120 = 0.5 * t119;
+    const double t121 = t89 * t112;
+    const double t122 = 0.5 * t121;
+    const double J_crank = p->J_crank;
+    const double t123 = 0.5 * J_crank;
+    const double t124 = r * r;
+    const double t125 = m_rod * t124;
+    const double t126 = 0.5 * t125;
+    const double t127 = t123 + t126;
+    const double t128 = 4.0 * t127;
+    const double t129 = t92 * t128;
+    const double t130 = t122 - t129;
+    const double t131 = t120 + t130;
+    const double t132 = t34 * t131;
+    const double t133 = t117 + t132;
+    const double t134 = t80 + t133;
+    const double t135 = t33 * t82;
+    const double t136 = 0.5 * t135;
+    const double t137 = t55 * t100;
+    const double t138 = t109 * t104;
+    const double t139 = t137 - t138;
+    const double t140 = t98 * t139;
+    const double t141 = 4.0 * t140;
+    const double t142 = t122 - t141;
+    const double t143 = t136 + t142;
+    const double t144 = t33 * t143;
+    const double t145 = t51 * t118;
+    const double t146 = 0.5 * t145;
+    const double t147 = t89 * t139;
+    const double t148 = 2.0 * t127;
+    const double t149 = t148 * t112;
+    const double t150 = t147 - t149;
+    const double t151 = t146 + t150;
+    const double t152 = t34 * t151;
+    const double t153 = t144 + t152;
+    const double t154 = t109 * t72;
+    const double t155 = t55 * t75;
+    const double t156 = t154 + t155;
+    const double t157 = t31 * t100;
+    const double t158 = t49 * t104;
+    const double t159 = t157 + t158;
+    const double t160 = t156 - t159;
+    const double t161 = m_s * t160;
+    const double t162 = t30 * t161;
+    const double t163 = t153 - t162;
+    const double t164 = t49 * t72;
+    const double t165 = t31 * t75;
+    const double t166 = t164 - t165;
+    const double t167 = m_s * t166;
+    const double t168 = t30 * t167;
+    const double t169 = 2.0 * t168;
+    const double t170 = t89 * t78;
     const double t171 = 0.5 * t170;
-    const double t172 = t169 - t171;
-    const double t173 = t31 * t172;
-    const double t174 = t37 * t41;
-    const double t175 = 0.5 * t174;
-    const double t176 = t89 * t132;
-    const double t177 = 2.0 * t176;
-    const double t178 = t48 * t161;
-    const double t179 = 0.5 * t178;
-    const double t180 = t177 + t179;
-    const double t181 = t175 + t180;
-    const double t182 = t29 * t181;
-    const double t183 = t173 - t182;
-    const double t184 = t129 * t117;
-    const double t185 = t124 * t121;
-    const double t186 = t184 - t185;
-    const double t187 = m_s * t186;
-    const double t188 = t50 * t187;
-    const double t189 = 2.0 * t188;
-    const double t190 = t183 + t189;
-    const double t191 = t31 * t98;
-    const double t192 = t33 * t112;
-    const double t193 = t191 + t192;
-    const double t194 = t37 * t133;
-    const double t195 = t193 + t194;
-    const double t196 = t31 * t145;
-    const double t197 = t33 * t152;
-    const double t198 = t196 + t197;
-    const double t199 = t37 * t162;
-    const double t200 = t198 - t199;
-    const double t201 = t33 * t172;
-    const double t202 = t31 * t181;
+    const double t172 = t98 * t160;
+    const double t173 = 2.0 * t172;
+    const double t174 = t171 + t173;
+    const double t175 = t30 * t82;
+    const double t176 = 0.5 * t175;
+    const double t177 = t174 - t176;
+    const double t178 = t33 * t177;
+    const double t179 = t55 * t118;
+    const double t180 = 0.5 * t179;
+    const double t181 = t89 * t160;
+    const double t182 = 0.5 * t181;
+    const double t183 = t148 * t78;
+    const double t184 = t182 + t183;
+    const double t185 = t180 + t184;
+    const double t186 = t34 * t185;
+    const double t187 = t178 - t186;
+    const double t188 = t169 + t187;
+    const double t189 = t55 * t79;
+    const double t190 = t51 * t116;
+    const double t191 = t33 * t131;
+    const double t192 = t190 + t191;
+    const double t193 = t189 + t192;
+    const double t194 = t51 * t143;
+    const double t195 = t33 * t151;
+    const double t196 = t194 + t195;
+    const double t197 = t55 * t161;
+    const double t198 = t196 - t197;
+    const double t199 = t55 * t167;
+    const double t200 = 2.0 * t199;
+    const double t201 = t51 * t177;
+    const double t202 = t33 * t185;
     const double t203 = t201 - t202;
-    const double t204 = t37 * t187;
-    const double t205 = 2.0 * t204;
-    const double t206 = t203 + t205;
-    const double t207 = t50 * t98;
-    const double t208 = t37 * t112;
+    const double t204 = t200 + t203;
+    const double t205 = t16 * t28;
+    const double t206 = t205 * t79;
+    const double t207 = t55 * t116;
+    const double t208 = t30 * t131;
     const double t209 = t207 + t208;
-    const double t210 = t16 * t28;
-    const double t211 = t210 * t133;
-    const double t212 = t209 + t211;
-    const double t213 = -t212;
-    const double t214 = t210 * t162;
-    const double t215 = t50 * t145;
-    const double t216 = t37 * t152;
-    const double t217 = t215 + t216;
-    const double t218 = t214 - t217;
-    const double t219 = t50 * t181;
-    const double t220 = t37 * t172;
-    const double t221 = t219 - t220;
-    const double t222 = t210 * t187;
-    const double t223 = 2.0 * t222;
-    const double t224 = t221 - t223;
-    double rest = t135 - t135;
-    rest += t164 - t164;
-    rest += t190 - t190;
-    rest += t195 - t195;
-    rest += t200 - t200;
-    rest += t206 - t206;
-    rest += t213 - t213;
-    rest += t218 - t218;
-    rest += t224 - t224;
-    if (isnan(rest) != 0) {
+    const double t210 = t206 + t209;
+    const double t211 = -t210;
+    const double t212 = t205 * t161;
+    const double t213 = t55 * t143;
+    const double t214 = t30 * t151;
+    const double t215 = t213 + t214;
+    const double t216 = t212 - t215;
+    const double t217 = t30 * t185;
+    const double t218 = t55 * t177;
+    const double t219 = t217 - t218;
+    const double t220 = t205 * t167;
+    const double t221 = 2.0 * t220;
+    const double t222 = t219 - t221;
+    double rest = (t134 - t134) * t163 * t188;
+    rest += (t193 - t193) * t198 * t204;
+    rest += (t211 - t211) * t216 * t222;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    C_tilde[0] = t135;
-    C_tilde[1] = t164;
-    C_tilde[2] = t190;
-    C_tilde[3] = t195;
-    C_tilde[4] = t200;
-    C_tilde[5] = t206;
-    C_tilde[6] = t213;
-    C_tilde[7] = t218;
-    C_tilde[8] = t224;
+    C_tilde[0] = t134;
+    C_tilde[1] = t163;
+    C_tilde[2] = t188;
+    C_tilde[3] = t193;
+    C_tilde[4] = t198;
+    C_tilde[5] = t204;
+    C_tilde[6] = t211;
+    C_tilde[7] = t216;
+    C_tilde[8] = t222;
     return SLIDER_CRANK_OK;
 }
 
 slider_crank_status slider_crank_projected_potential_force(const double q[3], const slider_crank_params *p, double Q_tilde[3]) {
-    const double alpha = q[0];
-    const double t1 = fabs(alpha);
     const double beta = q[1];
-    const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    const double t1 = fabs(beta);
+    const double alpha = q[0];
+    const double t2 = fabs(alpha);
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const double angle[2] = {alpha, beta};
+    const double angle[2] = {beta, alpha};
     double sine[2];
     double cosine[2];
     slider_crank_sincos_group(2, angle, sine, cosine);
     const double l = p->l;
-    const double t6 = cosine[1];
-    const double t7 = l * t6;
+    const double t4 = cosine[0];
+    const double t7 = l * t4;
     const double t8 = t7 * t7;
     const double r = p->r;
-    const double t4 = cosine[0];
-    const double t9 = r * t4;
+    const double t6 = cosine[1];
+    const double t9 = r * t6;
     const double t10 = t9 * t9;
     const double t11 = r * l;
-    const double t5 = sine[1];
-    const double t12 = t4 * t5;
     const double t3 = sine[0];
-    const double t13 = t6 * t3;
+    const double t12 = t6 * t3;
+    const double t5 = sine[1];
+    const double t13 = t4 * t5;
     const double t14 = t12 + t13;
     const double t15 = t11 * t14;
     const double t16 = t15 * t15;
     const double t17 = t10 + t16;
     const double t18 = t8 + t17;
-    const double t19 = r * t3;
+    const double t19 = r * t5;
     const double t20 = t19 * t19;
-    const double t21 = l * t5;
+    const double t21 = l * t3;
     const double t22 = t21 * t21;
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
+    const double t28 = 1.0 / t18;
+    const double t29 = t8 * t28;
     const double m_rod = p->m_rod;
     const double g = p->g;
-    const double t28 = m_rod * g;
-    const double t29 = r * t28;
+    const double t30 = m_rod * g;
     const double m_crank = p->m_crank;
-    const double t30 = r * m_crank;
-    const double t31 = g * t30;
+    const double t31 = m_crank * g;
     const double t32 = 0.5 * t31;
-    const double t33 = t29 + t32;
-    const double t34 = t4 * t33;
-    const double t35 = 1.0 / t18;
-    const double t36 = t8 * t35;
-    const double t37 = t34 * t36;
-    const double t38 = l * t28;
-    const double t39 = t6 * t38;
-    const double t40 = t9 * t7;
-    const double t41 = t40 * t35;
-    const double t42 = t39 * t41;
-    const double t43 = 0.5 * t42;
-    const double t44 = t37 - t43;
+    const double t33 = t30 + t32;
+    const double t34 = r * t33;
+    const double t35 = t6 * t34;
+    const double t36 = t29 * t35;
+    const double t37 = l * t30;
+    const double t38 = t4 * t37;
+    const double t39 = t9 * t7;
+    const double t40 = t39 * t28;
+    const double t41 = t38 * t40;
+    const double t42 = 0.5 * t41;
+    const double t43 = t36 - t42;
     const double s = q[2];
-    const double t45 = s - l;
+    const double t44 = s - l;
     const double k = p->k;
-    const double t46 = k * t45;
-    const double t47 = t7 * t15;
-    const double t48 = t35 * t47;
-    const double t49 = t46 * t48;
-    const double t50 = t44 - t49;
-    const double t51 = t34 * t41;
-    const double t52 = t10 * t35;
-    const double t53 = t39 * t52;
-    const double t54 = 0.5 * t53;
-    const double t55 = t51 - t54;
-    const double t56 = t9 * t15;
-    const double t57 = t35 * t56;
-    const double t58 = t46 * t57;
-    const double t59 = t55 - t58;
-    const double t60 = t39 * t57;
-    const double t61 = 0.5 * t60;
-    const double t62 = t34 * t48;
-    const double t63 = t61 - t62;
-    const double t64 = t16 * t35;
-    const double t65 = t46 * t64;
-    const double t66 = t63 + t65;
-    double rest = t50 - t50;
-    rest += t59 - t59;
-    rest += t66 - t66;
-    if (isnan(rest) != 0) {
+    const double t45 = k * t44;
+    const double t46 = t7 * t15;
+    const double t47 = t28 * t46;
+    const double t48 = t45 * t47;
+    const double t49 = t43 - t48;
+    const double t50 = t40 * t35;
+    const double t51 = t10 * t28;
+    const double t52 = t38 * t51;
+    const double t53 = 0.5 * t52;
+    const double t54 = t50 - t53;
+    const double t55 = t9 * t15;
+    const double t56 = t28 * t55;
+    const double t57 = t45 * t56;
+    const double t58 = t54 - t57;
+    const double t59 = t16 * t28;
+    const double t60 = t45 * t59;
+    const double t61 = t38 * t56;
+    const double t62 = 0.5 * t61;
+    const double t63 = t47 * t35;
+    const double t64 = t62 - t63;
+    const double t65 = t60 + t64;
+    double rest = (t49 - t49) * t58 * t65;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    Q_tilde[0] = t50;
-    Q_tilde[1] = t59;
-    Q_tilde[2] = t66;
+    Q_tilde[0] = t49;
+    Q_tilde[1] = t58;
+    Q_tilde[2] = t65;
     return SLIDER_CRANK_OK;
 }
 
@@ -1892,10 +1849,10 @@ slider_crank_status slider_crank_projected_applied_force(const double q[3], cons
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -1929,7 +1886,7 @@ slider_crank_status slider_crank_projected_applied_force(const double q[3], cons
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = 1.0 / t18;
@@ -1952,10 +1909,8 @@ slider_crank_status slider_crank_projected_applied_force(const double q[3], cons
     const double t41 = t35 * t39;
     const double t42 = t31 * t39;
     const double t43 = -t42;
-    double rest = t40 - t40;
-    rest += t41 - t41;
-    rest += t43 - t43;
-    if (isnan(rest) != 0) {
+    double rest = (t40 - t40) * t41 * t43;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a_tilde[0] = t40;
@@ -1969,10 +1924,10 @@ slider_crank_status slider_crank_minimal_mass_matrix(const double q[3], const sl
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -1998,7 +1953,7 @@ slider_crank_status slider_crank_minimal_mass_matrix(const double q[3], const sl
     const double t19 = t18 * 7.099748146989106e-30;
     const double t3 = sine[0];
     const double t5 = sine[1];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         const double t20 = r * l;
         const double t21 = t6 * t3;
         const double t22 = t4 * t5;
@@ -2059,7 +2014,7 @@ slider_crank_status slider_crank_minimal_mass_matrix(const double q[3], const sl
     const double t68 = t45 + t67;
     const double t69 = t68 / t8;
     double rest = t69 - t69;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G_bar[0] = t69;
@@ -2071,10 +2026,10 @@ slider_crank_status slider_crank_minimal_coriolis_matrix(const double q[3], cons
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -2108,7 +2063,7 @@ slider_crank_status slider_crank_minimal_coriolis_matrix(const double q[3], cons
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = fabs(r);
@@ -2119,7 +2074,7 @@ slider_crank_status slider_crank_minimal_coriolis_matrix(const double q[3], cons
     const double t33 = 1.0 + t32;
     const double t34 = t25 * t33;
     const double t35 = t34 * 7.099748146989106e-30;
-    if (!(t8 > t35)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t35))) {
         if (!(t18 > t27)) {
             return SLIDER_CRANK_CONSTRAINT_RANK;
         }
@@ -2127,7 +2082,7 @@ slider_crank_status slider_crank_minimal_coriolis_matrix(const double q[3], cons
     }
     const double t36 = t15 / t7;
     const double t37 = 1.0 / t18;
-    const double t38 = t25 * t37;
+    const double t38 = t7 * t15;
     const double alpha_dot = qd[0];
     const double t39 = alpha_dot * t4;
     const double t40 = r * t39;
@@ -2138,71 +2093,67 @@ slider_crank_status slider_crank_minimal_coriolis_matrix(const double q[3], cons
     const double t44 = t42 * t43;
     const double t45 = t40 + t44;
     const double t46 = t38 * t45;
-    const double t47 = t7 * t21;
-    const double t48 = t9 * t19;
-    const double t49 = t47 - t48;
-    const double t50 = t49 * t37;
-    const double t51 = beta_dot * t5;
-    const double t52 = l * t51;
-    const double t53 = t52 * t43;
-    const double t54 = alpha_dot * t3;
-    const double t55 = r * t54;
-    const double t56 = t53 - t55;
-    const double t57 = t50 * t56;
-    const double t58 = t46 + t57;
-    const double t59 = t7 * t15;
-    const double t60 = t37 * t59;
-    const double t61 = t60 * t45;
-    const double t62 = t21 * t15;
-    const double t63 = t9 + t62;
-    const double t64 = t37 * t63;
-    const double t65 = t64 * t56;
-    const double t66 = t61 + t65;
-    const double t67 = t36 * t66;
-    const double t68 = t58 + t67;
+    const double t47 = t21 * t15;
+    const double t48 = t9 + t47;
+    const double t49 = beta_dot * t5;
+    const double t50 = l * t49;
+    const double t51 = t50 * t43;
+    const double t52 = alpha_dot * t3;
+    const double t53 = r * t52;
+    const double t54 = t51 - t53;
+    const double t55 = t48 * t54;
+    const double t56 = t46 + t55;
+    const double t57 = t37 * t56;
+    const double t58 = t36 * t57;
+    const double t59 = t25 * t45;
+    const double t60 = t7 * t21;
+    const double t61 = t9 * t19;
+    const double t62 = t60 - t61;
+    const double t63 = t62 * t54;
+    const double t64 = t59 + t63;
+    const double t65 = t37 * t64;
+    const double t66 = t58 + t65;
     const double m_s = p->m_s;
-    const double t69 = m_s * t68;
-    const double t70 = t36 * t69;
+    const double t67 = m_s * t66;
+    const double t68 = t36 * t67;
     const double m_rod = p->m_rod;
-    const double t71 = 0.5 * m_rod;
-    const double t72 = t71 * t15;
-    const double t73 = beta_dot * t72;
-    const double t74 = t43 * t73;
-    const double t75 = t43 * t66;
-    const double t76 = t9 * t15;
-    const double t77 = t37 * t76;
-    const double t78 = t77 * t45;
-    const double t79 = t19 * t15;
-    const double t80 = t7 + t79;
-    const double t81 = t37 * t80;
-    const double t82 = t81 * t56;
-    const double t83 = t78 - t82;
-    const double t84 = t75 - t83;
-    const double t85 = t4 * t6;
-    const double t86 = t3 * t5;
-    const double t87 = t85 - t86;
-    const double t88 = t11 * t87;
-    const double t89 = t71 * t88;
-    const double t90 = t84 * t89;
-    const double t91 = t74 - t90;
-    const double t92 = alpha_dot * t72;
+    const double t69 = 0.5 * m_rod;
+    const double t70 = t69 * t15;
+    const double t71 = beta_dot * t70;
+    const double t72 = alpha_dot * t70;
     const double J_rod = p->J_rod;
-    const double t93 = 0.5 * J_rod;
-    const double t94 = l * l;
-    const double t95 = m_rod * t94;
-    const double t96 = 0.125 * t95;
-    const double t97 = t93 + t96;
-    const double t98 = 2.0 * t97;
-    const double t99 = t98 * t84;
-    const double t100 = t92 + t99;
-    const double t101 = t43 * t100;
-    const double t102 = t91 + t101;
-    const double t103 = t70 + t102;
-    double rest = t103 - t103;
-    if (isnan(rest) != 0) {
+    const double t73 = 0.5 * J_rod;
+    const double t74 = l * l;
+    const double t75 = m_rod * t74;
+    const double t76 = 0.125 * t75;
+    const double t77 = t73 + t76;
+    const double t78 = 2.0 * t77;
+    const double t79 = t43 * t57;
+    const double t80 = t9 * t15;
+    const double t81 = t80 * t45;
+    const double t82 = t19 * t15;
+    const double t83 = t7 + t82;
+    const double t84 = t83 * t54;
+    const double t85 = t81 - t84;
+    const double t86 = t37 * t85;
+    const double t87 = t79 - t86;
+    const double t88 = t78 * t87;
+    const double t89 = t72 + t88;
+    const double t90 = t71 + t89;
+    const double t91 = t43 * t90;
+    const double t92 = t4 * t6;
+    const double t93 = t3 * t5;
+    const double t94 = t92 - t93;
+    const double t95 = t11 * t94;
+    const double t96 = t69 * t95;
+    const double t97 = t96 * t87;
+    const double t98 = t91 - t97;
+    const double t99 = t68 + t98;
+    double rest = t99 - t99;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    C_bar[0] = t103;
+    C_bar[0] = t99;
     return SLIDER_CRANK_OK;
 }
 
@@ -2211,10 +2162,10 @@ slider_crank_status slider_crank_minimal_potential_force(const double q[3], cons
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -2240,7 +2191,7 @@ slider_crank_status slider_crank_minimal_potential_force(const double q[3], cons
     const double t19 = t18 * 7.099748146989106e-30;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         const double t20 = r * l;
         const double t21 = t4 * t5;
         const double t22 = t6 * t3;
@@ -2263,31 +2214,31 @@ slider_crank_status slider_crank_minimal_potential_force(const double q[3], cons
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t36 = t4 * t6;
-    const double m_crank = p->m_crank;
-    const double t37 = 0.5 * m_crank;
     const double m_rod = p->m_rod;
-    const double t38 = m_rod + t37;
     const double g = p->g;
-    const double t39 = r * g;
-    const double t40 = t38 * t39;
-    const double t41 = t36 * t40;
-    const double t42 = t4 * t5;
-    const double t43 = t6 * t3;
-    const double t44 = t42 + t43;
+    const double t37 = m_rod * g;
+    const double m_crank = p->m_crank;
+    const double t38 = m_crank * g;
+    const double t39 = 0.5 * t38;
+    const double t40 = t37 + t39;
+    const double t41 = r * t40;
+    const double t42 = t36 * t41;
+    const double t43 = t4 * t5;
+    const double t44 = t6 * t3;
+    const double t45 = t43 + t44;
     const double s = q[2];
-    const double t45 = l - s;
-    const double t46 = t44 * t45;
+    const double t46 = l - s;
+    const double t47 = t45 * t46;
     const double k = p->k;
-    const double t47 = k * t46;
-    const double t48 = m_rod * g;
-    const double t49 = t48 * t36;
+    const double t48 = k * t47;
+    const double t49 = t37 * t36;
     const double t50 = 0.5 * t49;
-    const double t51 = t47 - t50;
+    const double t51 = t48 - t50;
     const double t52 = r * t51;
-    const double t53 = t41 + t52;
+    const double t53 = t42 + t52;
     const double t54 = t53 / t6;
     double rest = t54 - t54;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_bar[0] = t54;
@@ -2299,10 +2250,10 @@ slider_crank_status slider_crank_minimal_applied_force(const double q[3], const 
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -2328,7 +2279,7 @@ slider_crank_status slider_crank_minimal_applied_force(const double q[3], const 
     const double t19 = t18 * 7.099748146989106e-30;
     const double t3 = sine[0];
     const double t5 = sine[1];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         const double t20 = r * l;
         const double t21 = t6 * t3;
         const double t22 = t4 * t5;
@@ -2360,7 +2311,7 @@ slider_crank_status slider_crank_minimal_applied_force(const double q[3], const 
     const double t41 = s_dot * t40;
     const double t42 = t37 * t41;
     double rest = t42 - t42;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a_bar[0] = t42;
@@ -2379,10 +2330,10 @@ slider_crank_status slider_crank_admissible_velocity(const double q[3], const do
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -2416,7 +2367,7 @@ slider_crank_status slider_crank_admissible_velocity(const double q[3], const do
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = t13 + t12;
@@ -2463,10 +2414,8 @@ slider_crank_status slider_crank_admissible_velocity(const double q[3], const do
     const double t66 = l * t65;
     const double t67 = t64 - t66;
     const double t68 = t47 * t67;
-    double rest = t43 - t43;
-    rest += t46 - t46;
-    rest += t68 - t68;
-    if (isnan(rest) != 0) {
+    double rest = (t43 - t43) * t46 * t68;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     qd_admissible[0] = t43;
@@ -2480,10 +2429,10 @@ slider_crank_status slider_crank_admissible_acceleration(const double q[3], cons
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -2517,7 +2466,7 @@ slider_crank_status slider_crank_admissible_acceleration(const double q[3], cons
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = 1.0 / t18;
@@ -2531,283 +2480,229 @@ slider_crank_status slider_crank_admissible_acceleration(const double q[3], cons
     const double t34 = t30 + t33;
     const double t35 = t7 * t15;
     const double t36 = t28 * t35;
-    const double s_ddot = qdd[2];
-    const double t37 = s_ddot * t36;
-    const double t38 = t34 - t37;
     const double alpha_dot = qd[0];
-    const double t39 = alpha_dot * t29;
+    const double t37 = alpha_dot * t29;
     const double beta_dot = qd[1];
-    const double t40 = beta_dot * t32;
-    const double t41 = t39 + t40;
+    const double t38 = beta_dot * t32;
+    const double t39 = t37 + t38;
     const double s_dot = qd[2];
-    const double t42 = s_dot * t36;
-    const double t43 = t41 - t42;
-    const double t44 = t6 * t43;
-    const double t45 = r * t44;
-    const double t46 = t43 * t45;
-    const double t47 = alpha_dot * t32;
-    const double t48 = t10 * t28;
-    const double t49 = beta_dot * t48;
-    const double t50 = t47 + t49;
-    const double t51 = t9 * t15;
-    const double t52 = t28 * t51;
-    const double t53 = s_dot * t52;
-    const double t54 = t50 - t53;
-    const double t55 = t54 * t45;
-    const double t56 = t46 + t55;
-    const double t57 = t36 * t56;
-    const double t58 = t21 * t15;
-    const double t59 = t9 + t58;
-    const double t60 = t28 * t59;
-    const double t61 = t3 * t54;
-    const double t62 = l * t61;
-    const double t63 = t54 * t62;
-    const double t64 = t5 * t43;
-    const double t65 = r * t64;
-    const double t66 = t43 * t65;
-    const double t67 = t63 - t66;
-    const double t68 = t60 * t67;
-    const double t69 = t57 + t68;
-    const double t70 = t38 - t69;
-    const double t71 = alpha_ddot * t32;
-    const double t72 = beta_ddot * t48;
-    const double t73 = t71 + t72;
-    const double t74 = s_ddot * t52;
-    const double t75 = t73 - t74;
-    const double t76 = t52 * t56;
-    const double t77 = t19 * t15;
-    const double t78 = t7 + t77;
-    const double t79 = t28 * t78;
-    const double t80 = t79 * t67;
-    const double t81 = t76 - t80;
-    const double t82 = t75 - t81;
-    const double t83 = t16 * t28;
-    const double t84 = s_ddot * t83;
-    const double t85 = alpha_ddot * t36;
-    const double t86 = beta_ddot * t52;
-    const double t87 = t85 + t86;
-    const double t88 = t84 - t87;
-    const double t89 = t25 * t28;
-    const double t90 = t89 * t56;
-    const double t91 = t7 * t21;
-    const double t92 = t9 * t19;
-    const double t93 = t91 - t92;
-    const double t94 = t93 * t28;
-    const double t95 = t94 * t67;
-    const double t96 = t90 + t95;
-    const double t97 = t88 - t96;
-    double rest = t70 - t70;
-    rest += t82 - t82;
-    rest += t97 - t97;
-    if (isnan(rest) != 0) {
+    const double t40 = s_dot * t36;
+    const double t41 = t39 - t40;
+    const double t42 = t6 * t41;
+    const double t43 = r * t42;
+    const double t44 = alpha_dot * t32;
+    const double t45 = t10 * t28;
+    const double t46 = beta_dot * t45;
+    const double t47 = t44 + t46;
+    const double t48 = t9 * t15;
+    const double t49 = t28 * t48;
+    const double t50 = s_dot * t49;
+    const double t51 = t47 - t50;
+    const double t52 = t51 + t41;
+    const double t53 = t43 * t52;
+    const double s_ddot = qdd[2];
+    const double t54 = s_ddot + t53;
+    const double t55 = t36 * t54;
+    const double t56 = t34 - t55;
+    const double t57 = t21 * t15;
+    const double t58 = t9 + t57;
+    const double t59 = t28 * t58;
+    const double t60 = t3 * t51;
+    const double t61 = l * t60;
+    const double t62 = t51 * t61;
+    const double t63 = t5 * t41;
+    const double t64 = r * t63;
+    const double t65 = t41 * t64;
+    const double t66 = t62 - t65;
+    const double t67 = t59 * t66;
+    const double t68 = t56 - t67;
+    const double t69 = t19 * t15;
+    const double t70 = t7 + t69;
+    const double t71 = t28 * t70;
+    const double t72 = t71 * t66;
+    const double t73 = alpha_ddot * t32;
+    const double t74 = beta_ddot * t45;
+    const double t75 = t73 + t74;
+    const double t76 = t49 * t54;
+    const double t77 = t75 - t76;
+    const double t78 = t72 + t77;
+    const double t79 = s_ddot * t16;
+    const double t80 = t25 * t53;
+    const double t81 = t79 - t80;
+    const double t82 = t7 * t21;
+    const double t83 = t9 * t19;
+    const double t84 = t82 - t83;
+    const double t85 = t84 * t66;
+    const double t86 = t81 - t85;
+    const double t87 = t28 * t86;
+    const double t88 = alpha_ddot * t36;
+    const double t89 = t87 - t88;
+    const double t90 = beta_ddot * t49;
+    const double t91 = t89 - t90;
+    double rest = (t68 - t68) * t78 * t91;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd_admissible[0] = t70;
-    qdd_admissible[1] = t82;
-    qdd_admissible[2] = t97;
+    qdd_admissible[0] = t68;
+    qdd_admissible[1] = t78;
+    qdd_admissible[2] = t91;
     return SLIDER_CRANK_OK;
 }
 
 slider_crank_status slider_crank_projected_configuration(const double q[3], const slider_crank_params *p, double q_projected[3]) {
-    const double alpha = q[0];
     const double beta = q[1];
-    const double t1 = alpha + beta;
+    const double t1 = fabs(beta);
+    const double alpha = q[0];
     const double t2 = fabs(alpha);
-    const double t3 = fabs(beta);
-    const double t4 = fabs(t1);
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t3)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t4)) {
-        return SLIDER_CRANK_ANGLE_RANGE;
-    }
-    const double angle[4] = {alpha, beta, t1, t1};
-    double sine[4];
-    double cosine[4];
-    slider_crank_sincos_group(3, angle, sine, cosine);
+    const double angle[2] = {beta, alpha};
+    double sine[2];
+    double cosine[2];
+    slider_crank_sincos_group(2, angle, sine, cosine);
     const double l = p->l;
-    const double t8 = cosine[1];
-    const double t11 = l * t8;
-    const double t12 = t11 * t11;
+    const double t4 = cosine[0];
+    const double t7 = l * t4;
+    const double t8 = t7 * t7;
     const double r = p->r;
-    const double t6 = cosine[0];
-    const double t13 = r * t6;
-    const double t14 = t13 * t13;
-    const double t15 = r * l;
-    const double t7 = sine[1];
-    const double t16 = t6 * t7;
-    const double t5 = sine[0];
-    const double t17 = t8 * t5;
-    const double t18 = t16 + t17;
-    const double t19 = t15 * t18;
+    const double t6 = cosine[1];
+    const double t9 = r * t6;
+    const double t10 = t9 * t9;
+    const double t11 = r * l;
+    const double t3 = sine[0];
+    const double t12 = t6 * t3;
+    const double t5 = sine[1];
+    const double t13 = t4 * t5;
+    const double t14 = t12 + t13;
+    const double t15 = t11 * t14;
+    const double t16 = t15 * t15;
+    const double t17 = t10 + t16;
+    const double t18 = t8 + t17;
+    const double t19 = r * t5;
     const double t20 = t19 * t19;
-    const double t21 = t14 + t20;
-    const double t22 = t12 + t21;
-    const double t23 = r * t5;
-    const double t24 = t23 * t23;
-    const double t25 = l * t7;
-    const double t26 = t25 * t25;
-    const double t27 = t24 + t26;
-    const double t28 = 1.0 + t27;
-    const double t29 = t14 + t12;
-    const double t30 = t28 * t29;
-    const double t31 = t30 * 7.099748146989106e-30;
-    if (!(t22 > t31)) {
+    const double t21 = l * t3;
+    const double t22 = t21 * t21;
+    const double t23 = t20 + t22;
+    const double t24 = 1.0 + t23;
+    const double t25 = t10 + t8;
+    const double t26 = t24 * t25;
+    const double t27 = t26 * 7.099748146989106e-30;
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const double t32 = t23 - t25;
+    const double t28 = 1.0 / t18;
+    const double t29 = t19 - t21;
     const double e = p->e;
-    const double t33 = t32 - e;
-    const double t34 = 1.0 / t22;
-    const double t35 = t25 * t19;
-    const double t36 = t13 + t35;
-    const double t37 = t34 * t36;
-    const double t38 = t33 * t37;
-    const double t39 = t13 + t11;
+    const double t30 = t29 - e;
+    const double t31 = t21 * t15;
+    const double t32 = t9 + t31;
+    const double t33 = t30 * t32;
+    const double t34 = t9 + t7;
     const double s = q[2];
-    const double t40 = t39 - s;
-    const double t41 = t11 * t19;
-    const double t42 = t34 * t41;
-    const double t43 = t40 * t42;
-    const double t44 = t38 - t43;
-    const double t45 = alpha - t44;
-    const double t46 = fabs(t45);
-    if (!(100000.0 >= t46)) {
+    const double t35 = t34 - s;
+    const double t36 = t7 * t15;
+    const double t37 = t35 * t36;
+    const double t38 = t33 - t37;
+    const double t39 = t28 * t38;
+    const double t40 = alpha - t39;
+    const double t41 = t9 * t15;
+    const double t42 = t35 * t41;
+    const double t43 = t19 * t15;
+    const double t44 = t7 + t43;
+    const double t45 = t30 * t44;
+    const double t46 = t42 + t45;
+    const double t47 = t28 * t46;
+    const double t48 = beta + t47;
+    const double t49 = t40 + t48;
+    const double t50 = fabs(t49);
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t50))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const double t47 = t13 * t19;
-    const double t48 = t34 * t47;
-    const double t49 = t40 * t48;
-    const double t50 = t23 * t19;
-    const double t51 = t11 + t50;
-    const double t52 = t34 * t51;
-    const double t53 = t33 * t52;
-    const double t54 = t49 + t53;
-    const double t55 = beta + t54;
-    const double t56 = fabs(t55);
-    if (!(100000.0 >= t56)) {
+    const double t51 = fabs(t40);
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t51))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const double t9 = sine[2];
-    const double t57 = t9 * t15;
-    const double t58 = t57 * t57;
-    const double t59 = t58 + t14;
-    const double t60 = t59 + t12;
-    const double t61 = 1.0 / t60;
-    const double t62 = t13 * t57;
-    const double t63 = t61 * t62;
-    const double t64 = t40 * t63;
-    const double t65 = t23 * t57;
-    const double t66 = t11 + t65;
-    const double t67 = t61 * t66;
-    const double t68 = t33 * t67;
-    const double t69 = t64 + t68;
-    const double t70 = beta + t69;
-    const double t71 = fabs(t70);
-    if (!(100000.0 >= t71)) {
+    const double t52 = fabs(t48);
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t52))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const double t72 = t25 * t57;
-    const double t73 = t13 + t72;
-    const double t74 = t61 * t73;
-    const double t75 = t33 * t74;
-    const double t76 = t11 * t57;
-    const double t77 = t61 * t76;
-    const double t78 = t40 * t77;
-    const double t79 = t75 - t78;
-    const double t80 = alpha - t79;
-    const double t81 = fabs(t80);
-    if (!(100000.0 >= t81)) {
-        return SLIDER_CRANK_ANGLE_RANGE;
-    }
-    double t82;
-    double t83;
-    slider_crank_sincos(t55, &t82, &t83);
-    const double t84 = l * t83;
-    const double t85 = t84 * t84;
-    double t86;
-    double t87;
-    slider_crank_sincos(t45, &t86, &t87);
-    const double t88 = r * t87;
-    const double t89 = t88 * t88;
-    double t90;
-    double t91;
-    slider_crank_sincos(t70, &t90, &t91);
-    double t92;
-    double t93;
-    slider_crank_sincos(t80, &t92, &t93);
-    const double t94 = t90 * t93;
-    const double t95 = t92 * t91;
-    const double t96 = t94 + t95;
-    const double t97 = t15 * t96;
-    const double t98 = t97 * t97;
-    const double t99 = t89 + t98;
-    const double t100 = t85 + t99;
-    const double t101 = t89 + t85;
-    const double t102 = r * t86;
-    const double t103 = t102 * t102;
-    const double t104 = l * t82;
-    const double t105 = t104 * t104;
-    const double t106 = t103 + t105;
-    const double t107 = 1.0 + t106;
-    const double t108 = t101 * t107;
-    const double t109 = 7.099748146989106e-30 * t108;
-    if (!(t100 > t109)) {
+    double t53;
+    double t54;
+    slider_crank_sincos(t49, &t53, &t54);
+    const double t55 = t11 * t53;
+    const double t56 = t55 * t55;
+    double t57;
+    double t58;
+    slider_crank_sincos(t40, &t57, &t58);
+    const double t59 = r * t58;
+    const double t60 = t59 * t59;
+    const double t61 = t56 + t60;
+    double t62;
+    double t63;
+    slider_crank_sincos(t48, &t62, &t63);
+    const double t64 = l * t63;
+    const double t65 = t64 * t64;
+    const double t66 = t61 + t65;
+    const double t67 = t60 + t65;
+    const double t68 = r * t57;
+    const double t69 = t68 * t68;
+    const double t70 = l * t62;
+    const double t71 = t70 * t70;
+    const double t72 = t69 + t71;
+    const double t73 = 1.0 + t72;
+    const double t74 = t67 * t73;
+    const double t75 = 7.099748146989106e-30 * t74;
+    if (SLIDER_CRANK_RARELY(!(t66 > t75))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const double t110 = t102 - t104;
-    const double t111 = t110 - e;
-    const double t112 = 1.0 / t100;
-    const double t113 = t104 * t97;
-    const double t114 = t88 + t113;
-    const double t115 = t112 * t114;
-    const double t116 = t111 * t115;
-    const double t117 = t88 + t84;
-    const double t118 = t11 * t25;
-    const double t119 = t13 * t23;
-    const double t120 = t118 - t119;
-    const double t121 = t120 * t34;
-    const double t122 = t33 * t121;
-    const double t123 = t29 * t34;
-    const double t124 = t40 * t123;
-    const double t125 = t122 - t124;
-    const double t126 = s - t125;
-    const double t127 = t117 - t126;
-    const double t128 = t84 * t97;
-    const double t129 = t112 * t128;
-    const double t130 = t127 * t129;
-    const double t131 = t116 - t130;
-    const double t132 = t45 - t131;
-    const double t133 = t88 * t97;
-    const double t134 = t112 * t133;
-    const double t135 = t127 * t134;
-    const double t136 = t102 * t97;
-    const double t137 = t84 + t136;
-    const double t138 = t112 * t137;
-    const double t139 = t111 * t138;
-    const double t140 = t135 + t139;
-    const double t141 = t55 + t140;
-    const double t142 = t104 * t84;
-    const double t143 = t102 * t88;
-    const double t144 = t142 - t143;
-    const double t145 = t144 * t112;
-    const double t146 = t111 * t145;
-    const double t147 = t101 * t112;
-    const double t148 = t127 * t147;
-    const double t149 = t146 - t148;
-    const double t150 = t126 - t149;
-    double rest = t132 - t132;
-    rest += t141 - t141;
-    rest += t150 - t150;
-    if (isnan(rest) != 0) {
+    const double t76 = 1.0 / t66;
+    const double t77 = t68 - t70;
+    const double t78 = t77 - e;
+    const double t79 = t55 * t70;
+    const double t80 = t59 + t79;
+    const double t81 = t78 * t80;
+    const double t82 = t59 + t64;
+    const double t83 = t7 * t21;
+    const double t84 = t9 * t19;
+    const double t85 = t83 - t84;
+    const double t86 = t30 * t85;
+    const double t87 = t35 * t25;
+    const double t88 = t86 - t87;
+    const double t89 = t28 * t88;
+    const double t90 = s - t89;
+    const double t91 = t82 - t90;
+    const double t92 = t55 * t64;
+    const double t93 = t91 * t92;
+    const double t94 = t81 - t93;
+    const double t95 = t76 * t94;
+    const double t96 = t40 - t95;
+    const double t97 = t55 * t59;
+    const double t98 = t91 * t97;
+    const double t99 = t55 * t68;
+    const double t100 = t64 + t99;
+    const double t101 = t78 * t100;
+    const double t102 = t98 + t101;
+    const double t103 = t76 * t102;
+    const double t104 = t48 + t103;
+    const double t105 = t64 * t70;
+    const double t106 = t59 * t68;
+    const double t107 = t105 - t106;
+    const double t108 = t78 * t107;
+    const double t109 = t91 * t67;
+    const double t110 = t108 - t109;
+    const double t111 = t76 * t110;
+    const double t112 = t90 - t111;
+    double rest = (t96 - t96) * t104 * t112;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    q_projected[0] = t132;
-    q_projected[1] = t141;
-    q_projected[2] = t150;
+    q_projected[0] = t96;
+    q_projected[1] = t104;
+    q_projected[2] = t112;
     return SLIDER_CRANK_OK;
 }
 
@@ -2816,10 +2711,10 @@ slider_crank_status slider_crank_inverse_dynamics(const double q[3], const doubl
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -2834,7 +2729,7 @@ slider_crank_status slider_crank_inverse_dynamics(const double q[3], const doubl
     const double t10 = t9 * 2.6645352591003757e-15;
     const double r = p->r;
     const double t4 = cosine[0];
-    if (!(t8 > t10)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t10))) {
         const double t11 = r * t4;
         const double t12 = t11 * t11;
         const double t13 = t7 * t7;
@@ -2884,10 +2779,10 @@ slider_crank_status slider_crank_inverse_dynamics(const double q[3], const doubl
     const double t44 = t39 - t43;
     const double t45 = t15 * t44;
     const double m_crank = p->m_crank;
-    const double t46 = 0.5 * m_crank;
-    const double t47 = m_rod + t46;
-    const double t48 = r * g;
-    const double t49 = t47 * t48;
+    const double t46 = m_crank * g;
+    const double t47 = 0.5 * t46;
+    const double t48 = t40 + t47;
+    const double t49 = r * t48;
     const double t50 = t4 * t49;
     const double beta_dot = qd[1];
     const double t51 = beta_dot * beta_dot;
@@ -2925,7 +2820,7 @@ slider_crank_status slider_crank_inverse_dynamics(const double q[3], const doubl
     const double t76 = t68 - t75;
     const double t77 = t76 / t7;
     double rest = t77 - t77;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     u[0] = t77;
@@ -2948,7 +2843,7 @@ slider_crank_status slider_crank_actuator_velocity(const double q[3], const doub
     (void)p;
     const double alpha_dot = qd[0];
     double rest = alpha_dot - alpha_dot;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     nu[0] = alpha_dot;
@@ -2960,10 +2855,10 @@ slider_crank_status slider_crank_actuator_mass_matrix(const double q[3], const s
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -2989,7 +2884,7 @@ slider_crank_status slider_crank_actuator_mass_matrix(const double q[3], const s
     const double t19 = t18 * 7.099748146989106e-30;
     const double t3 = sine[0];
     const double t5 = sine[1];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         const double t20 = r * l;
         const double t21 = t6 * t3;
         const double t22 = t4 * t5;
@@ -3050,7 +2945,7 @@ slider_crank_status slider_crank_actuator_mass_matrix(const double q[3], const s
     const double t68 = t45 + t67;
     const double t69 = t68 / t8;
     double rest = t69 - t69;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G_nu[0] = t69;
@@ -3062,10 +2957,10 @@ slider_crank_status slider_crank_actuator_bias(const double q[3], const double q
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -3079,151 +2974,144 @@ slider_crank_status slider_crank_actuator_bias(const double q[3], const double q
     const double r = p->r;
     const double t6 = cosine[1];
     const double t9 = r * t6;
-    const double t10 = t6 * t9;
+    const double t10 = t9 * t9;
+    const double t11 = r * l;
     const double t3 = sine[0];
-    const double t11 = t6 * t3;
+    const double t12 = t6 * t3;
     const double t5 = sine[1];
-    const double t12 = t4 * t5;
-    const double t13 = t11 + t12;
-    const double t14 = r * l;
-    const double t15 = l * t14;
-    const double t16 = t13 * t15;
-    const double t17 = t13 * t16;
-    const double t18 = t10 + t17;
-    const double t19 = r * t18;
-    const double t20 = t8 + t19;
-    const double t21 = r * t5;
+    const double t13 = t4 * t5;
+    const double t14 = t12 + t13;
+    const double t15 = t11 * t14;
+    const double t16 = t15 * t15;
+    const double t17 = t10 + t16;
+    const double t18 = t8 + t17;
+    const double t19 = r * t5;
+    const double t20 = t19 * t19;
+    const double t21 = l * t3;
     const double t22 = t21 * t21;
-    const double t23 = l * t3;
-    const double t24 = t23 * t23;
-    const double t25 = t22 + t24;
-    const double t26 = 1.0 + t25;
-    const double t27 = t9 * t9;
-    const double t28 = t27 + t8;
-    const double t29 = t26 * t28;
-    const double t30 = t29 * 7.099748146989106e-30;
-    if (!(t20 > t30)) {
+    const double t23 = t20 + t22;
+    const double t24 = 1.0 + t23;
+    const double t25 = t10 + t8;
+    const double t26 = t24 * t25;
+    const double t27 = t26 * 7.099748146989106e-30;
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const double t31 = fabs(r);
-    const double t32 = t31 * t31;
-    const double t33 = fabs(l);
-    const double t34 = t33 * t33;
-    const double t35 = t32 + t34;
-    const double t36 = 1.0 + t35;
-    const double t37 = t28 * t36;
-    const double t38 = t37 * 7.099748146989106e-30;
-    if (!(t8 > t38)) {
-        const double t39 = t14 * t13;
-        const double t40 = t39 * t39;
-        const double t41 = t27 + t40;
-        const double t42 = t8 + t41;
-        if (!(t42 > t30)) {
+    const double t28 = fabs(r);
+    const double t29 = t28 * t28;
+    const double t30 = fabs(l);
+    const double t31 = t30 * t30;
+    const double t32 = t29 + t31;
+    const double t33 = 1.0 + t32;
+    const double t34 = t25 * t33;
+    const double t35 = t34 * 7.099748146989106e-30;
+    if (SLIDER_CRANK_RARELY(!(t8 > t35))) {
+        if (!(t18 > t27)) {
             return SLIDER_CRANK_CONSTRAINT_RANK;
         }
         return SLIDER_CRANK_ACTUATION_RANK;
     }
-    const double t43 = t6 * t4;
-    const double t44 = t4 * t43;
-    const double t45 = t4 * t44;
-    const double t46 = t4 * t45;
-    const double t47 = l * l;
-    const double t48 = l * t47;
-    const double m_crank = p->m_crank;
-    const double t49 = 0.5 * m_crank;
+    const double t36 = t6 * t4;
+    const double t37 = t4 * t36;
+    const double t38 = t4 * t37;
+    const double t39 = t4 * t38;
+    const double t40 = l * l;
+    const double t41 = l * t40;
     const double m_rod = p->m_rod;
-    const double t50 = m_rod + t49;
     const double g = p->g;
-    const double t51 = r * g;
-    const double t52 = t50 * t51;
-    const double t53 = t48 * t52;
-    const double t54 = t46 * t53;
-    const double t55 = r * r;
+    const double t42 = m_rod * g;
+    const double m_crank = p->m_crank;
+    const double t43 = m_crank * g;
+    const double t44 = 0.5 * t43;
+    const double t45 = t42 + t44;
+    const double t46 = r * t45;
+    const double t47 = t41 * t46;
+    const double t48 = t39 * t47;
+    const double t49 = r * r;
     const double J_rod = p->J_rod;
-    const double t56 = 0.5 * J_rod;
-    const double t57 = m_rod * t47;
-    const double t58 = 0.125 * t57;
-    const double t59 = t56 + t58;
-    const double t60 = t55 * t59;
+    const double t50 = 0.5 * J_rod;
+    const double t51 = m_rod * t40;
+    const double t52 = 0.125 * t51;
+    const double t53 = t50 + t52;
+    const double t54 = t49 * t53;
     const double alpha_dot = qd[0];
-    const double t61 = alpha_dot * alpha_dot;
-    const double t62 = t6 * t61;
-    const double t63 = t6 * t62;
-    const double t64 = t6 * t63;
-    const double t65 = t3 * t64;
-    const double t66 = t60 * t65;
-    const double t67 = 2.0 * t66;
+    const double t55 = alpha_dot * alpha_dot;
+    const double t56 = t6 * t55;
+    const double t57 = t6 * t56;
+    const double t58 = t6 * t57;
+    const double t59 = t3 * t58;
+    const double t60 = t54 * t59;
+    const double t61 = 2.0 * t60;
     const double m_s = p->m_s;
-    const double t68 = m_s * t55;
-    const double t69 = t68 * t65;
-    const double t70 = 0.5 * m_rod;
-    const double t71 = m_s + t70;
-    const double t72 = t5 * t63;
-    const double t73 = t71 * t72;
-    const double t74 = t55 * t73;
-    const double t75 = alpha_dot * t6;
+    const double t62 = m_s * t49;
+    const double t63 = t62 * t59;
+    const double t64 = 0.5 * m_rod;
+    const double t65 = m_s + t64;
+    const double t66 = t5 * t57;
+    const double t67 = t65 * t66;
+    const double t68 = t49 * t67;
+    const double t69 = alpha_dot * t6;
     const double d = p->d;
-    const double t76 = d * t6;
-    const double t77 = alpha_dot * t5;
-    const double t78 = m_s * t77;
-    const double t79 = t76 - t78;
-    const double t80 = t75 * t79;
-    const double t81 = r * t80;
+    const double t70 = d * t6;
+    const double t71 = alpha_dot * t5;
+    const double t72 = m_s * t71;
+    const double t73 = t70 - t72;
+    const double t74 = t69 * t73;
+    const double t75 = r * t74;
     const double s = q[2];
-    const double t82 = l - s;
-    const double t83 = t13 * t82;
+    const double t76 = l - s;
+    const double t77 = t14 * t76;
     const double k = p->k;
-    const double t84 = k * t83;
-    const double t85 = m_rod * g;
-    const double t86 = t85 * t43;
-    const double t87 = 0.5 * t86;
-    const double t88 = t84 - t87;
-    const double t89 = t5 * t3;
-    const double t90 = t43 - t89;
+    const double t78 = k * t77;
+    const double t79 = t42 * t36;
+    const double t80 = 0.5 * t79;
+    const double t81 = t78 - t80;
+    const double t82 = t5 * t3;
+    const double t83 = t36 - t82;
+    const double t84 = t6 * t83;
+    const double t85 = 2.0 * t84;
+    const double t86 = t4 - t85;
+    const double t87 = d * t86;
+    const double t88 = 2.0 * m_s;
+    const double t89 = m_rod + t88;
+    const double t90 = t14 * t89;
     const double t91 = t6 * t90;
-    const double t92 = 2.0 * t91;
-    const double t93 = t4 - t92;
-    const double t94 = d * t93;
-    const double t95 = 2.0 * m_s;
-    const double t96 = m_rod + t95;
-    const double t97 = t13 * t96;
-    const double t98 = t6 * t97;
-    const double t99 = t3 * t71;
-    const double t100 = t98 - t99;
-    const double t101 = alpha_dot * t100;
-    const double t102 = t94 + t101;
-    const double t103 = r * t102;
-    const double t104 = alpha_dot * t103;
-    const double t105 = t88 + t104;
-    const double t106 = t4 * t105;
-    const double t107 = t81 + t106;
-    const double t108 = t4 * t107;
-    const double t109 = l * t108;
-    const double t110 = t74 + t109;
-    const double t111 = t4 * t110;
-    const double t112 = t69 + t111;
-    const double t113 = l * t112;
-    const double t114 = r * t59;
-    const double t115 = t4 * t62;
-    const double t116 = t4 * t115;
-    const double t117 = t5 * t116;
-    const double t118 = t114 * t117;
-    const double t119 = 2.0 * t118;
-    const double t120 = t113 - t119;
-    const double t121 = l * t120;
-    const double t122 = t67 + t121;
-    const double t123 = r * t122;
-    const double t124 = t54 + t123;
-    const double t125 = t4 * t48;
-    const double t126 = t4 * t125;
-    const double t127 = t4 * t126;
-    const double t128 = t4 * t127;
-    const double t129 = t124 / t128;
-    double rest = t129 - t129;
-    if (isnan(rest) != 0) {
+    const double t92 = t3 * t65;
+    const double t93 = t91 - t92;
+    const double t94 = alpha_dot * t93;
+    const double t95 = t87 + t94;
+    const double t96 = r * t95;
+    const double t97 = alpha_dot * t96;
+    const double t98 = t81 + t97;
+    const double t99 = t4 * t98;
+    const double t100 = t75 + t99;
+    const double t101 = t4 * t100;
+    const double t102 = l * t101;
+    const double t103 = t68 + t102;
+    const double t104 = t4 * t103;
+    const double t105 = t63 + t104;
+    const double t106 = l * t105;
+    const double t107 = r * t53;
+    const double t108 = t4 * t56;
+    const double t109 = t4 * t108;
+    const double t110 = t5 * t109;
+    const double t111 = t107 * t110;
+    const double t112 = 2.0 * t111;
+    const double t113 = t106 - t112;
+    const double t114 = l * t113;
+    const double t115 = t61 + t114;
+    const double t116 = r * t115;
+    const double t117 = t48 + t116;
+    const double t118 = t4 * t41;
+    const double t119 = t4 * t118;
+    const double t120 = t4 * t119;
+    const double t121 = t4 * t120;
+    const double t122 = t117 / t121;
+    double rest = t122 - t122;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    bias_nu[0] = t129;
+    bias_nu[0] = t122;
     return SLIDER_CRANK_OK;
 }
 
@@ -3232,10 +3120,10 @@ slider_crank_status slider_crank_forward_dynamics(const double q[3], const doubl
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -3269,7 +3157,7 @@ slider_crank_status slider_crank_forward_dynamics(const double q[3], const doubl
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = t4 * t4;
@@ -3329,125 +3217,118 @@ slider_crank_status slider_crank_forward_dynamics(const double q[3], const doubl
     const double t78 = t75 + t77;
     const double t79 = t66 + t78;
     const double t80 = 2.6645352591003757e-15 * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const double g = p->g;
-    const double t81 = m_rod * g;
+    const double t81 = r * t53;
     const double t82 = r * t81;
-    const double m_crank = p->m_crank;
-    const double t83 = r * m_crank;
-    const double t84 = g * t83;
-    const double t85 = 0.5 * t84;
-    const double t86 = t82 + t85;
-    const double t87 = t6 * t86;
-    const double beta_dot = qd[1];
-    const double t88 = beta_dot * beta_dot;
-    const double t89 = m_rod * t15;
-    const double t90 = t88 * t89;
-    const double t91 = 0.5 * t90;
-    const double t92 = t87 + t91;
-    const double crank = u[0];
-    const double t93 = crank - t92;
-    const double t94 = t7 * t93;
-    const double t95 = l * t81;
-    const double t96 = t4 * t95;
-    const double t97 = 0.5 * t96;
-    const double alpha_dot = qd[0];
-    const double t98 = alpha_dot * alpha_dot;
-    const double t99 = t98 * t89;
-    const double t100 = 0.5 * t99;
-    const double t101 = t97 - t100;
-    const double t102 = t9 * t101;
-    const double t103 = t94 + t102;
+    const double t83 = t31 + t82;
+    const double t84 = 1.0 / t83;
     const double s = q[2];
-    const double t104 = s - l;
+    const double t85 = s - l;
     const double k = p->k;
-    const double t105 = k * t104;
+    const double t86 = k * t85;
     const double s_dot = qd[2];
     const double d = p->d;
-    const double t106 = s_dot * d;
-    const double t107 = t105 + t106;
-    const double t108 = t15 * t107;
-    const double t109 = t103 + t108;
+    const double t87 = s_dot * d;
+    const double t88 = t86 + t87;
+    const double t89 = t15 * t88;
+    const double g = p->g;
+    const double t90 = m_rod * g;
+    const double t91 = l * t90;
+    const double t92 = t4 * t91;
+    const double t93 = 0.5 * t92;
+    const double t94 = 0.5 * m_rod;
+    const double alpha_dot = qd[0];
+    const double t95 = alpha_dot * alpha_dot;
+    const double t96 = t95 * t15;
+    const double t97 = t94 * t96;
+    const double t98 = t93 - t97;
+    const double t99 = t9 * t98;
+    const double m_crank = p->m_crank;
+    const double t100 = m_crank * g;
+    const double t101 = 0.5 * t100;
+    const double t102 = t90 + t101;
+    const double t103 = r * t102;
+    const double t104 = t6 * t103;
+    const double beta_dot = qd[1];
+    const double t105 = beta_dot * beta_dot;
+    const double t106 = t105 * t15;
+    const double t107 = t94 * t106;
+    const double t108 = t104 + t107;
+    const double crank = u[0];
+    const double t109 = crank - t108;
     const double t110 = t7 * t109;
-    const double t111 = r * t53;
-    const double t112 = r * t111;
-    const double t113 = t31 + t112;
-    const double t114 = 1.0 / t113;
-    const double t115 = t110 * t114;
-    const double t116 = m_s * t15;
-    const double t117 = alpha_dot * t6;
-    const double t118 = r * t117;
-    const double t119 = alpha_dot * t118;
-    const double t120 = beta_dot * t4;
-    const double t121 = l * t120;
-    const double t122 = beta_dot * t121;
-    const double t123 = t119 + t122;
-    const double t124 = t7 * t123;
-    const double t125 = beta_dot * t3;
-    const double t126 = l * t125;
-    const double t127 = beta_dot * t126;
-    const double t128 = alpha_dot * t5;
-    const double t129 = r * t128;
-    const double t130 = alpha_dot * t129;
-    const double t131 = t127 - t130;
-    const double t132 = t21 * t131;
-    const double t133 = t124 + t132;
-    const double t134 = t116 * t133;
-    const double t135 = t6 * t4;
-    const double t136 = t5 * t3;
-    const double t137 = t135 - t136;
-    const double t138 = t11 * t137;
-    const double t139 = m_rod * t138;
-    const double t140 = t7 * t139;
-    const double t141 = 0.5 * t140;
-    const double t142 = 0.5 * J_rod;
-    const double t143 = m_rod * t29;
-    const double t144 = 0.125 * t143;
-    const double t145 = t142 + t144;
-    const double t146 = t9 * t145;
-    const double t147 = 2.0 * t146;
-    const double t148 = t141 - t147;
-    const double t149 = t148 * t131;
-    const double t150 = t134 - t149;
-    const double t151 = t150 * t114;
-    const double t152 = t115 - t151;
-    const double t153 = t9 * t109;
-    const double t154 = t153 * t114;
-    const double t155 = t9 * t123;
-    const double t156 = t19 * t131;
-    const double t157 = t155 - t156;
-    const double t158 = t116 * t157;
-    const double t159 = r * m_rod;
-    const double t160 = t6 * t137;
-    const double t161 = 0.5 * t160;
-    const double t162 = t161 - t4;
-    const double t163 = t159 * t162;
-    const double t164 = r * t163;
-    const double t165 = J_crank * t4;
-    const double t166 = t164 - t165;
-    const double t167 = l * t166;
-    const double t168 = t131 * t167;
-    const double t169 = t158 + t168;
-    const double t170 = t169 * t114;
-    const double t171 = t154 - t170;
-    const double t172 = t148 * t157;
-    const double t173 = t133 * t167;
-    const double t174 = t172 + t173;
-    const double t175 = t174 * t114;
-    const double t176 = t15 * t109;
-    const double t177 = t176 * t114;
-    const double t178 = t175 - t177;
-    double rest = t152 - t152;
-    rest += t171 - t171;
-    rest += t178 - t178;
-    if (isnan(rest) != 0) {
+    const double t111 = t99 + t110;
+    const double t112 = t89 + t111;
+    const double t113 = t7 * t112;
+    const double t114 = m_s * t15;
+    const double t115 = alpha_dot * t6;
+    const double t116 = r * t115;
+    const double t117 = alpha_dot * t116;
+    const double t118 = beta_dot * t4;
+    const double t119 = l * t118;
+    const double t120 = beta_dot * t119;
+    const double t121 = t117 + t120;
+    const double t122 = t7 * t121;
+    const double t123 = beta_dot * t3;
+    const double t124 = l * t123;
+    const double t125 = beta_dot * t124;
+    const double t126 = alpha_dot * t5;
+    const double t127 = r * t126;
+    const double t128 = alpha_dot * t127;
+    const double t129 = t125 - t128;
+    const double t130 = t21 * t129;
+    const double t131 = t122 + t130;
+    const double t132 = t114 * t131;
+    const double t133 = t6 * t4;
+    const double t134 = t5 * t3;
+    const double t135 = t133 - t134;
+    const double t136 = t11 * t135;
+    const double t137 = t7 * t136;
+    const double t138 = t94 * t137;
+    const double t139 = 0.5 * J_rod;
+    const double t140 = m_rod * t29;
+    const double t141 = 0.125 * t140;
+    const double t142 = t139 + t141;
+    const double t143 = t9 * t142;
+    const double t144 = 2.0 * t143;
+    const double t145 = t138 - t144;
+    const double t146 = t129 * t145;
+    const double t147 = t132 - t146;
+    const double t148 = t113 - t147;
+    const double t149 = t84 * t148;
+    const double t150 = t9 * t112;
+    const double t151 = t9 * t121;
+    const double t152 = t19 * t129;
+    const double t153 = t151 - t152;
+    const double t154 = t114 * t153;
+    const double t155 = r * m_rod;
+    const double t156 = t6 * t135;
+    const double t157 = 0.5 * t156;
+    const double t158 = t157 - t4;
+    const double t159 = t155 * t158;
+    const double t160 = r * t159;
+    const double t161 = J_crank * t4;
+    const double t162 = t160 - t161;
+    const double t163 = l * t162;
+    const double t164 = t129 * t163;
+    const double t165 = t154 + t164;
+    const double t166 = t150 - t165;
+    const double t167 = t84 * t166;
+    const double t168 = t131 * t163;
+    const double t169 = t153 * t145;
+    const double t170 = t168 + t169;
+    const double t171 = t15 * t112;
+    const double t172 = t170 - t171;
+    const double t173 = t84 * t172;
+    double rest = (t149 - t149) * t167 * t173;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd[0] = t152;
-    qdd[1] = t171;
-    qdd[2] = t178;
+    qdd[0] = t149;
+    qdd[1] = t167;
+    qdd[2] = t173;
     return SLIDER_CRANK_OK;
 }
 
@@ -3456,10 +3337,10 @@ slider_crank_status slider_crank_multipliers(const double q[3], const double qd[
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -3493,7 +3374,7 @@ slider_crank_status slider_crank_multipliers(const double q[3], const double qd[
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = t4 * t4;
@@ -3553,144 +3434,141 @@ slider_crank_status slider_crank_multipliers(const double q[3], const double qd[
     const double t78 = t75 + t77;
     const double t79 = t66 + t78;
     const double t80 = 2.6645352591003757e-15 * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
     const double t81 = 1.0 / t55;
-    const double t82 = r * m_rod;
+    const double t82 = 0.5 * m_rod;
     const double t83 = t6 * t4;
     const double t84 = t5 * t3;
     const double t85 = t83 - t84;
-    const double t86 = t6 * t85;
-    const double t87 = 0.5 * t86;
-    const double t88 = t87 - t4;
-    const double t89 = t82 * t88;
-    const double t90 = r * t89;
-    const double t91 = J_crank * t4;
-    const double t92 = t90 - t91;
-    const double t93 = l * t92;
+    const double t86 = t11 * t85;
+    const double t87 = t7 * t86;
+    const double t88 = t82 * t87;
+    const double t89 = 0.5 * J_rod;
+    const double t90 = m_rod * t29;
+    const double t91 = 0.125 * t90;
+    const double t92 = t89 + t91;
+    const double t93 = t9 * t92;
+    const double t94 = 2.0 * t93;
+    const double t95 = t88 - t94;
     const double s = q[2];
-    const double t94 = s - l;
+    const double t96 = s - l;
     const double k = p->k;
-    const double t95 = k * t94;
+    const double t97 = k * t96;
     const double s_dot = qd[2];
     const double d = p->d;
-    const double t96 = s_dot * d;
-    const double t97 = t95 + t96;
-    const double t98 = t11 * t85;
-    const double t99 = m_rod * t98;
-    const double t100 = t7 * t99;
-    const double t101 = 0.5 * t100;
-    const double t102 = 0.5 * J_rod;
-    const double t103 = m_rod * t29;
-    const double t104 = 0.125 * t103;
-    const double t105 = t102 + t104;
-    const double t106 = t9 * t105;
-    const double t107 = 2.0 * t106;
-    const double t108 = t101 - t107;
+    const double t98 = s_dot * d;
+    const double t99 = t97 + t98;
     const double alpha_dot = qd[0];
-    const double t109 = alpha_dot * t6;
-    const double t110 = r * t109;
-    const double t111 = alpha_dot * t110;
+    const double t100 = alpha_dot * t6;
+    const double t101 = r * t100;
+    const double t102 = alpha_dot * t101;
     const double beta_dot = qd[1];
-    const double t112 = beta_dot * t4;
-    const double t113 = l * t112;
-    const double t114 = beta_dot * t113;
-    const double t115 = t111 + t114;
-    const double t116 = t9 * t115;
-    const double t117 = beta_dot * t3;
-    const double t118 = l * t117;
-    const double t119 = beta_dot * t118;
-    const double t120 = alpha_dot * t5;
-    const double t121 = r * t120;
-    const double t122 = alpha_dot * t121;
-    const double t123 = t119 - t122;
-    const double t124 = t19 * t123;
-    const double t125 = t116 - t124;
-    const double t126 = t108 * t125;
-    const double t127 = t7 * t115;
-    const double t128 = t21 * t123;
-    const double t129 = t127 + t128;
-    const double t130 = t129 * t93;
+    const double t103 = beta_dot * t4;
+    const double t104 = l * t103;
+    const double t105 = beta_dot * t104;
+    const double t106 = t102 + t105;
+    const double t107 = t7 * t106;
+    const double t108 = beta_dot * t3;
+    const double t109 = l * t108;
+    const double t110 = beta_dot * t109;
+    const double t111 = alpha_dot * t5;
+    const double t112 = r * t111;
+    const double t113 = alpha_dot * t112;
+    const double t114 = t110 - t113;
+    const double t115 = t21 * t114;
+    const double t116 = t107 + t115;
+    const double t117 = r * m_rod;
+    const double t118 = t6 * t85;
+    const double t119 = 0.5 * t118;
+    const double t120 = t119 - t4;
+    const double t121 = t117 * t120;
+    const double t122 = r * t121;
+    const double t123 = J_crank * t4;
+    const double t124 = t122 - t123;
+    const double t125 = l * t124;
+    const double t126 = t116 * t125;
+    const double t127 = t9 * t106;
+    const double t128 = t19 * t114;
+    const double t129 = t127 - t128;
+    const double t130 = t129 * t95;
     const double t131 = t126 + t130;
-    const double t132 = t131 * t81;
+    const double t132 = t81 * t131;
     const double t133 = m_s * t132;
-    const double t134 = t97 + t133;
-    const double t135 = t93 * t134;
+    const double t134 = t99 + t133;
+    const double t135 = t95 * t134;
     const double t136 = m_s * t15;
     const double g = p->g;
     const double t137 = m_rod * g;
-    const double t138 = r * t137;
+    const double t138 = l * t137;
+    const double t139 = t4 * t138;
+    const double t140 = 0.5 * t139;
+    const double t141 = alpha_dot * alpha_dot;
+    const double t142 = t141 * t15;
+    const double t143 = t82 * t142;
+    const double t144 = t140 - t143;
+    const double t145 = t136 * t129;
+    const double t146 = t114 * t125;
+    const double t147 = t145 + t146;
+    const double t148 = t147 * t81;
+    const double t149 = t92 * t148;
+    const double t150 = 2.0 * t149;
+    const double t151 = t136 * t116;
+    const double t152 = t114 * t95;
+    const double t153 = t151 - t152;
+    const double t154 = t81 * t153;
+    const double t155 = t86 * t154;
+    const double t156 = t82 * t155;
+    const double t157 = t150 - t156;
+    const double t158 = t144 + t157;
+    const double t159 = t136 * t158;
+    const double t160 = t135 + t159;
+    const double t161 = t9 * t160;
+    const double t162 = t125 * t134;
     const double m_crank = p->m_crank;
-    const double t139 = r * m_crank;
-    const double t140 = g * t139;
-    const double t141 = 0.5 * t140;
-    const double t142 = t138 + t141;
-    const double t143 = t6 * t142;
-    const double t144 = beta_dot * beta_dot;
-    const double t145 = m_rod * t15;
-    const double t146 = t144 * t145;
-    const double t147 = 0.5 * t146;
-    const double t148 = t143 + t147;
+    const double t163 = m_crank * g;
+    const double t164 = 0.5 * t163;
+    const double t165 = t137 + t164;
+    const double t166 = r * t165;
+    const double t167 = t6 * t166;
+    const double t168 = beta_dot * beta_dot;
+    const double t169 = t168 * t15;
+    const double t170 = t82 * t169;
+    const double t171 = t167 + t170;
     const double crank = u[0];
-    const double t149 = crank - t148;
-    const double t150 = 0.5 * J_crank;
-    const double t151 = r * t82;
-    const double t152 = 0.5 * t151;
-    const double t153 = t150 + t152;
-    const double t154 = t136 * t129;
-    const double t155 = t108 * t123;
-    const double t156 = t154 - t155;
-    const double t157 = t156 * t81;
-    const double t158 = t153 * t157;
-    const double t159 = 2.0 * t158;
-    const double t160 = t136 * t125;
-    const double t161 = t123 * t93;
-    const double t162 = t160 + t161;
-    const double t163 = t162 * t81;
-    const double t164 = t99 * t163;
-    const double t165 = 0.5 * t164;
-    const double t166 = t159 - t165;
-    const double t167 = t149 + t166;
-    const double t168 = t136 * t167;
-    const double t169 = t135 + t168;
-    const double t170 = t7 * t169;
-    const double t171 = t108 * t134;
-    const double t172 = l * t137;
-    const double t173 = t4 * t172;
-    const double t174 = 0.5 * t173;
-    const double t175 = alpha_dot * alpha_dot;
-    const double t176 = t175 * t145;
-    const double t177 = 0.5 * t176;
-    const double t178 = t174 - t177;
-    const double t179 = t105 * t163;
-    const double t180 = 2.0 * t179;
-    const double t181 = t99 * t157;
-    const double t182 = 0.5 * t181;
-    const double t183 = t180 - t182;
-    const double t184 = t178 + t183;
-    const double t185 = t136 * t184;
-    const double t186 = t171 + t185;
-    const double t187 = t9 * t186;
-    const double t188 = t170 + t187;
-    const double t189 = t81 * t188;
-    const double t190 = -t189;
-    const double t191 = t108 * t167;
-    const double t192 = t93 * t184;
-    const double t193 = t191 - t192;
-    const double t194 = t21 * t169;
-    const double t195 = t193 - t194;
-    const double t196 = t19 * t186;
-    const double t197 = t195 + t196;
-    const double t198 = t81 * t197;
-    const double t199 = -t198;
-    double rest = t190 - t190;
-    rest += t199 - t199;
-    if (isnan(rest) != 0) {
+    const double t172 = crank - t171;
+    const double t173 = 0.5 * J_crank;
+    const double t174 = r * t117;
+    const double t175 = 0.5 * t174;
+    const double t176 = t173 + t175;
+    const double t177 = t176 * t154;
+    const double t178 = 2.0 * t177;
+    const double t179 = t86 * t148;
+    const double t180 = t82 * t179;
+    const double t181 = t178 - t180;
+    const double t182 = t172 + t181;
+    const double t183 = t136 * t182;
+    const double t184 = t162 + t183;
+    const double t185 = t7 * t184;
+    const double t186 = t161 + t185;
+    const double t187 = t81 * t186;
+    const double t188 = -t187;
+    const double t189 = t19 * t160;
+    const double t190 = t95 * t182;
+    const double t191 = t125 * t158;
+    const double t192 = t190 - t191;
+    const double t193 = t21 * t184;
+    const double t194 = t192 - t193;
+    const double t195 = t189 + t194;
+    const double t196 = t81 * t195;
+    const double t197 = -t196;
+    double rest = (t188 - t188) * t197;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    lambda_B[0] = t190;
-    lambda_B[1] = t199;
+    lambda_B[0] = t188;
+    lambda_B[1] = t197;
     return SLIDER_CRANK_OK;
 }
 
@@ -3699,10 +3577,10 @@ slider_crank_status slider_crank_energy(const double q[3], const double qd[3], c
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -3769,9 +3647,8 @@ slider_crank_status slider_crank_energy(const double q[3], const double qd[3], c
     const double g = p->g;
     const double t47 = g * t46;
     const double t48 = t37 + t47;
-    double rest = t33 - t33;
-    rest += t48 - t48;
-    if (isnan(rest) != 0) {
+    double rest = (t33 - t33) * t48;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     T_U[0] = t33;
@@ -3784,10 +3661,10 @@ slider_crank_status slider_crank_singularity(const double q[3], const slider_cra
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -3844,9 +3721,8 @@ slider_crank_status slider_crank_singularity(const double q[3], const slider_cra
     const double t48 = t45 + t47;
     const double t49 = t48 + t43;
     const double t50 = ((t49 != 0.0) ? t43 : 0.0) / ((t49 != 0.0) ? t49 : 1.0);
-    double rest = t41 - t41;
-    rest += t50 - t50;
-    if (isnan(rest) != 0) {
+    double rest = (t41 - t41) * t50;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     measure[0] = t41;

@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SLIDER_CRANK_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SLIDER_CRANK_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SLIDER_CRANK_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SLIDER_CRANK_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -132,7 +141,7 @@ slider_crank_status slider_crank_mass_matrix_f(const float q[3], const slider_cr
     const float beta = q[1];
     const float t1 = alpha + beta;
     const float t2 = fabsf(t1);
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     float t3;
@@ -161,11 +170,9 @@ slider_crank_status slider_crank_mass_matrix_f(const float q[3], const slider_cr
     const float t20 = t16 + t19;
     const float t21 = 2.0f * t20;
     const float m_s = p->m_s;
-    float rest = t10 - t10;
-    rest += t15 - t15;
-    rest += t21 - t21;
+    float rest = (t10 - t10) * t15 * t21;
     rest += m_s - m_s;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G[0] = t10;
@@ -185,7 +192,7 @@ slider_crank_status slider_crank_coriolis_matrix_f(const float q[3], const float
     const float beta = q[1];
     const float t1 = alpha + beta;
     const float t2 = fabsf(t1);
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     float t3;
@@ -202,9 +209,8 @@ slider_crank_status slider_crank_coriolis_matrix_f(const float q[3], const float
     const float t9 = beta_dot * t8;
     const float alpha_dot = qd[0];
     const float t10 = alpha_dot * t8;
-    float rest = t9 - t9;
-    rest += t10 - t10;
-    if (isnan(rest) != 0) {
+    float rest = (t9 - t9) * t10;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     C[0] = 0.0f;
@@ -224,7 +230,7 @@ slider_crank_status slider_crank_coriolis_force_f(const float q[3], const float 
     const float beta = q[1];
     const float t1 = alpha + beta;
     const float t2 = fabsf(t1);
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     float t3;
@@ -243,9 +249,8 @@ slider_crank_status slider_crank_coriolis_force_f(const float q[3], const float 
     const float alpha_dot = qd[0];
     const float t11 = alpha_dot * alpha_dot;
     const float t12 = t11 * t9;
-    float rest = t10 - t10;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    float rest = (t10 - t10) * t12;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     C_qd[0] = t10;
@@ -259,29 +264,29 @@ slider_crank_status slider_crank_potential_force_f(const float q[3], const slide
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
     float sine[4];
     float cosine[4];
     slider_crank_sincos_group_f(2, angle, sine, cosine);
-    const float m_crank = p->m_crank;
-    const float t7 = 0.5f * m_crank;
     const float m_rod = p->m_rod;
-    const float t8 = m_rod + t7;
-    const float r = p->r;
     const float g = p->g;
-    const float t9 = r * g;
-    const float t10 = t8 * t9;
+    const float t7 = m_rod * g;
+    const float m_crank = p->m_crank;
+    const float t8 = m_crank * g;
+    const float t9 = 0.5f * t8;
+    const float t10 = t7 + t9;
+    const float r = p->r;
+    const float t11 = r * t10;
     const float t4 = cosine[0];
-    const float t11 = t4 * t10;
-    const float t12 = m_rod * g;
+    const float t12 = t4 * t11;
     const float l = p->l;
-    const float t13 = l * t12;
+    const float t13 = l * t7;
     const float t6 = cosine[1];
     const float t14 = t6 * t13;
     const float t15 = 0.5f * t14;
@@ -290,13 +295,11 @@ slider_crank_status slider_crank_potential_force_f(const float q[3], const slide
     const float t17 = s - l;
     const float k = p->k;
     const float t18 = k * t17;
-    float rest = t11 - t11;
-    rest += t16 - t16;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    float rest = (t12 - t12) * t16 * t18;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    Q[0] = t11;
+    Q[0] = t12;
     Q[1] = t16;
     Q[2] = t18;
     return SLIDER_CRANK_OK;
@@ -309,7 +312,7 @@ slider_crank_status slider_crank_applied_force_f(const float q[3], const float q
     const float t1 = s_dot * d;
     const float t2 = -t1;
     float rest = t2 - t2;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a[0] = 0.0f;
@@ -323,10 +326,10 @@ slider_crank_status slider_crank_constraint_residual_f(const float q[3], const s
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -349,9 +352,8 @@ slider_crank_status slider_crank_constraint_residual_f(const float q[3], const s
     const float t13 = t11 - t12;
     const float e = p->e;
     const float t14 = t13 - e;
-    float rest = t10 - t10;
-    rest += t14 - t14;
-    if (isnan(rest) != 0) {
+    float rest = (t10 - t10) * t14;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     g_out[0] = t10;
@@ -364,10 +366,10 @@ slider_crank_status slider_crank_constraint_jacobian_f(const float q[3], const s
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -387,11 +389,9 @@ slider_crank_status slider_crank_constraint_jacobian_f(const float q[3], const s
     const float t6 = cosine[1];
     const float t12 = l * t6;
     const float t13 = -t12;
-    float rest = t8 - t8;
-    rest += t10 - t10;
-    rest += t11 - t11;
+    float rest = (t8 - t8) * t10 * t11;
     rest += t13 - t13;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B[0] = t8;
@@ -408,10 +408,10 @@ slider_crank_status slider_crank_constraint_jacobian_dot_f(const float q[3], con
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -437,11 +437,9 @@ slider_crank_status slider_crank_constraint_jacobian_dot_f(const float q[3], con
     const float t5 = sine[1];
     const float t16 = beta_dot * t5;
     const float t17 = l * t16;
-    float rest = t9 - t9;
-    rest += t12 - t12;
-    rest += t15 - t15;
+    float rest = (t9 - t9) * t12 * t15;
     rest += t17 - t17;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B_dot[0] = t9;
@@ -458,10 +456,10 @@ slider_crank_status slider_crank_constraint_pseudoinverse_f(const float q[3], co
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -495,7 +493,7 @@ slider_crank_status slider_crank_constraint_pseudoinverse_f(const float q[3], co
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = 1.0f / t18;
@@ -518,13 +516,9 @@ slider_crank_status slider_crank_constraint_pseudoinverse_f(const float q[3], co
     const float t45 = t9 * t19;
     const float t46 = t44 - t45;
     const float t47 = t46 * t28;
-    float rest = t31 - t31;
-    rest += t34 - t34;
-    rest += t37 - t37;
-    rest += t41 - t41;
-    rest += t43 - t43;
-    rest += t47 - t47;
-    if (isnan(rest) != 0) {
+    float rest = (t31 - t31) * t34 * t37;
+    rest += (t41 - t41) * t43 * t47;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B_pinv[0] = t31;
@@ -541,10 +535,10 @@ slider_crank_status slider_crank_nullspace_projector_f(const float q[3], const s
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -578,7 +572,7 @@ slider_crank_status slider_crank_nullspace_projector_f(const float q[3], const s
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = 1.0f / t18;
@@ -593,13 +587,9 @@ slider_crank_status slider_crank_nullspace_projector_f(const float q[3], const s
     const float t37 = t28 * t36;
     const float t38 = -t37;
     const float t39 = t16 * t28;
-    float rest = t29 - t29;
-    rest += t31 - t31;
-    rest += t34 - t34;
-    rest += t35 - t35;
-    rest += t38 - t38;
-    rest += t39 - t39;
-    if (isnan(rest) != 0) {
+    float rest = (t29 - t29) * t31 * t34;
+    rest += (t35 - t35) * t38 * t39;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     N_B[0] = t29;
@@ -619,10 +609,10 @@ slider_crank_status slider_crank_nullspace_projector_dot_f(const float q[3], con
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -656,7 +646,7 @@ slider_crank_status slider_crank_nullspace_projector_dot_f(const float q[3], con
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = 1.0f / t18;
@@ -744,13 +734,9 @@ slider_crank_status slider_crank_nullspace_projector_dot_f(const float q[3], con
     const float t108 = t106 - t107;
     const float t109 = 2.0f * t108;
     const float t110 = -t109;
-    float rest = t55 - t55;
-    rest += t72 - t72;
-    rest += t93 - t93;
-    rest += t98 - t98;
-    rest += t105 - t105;
-    rest += t110 - t110;
-    if (isnan(rest) != 0) {
+    float rest = (t55 - t55) * t72 * t93;
+    rest += (t98 - t98) * t105 * t110;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     N_B_dot[0] = t55;
@@ -770,10 +756,10 @@ slider_crank_status slider_crank_weighted_pseudoinverse_f(const float q[3], cons
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -807,7 +793,7 @@ slider_crank_status slider_crank_weighted_pseudoinverse_f(const float q[3], cons
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = t4 * t4;
@@ -867,7 +853,7 @@ slider_crank_status slider_crank_weighted_pseudoinverse_f(const float q[3], cons
     const float t78 = t75 + t77;
     const float t79 = t66 + t78;
     const float t80 = 1.4305115e-06f * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY_F(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
     const float t81 = l * t11;
@@ -938,13 +924,9 @@ slider_crank_status slider_crank_weighted_pseudoinverse_f(const float q[3], cons
     const float t146 = t32 * t145;
     const float t147 = t136 + t146;
     const float t148 = t104 * t147;
-    float rest = t86 - t86;
-    rest += t105 - t105;
-    rest += t111 - t111;
-    rest += t123 - t123;
-    rest += t134 - t134;
-    rest += t148 - t148;
-    if (isnan(rest) != 0) {
+    float rest = (t86 - t86) * t105 * t111;
+    rest += (t123 - t123) * t134 * t148;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     B_G_pinv[0] = t86;
@@ -961,10 +943,10 @@ slider_crank_status slider_crank_weighted_nullspace_projector_f(const float q[3]
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -998,7 +980,7 @@ slider_crank_status slider_crank_weighted_nullspace_projector_f(const float q[3]
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = t4 * t4;
@@ -1058,7 +1040,7 @@ slider_crank_status slider_crank_weighted_nullspace_projector_f(const float q[3]
     const float t78 = t75 + t77;
     const float t79 = t66 + t78;
     const float t80 = 1.4305115e-06f * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY_F(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
     const float t81 = t6 * t4;
@@ -1110,16 +1092,10 @@ slider_crank_status slider_crank_weighted_nullspace_projector_f(const float q[3]
     const float t127 = t126 * t96;
     const float t128 = t15 * t111;
     const float t129 = t128 * t96;
-    float rest = t98 - t98;
-    rest += t110 - t110;
-    rest += t114 - t114;
-    rest += t117 - t117;
-    rest += t120 - t120;
-    rest += t123 - t123;
-    rest += t125 - t125;
-    rest += t127 - t127;
-    rest += t129 - t129;
-    if (isnan(rest) != 0) {
+    float rest = (t98 - t98) * t110 * t114;
+    rest += (t117 - t117) * t120 * t123;
+    rest += (t125 - t125) * t127 * t129;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     N_BG[0] = t98;
@@ -1148,10 +1124,10 @@ slider_crank_status slider_crank_projected_control_matrix_f(const float q[3], co
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -1185,7 +1161,7 @@ slider_crank_status slider_crank_projected_control_matrix_f(const float q[3], co
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = 1.0f / t18;
@@ -1195,10 +1171,8 @@ slider_crank_status slider_crank_projected_control_matrix_f(const float q[3], co
     const float t32 = t7 * t15;
     const float t33 = t28 * t32;
     const float t34 = -t33;
-    float rest = t29 - t29;
-    rest += t31 - t31;
-    rest += t34 - t34;
-    if (isnan(rest) != 0) {
+    float rest = (t29 - t29) * t31 * t34;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     M_tilde[0] = t29;
@@ -1212,10 +1186,10 @@ slider_crank_status slider_crank_projected_control_pseudoinverse_f(const float q
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -1241,7 +1215,7 @@ slider_crank_status slider_crank_projected_control_pseudoinverse_f(const float q
     const float t19 = t18 * 2.046363e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         const float t20 = r * l;
         const float t21 = t4 * t5;
         const float t22 = t6 * t3;
@@ -1270,9 +1244,8 @@ slider_crank_status slider_crank_projected_control_pseudoinverse_f(const float q
     const float t40 = r / t6;
     const float t41 = t39 * t40;
     const float t42 = -t41;
-    float rest = t36 - t36;
-    rest += t42 - t42;
-    if (isnan(rest) != 0) {
+    float rest = (t36 - t36) * t42;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     M_tilde_pinv[0] = 1.0f;
@@ -1286,10 +1259,10 @@ slider_crank_status slider_crank_orthogonal_complement_f(const float q[3], const
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -1315,7 +1288,7 @@ slider_crank_status slider_crank_orthogonal_complement_f(const float q[3], const
     const float t19 = t18 * 2.046363e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         const float t20 = r * l;
         const float t21 = t4 * t5;
         const float t22 = t6 * t3;
@@ -1344,9 +1317,8 @@ slider_crank_status slider_crank_orthogonal_complement_f(const float q[3], const
     const float t40 = r / t6;
     const float t41 = t39 * t40;
     const float t42 = -t41;
-    float rest = t36 - t36;
-    rest += t42 - t42;
-    if (isnan(rest) != 0) {
+    float rest = (t36 - t36) * t42;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     F_B[0] = 1.0f;
@@ -1360,10 +1332,10 @@ slider_crank_status slider_crank_projected_mass_matrix_f(const float q[3], const
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -1397,7 +1369,7 @@ slider_crank_status slider_crank_projected_mass_matrix_f(const float q[3], const
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = 1.0f / t18;
@@ -1484,13 +1456,9 @@ slider_crank_status slider_crank_projected_mass_matrix_f(const float q[3], const
     const float t105 = t65 * t104;
     const float t106 = t101 + t105;
     const float t107 = t97 - t106;
-    float rest = t63 - t63;
-    rest += t71 - t71;
-    rest += t78 - t78;
-    rest += t89 - t89;
-    rest += t95 - t95;
-    rest += t107 - t107;
-    if (isnan(rest) != 0) {
+    float rest = (t63 - t63) * t71 * t78;
+    rest += (t89 - t89) * t95 * t107;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G_tilde[0] = t63;
@@ -1510,10 +1478,10 @@ slider_crank_status slider_crank_projected_coriolis_matrix_f(const float q[3], c
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -1547,335 +1515,324 @@ slider_crank_status slider_crank_projected_coriolis_matrix_f(const float q[3], c
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = 1.0f / t18;
-    const float t29 = t8 * t28;
-    const float t30 = t9 * t7;
-    const float t31 = t30 * t28;
+    const float t29 = t7 * t15;
+    const float t30 = t28 * t29;
+    const float t31 = t25 * t28;
+    const float t32 = t9 * t7;
+    const float t33 = t32 * t28;
+    const float t34 = t8 * t28;
     const float alpha_dot = qd[0];
-    const float t32 = alpha_dot * t31;
-    const float t33 = t10 * t28;
+    const float t35 = alpha_dot * t34;
     const float beta_dot = qd[1];
-    const float t34 = beta_dot * t33;
-    const float t35 = t32 + t34;
-    const float t36 = t9 * t15;
-    const float t37 = t28 * t36;
+    const float t36 = beta_dot * t33;
+    const float t37 = t35 + t36;
     const float s_dot = qd[2];
-    const float t38 = s_dot * t37;
-    const float t39 = t35 - t38;
-    const float m_rod = p->m_rod;
-    const float t40 = m_rod * t15;
-    const float t41 = t39 * t40;
-    const float t42 = t31 * t41;
-    const float t43 = 0.5f * t42;
-    const float t44 = t6 * t4;
-    const float t45 = t5 * t3;
-    const float t46 = t44 - t45;
-    const float t47 = t11 * t46;
-    const float t48 = m_rod * t47;
-    const float t49 = t7 * t15;
-    const float t50 = t28 * t49;
-    const float t51 = alpha_dot * t29;
-    const float t52 = beta_dot * t31;
-    const float t53 = t51 + t52;
-    const float t54 = s_dot * t50;
-    const float t55 = t53 - t54;
-    const float t56 = t6 * t55;
-    const float t57 = r * t56;
-    const float t58 = t31 * t57;
-    const float t59 = t33 * t57;
-    const float t60 = t58 + t59;
-    const float t61 = t50 * t60;
-    const float t62 = t21 * t15;
-    const float t63 = t9 + t62;
-    const float t64 = t28 * t63;
-    const float t65 = t3 * t39;
-    const float t66 = l * t65;
-    const float t67 = t33 * t66;
-    const float t68 = t5 * t55;
-    const float t69 = r * t68;
-    const float t70 = t31 * t69;
-    const float t71 = t67 - t70;
-    const float t72 = t64 * t71;
-    const float t73 = t61 + t72;
-    const float t74 = t19 * t15;
-    const float t75 = t7 + t74;
-    const float t76 = t28 * t75;
-    const float t77 = t31 * t66;
-    const float t78 = t29 * t69;
-    const float t79 = t77 - t78;
-    const float t80 = t76 * t79;
-    const float t81 = t61 - t80;
-    const float t82 = t73 + t81;
-    const float t83 = t48 * t82;
-    const float t84 = 0.5f * t83;
-    const float J_crank = p->J_crank;
-    const float t85 = 0.5f * J_crank;
-    const float t86 = r * r;
-    const float t87 = m_rod * t86;
-    const float t88 = 0.5f * t87;
-    const float t89 = t85 + t88;
-    const float t90 = t29 * t57;
-    const float t91 = t58 + t90;
-    const float t92 = t50 * t91;
-    const float t93 = t64 * t79;
-    const float t94 = t92 + t93;
-    const float t95 = t89 * t94;
-    const float t96 = 4.0f * t95;
-    const float t97 = t84 - t96;
-    const float t98 = t43 + t97;
-    const float t99 = t29 * t98;
-    const float t100 = t40 * t55;
-    const float t101 = t29 * t100;
-    const float t102 = 0.5f * t101;
-    const float t103 = t48 * t94;
-    const float J_rod = p->J_rod;
-    const float t104 = 0.5f * J_rod;
-    const float t105 = l * l;
-    const float t106 = m_rod * t105;
-    const float t107 = 0.125f * t106;
-    const float t108 = t104 + t107;
-    const float t109 = t108 * t82;
-    const float t110 = 2.0f * t109;
-    const float t111 = t103 - t110;
-    const float t112 = t102 + t111;
-    const float t113 = t31 * t112;
-    const float t114 = t99 + t113;
-    const float t115 = t50 * t69;
-    const float t116 = t37 * t66;
-    const float t117 = t115 - t116;
-    const float t118 = t64 * t117;
-    const float t119 = t50 * t57;
-    const float t120 = t37 * t57;
-    const float t121 = t119 + t120;
-    const float t122 = t50 * t121;
-    const float t123 = t118 - t122;
-    const float t124 = t25 * t28;
-    const float t125 = t124 * t91;
-    const float t126 = t7 * t21;
-    const float t127 = t9 * t19;
-    const float t128 = t126 - t127;
-    const float t129 = t128 * t28;
-    const float t130 = t129 * t79;
-    const float t131 = t125 + t130;
-    const float t132 = t123 + t131;
+    const float t38 = s_dot * t30;
+    const float t39 = t37 - t38;
+    const float t40 = t6 * t39;
+    const float t41 = r * t40;
+    const float t42 = t33 * t41;
+    const float t43 = t34 * t41;
+    const float t44 = t42 + t43;
+    const float t45 = t31 * t44;
+    const float t46 = t7 * t21;
+    const float t47 = t9 * t19;
+    const float t48 = t46 - t47;
+    const float t49 = t48 * t28;
+    const float t50 = alpha_dot * t33;
+    const float t51 = t10 * t28;
+    const float t52 = beta_dot * t51;
+    const float t53 = t50 + t52;
+    const float t54 = t9 * t15;
+    const float t55 = t28 * t54;
+    const float t56 = s_dot * t55;
+    const float t57 = t53 - t56;
+    const float t58 = t3 * t57;
+    const float t59 = l * t58;
+    const float t60 = t33 * t59;
+    const float t61 = t5 * t39;
+    const float t62 = r * t61;
+    const float t63 = t34 * t62;
+    const float t64 = t60 - t63;
+    const float t65 = t49 * t64;
+    const float t66 = t45 + t65;
+    const float t67 = t21 * t15;
+    const float t68 = t9 + t67;
+    const float t69 = t28 * t68;
+    const float t70 = t30 * t62;
+    const float t71 = t55 * t59;
+    const float t72 = t70 - t71;
+    const float t73 = t69 * t72;
+    const float t74 = t30 + t55;
+    const float t75 = t41 * t74;
+    const float t76 = t30 * t75;
+    const float t77 = t73 - t76;
+    const float t78 = t66 + t77;
     const float m_s = p->m_s;
-    const float t133 = m_s * t132;
-    const float t134 = t50 * t133;
-    const float t135 = t114 + t134;
-    const float t136 = t33 * t41;
-    const float t137 = 0.5f * t136;
-    const float t138 = t37 * t60;
-    const float t139 = t76 * t71;
-    const float t140 = t138 - t139;
-    const float t141 = t48 * t140;
-    const float t142 = t89 * t82;
-    const float t143 = 2.0f * t142;
-    const float t144 = t141 - t143;
-    const float t145 = t137 + t144;
-    const float t146 = t29 * t145;
-    const float t147 = t31 * t100;
-    const float t148 = 0.5f * t147;
-    const float t149 = t108 * t140;
-    const float t150 = 4.0f * t149;
-    const float t151 = t84 - t150;
-    const float t152 = t148 + t151;
-    const float t153 = t31 * t152;
-    const float t154 = t146 + t153;
-    const float t155 = t37 * t121;
-    const float t156 = t76 * t117;
-    const float t157 = t155 + t156;
-    const float t158 = t124 * t60;
-    const float t159 = t129 * t71;
-    const float t160 = t158 + t159;
-    const float t161 = t157 - t160;
-    const float t162 = m_s * t161;
-    const float t163 = t50 * t162;
-    const float t164 = t154 - t163;
-    const float t165 = t48 * t132;
-    const float t166 = 0.5f * t165;
-    const float t167 = t108 * t161;
-    const float t168 = 2.0f * t167;
-    const float t169 = t166 + t168;
-    const float t170 = t50 * t100;
+    const float t79 = m_s * t78;
+    const float t80 = t30 * t79;
+    const float m_rod = p->m_rod;
+    const float t81 = m_rod * t15;
+    const float t82 = t81 * t39;
+    const float t83 = t34 * t82;
+    const float t84 = 0.5f * t83;
+    const float t85 = t6 * t4;
+    const float t86 = t5 * t3;
+    const float t87 = t85 - t86;
+    const float t88 = t11 * t87;
+    const float t89 = m_rod * t88;
+    const float t90 = t30 * t44;
+    const float t91 = t69 * t64;
+    const float t92 = t90 + t91;
+    const float t93 = t89 * t92;
+    const float J_rod = p->J_rod;
+    const float t94 = 0.5f * J_rod;
+    const float t95 = l * l;
+    const float t96 = m_rod * t95;
+    const float t97 = 0.125f * t96;
+    const float t98 = t94 + t97;
+    const float t99 = t51 * t41;
+    const float t100 = t42 + t99;
+    const float t101 = t30 * t100;
+    const float t102 = t51 * t59;
+    const float t103 = t33 * t62;
+    const float t104 = t102 - t103;
+    const float t105 = t69 * t104;
+    const float t106 = t101 + t105;
+    const float t107 = t19 * t15;
+    const float t108 = t7 + t107;
+    const float t109 = t28 * t108;
+    const float t110 = t109 * t64;
+    const float t111 = t101 - t110;
+    const float t112 = t106 + t111;
+    const float t113 = t98 * t112;
+    const float t114 = 2.0f * t113;
+    const float t115 = t93 - t114;
+    const float t116 = t84 + t115;
+    const float t117 = t33 * t116;
+    const float t118 = t57 * t81;
+    const float t119 = t33 * t118;
+    const float t120 = 0.5f * t119;
+    const float t121 = t89 * t112;
+    const float t122 = 0.5f * t121;
+    const float J_crank = p->J_crank;
+    const float t123 = 0.5f * J_crank;
+    const float t124 = r * r;
+    const float t125 = m_rod * t124;
+    const float t126 = 0.5f * t125;
+    const float t127 = t123 + t126;
+    const float t128 = 4.0f * t127;
+    const float t129 = t92 * t128;
+    const float t130 = t122 - t129;
+    const float t131 = t120 + t130;
+    const float t132 = t34 * t131;
+    const float t133 = t117 + t132;
+    const float t134 = t80 + t133;
+    const float t135 = t33 * t82;
+    const float t136 = 0.5f * t135;
+    const float t137 = t55 * t100;
+    const float t138 = t109 * t104;
+    const float t139 = t137 - t138;
+    const float t140 = t98 * t139;
+    const float t141 = 4.0f * t140;
+    const float t142 = t122 - t141;
+    const float t143 = t136 + t142;
+    const float t144 = t33 * t143;
+    const float t145 = t51 * t118;
+    const float t146 = 0.5f * t145;
+    const float t147 = t89 * t139;
+    const float t148 = 2.0f * t127;
+    const float t149 = t148 * t112;
+    const float t150 = t147 - t149;
+    const float t151 = t146 + t150;
+    const float t152 = t34 * t151;
+    const float t153 = t144 + t152;
+    const float t154 = t109 * t72;
+    const float t155 = t55 * t75;
+    const float t156 = t154 + t155;
+    const float t157 = t31 * t100;
+    const float t158 = t49 * t104;
+    const float t159 = t157 + t158;
+    const float t160 = t156 - t159;
+    const float t161 = m_s * t160;
+    const float t162 = t30 * t161;
+    const float t163 = t153 - t162;
+    const float t164 = t49 * t72;
+    const float t165 = t31 * t75;
+    const float t166 = t164 - t165;
+    const float t167 = m_s * t166;
+    const float t168 = t30 * t167;
+    const float t169 = 2.0f * t168;
+    const float t170 = t89 * t78;
     const float t171 = 0.5f * t170;
-    const float t172 = t169 - t171;
-    const float t173 = t31 * t172;
-    const float t174 = t37 * t41;
-    const float t175 = 0.5f * t174;
-    const float t176 = t89 * t132;
-    const float t177 = 2.0f * t176;
-    const float t178 = t48 * t161;
-    const float t179 = 0.5f * t178;
-    const float t180 = t177 + t179;
-    const float t181 = t175 + t180;
-    const float t182 = t29 * t181;
-    const float t183 = t173 - t182;
-    const float t184 = t129 * t117;
-    const float t185 = t124 * t121;
-    const float t186 = t184 - t185;
-    const float t187 = m_s * t186;
-    const float t188 = t50 * t187;
-    const float t189 = 2.0f * t188;
-    const float t190 = t183 + t189;
-    const float t191 = t31 * t98;
-    const float t192 = t33 * t112;
-    const float t193 = t191 + t192;
-    const float t194 = t37 * t133;
-    const float t195 = t193 + t194;
-    const float t196 = t31 * t145;
-    const float t197 = t33 * t152;
-    const float t198 = t196 + t197;
-    const float t199 = t37 * t162;
-    const float t200 = t198 - t199;
-    const float t201 = t33 * t172;
-    const float t202 = t31 * t181;
+    const float t172 = t98 * t160;
+    const float t173 = 2.0f * t172;
+    const float t174 = t171 + t173;
+    const float t175 = t30 * t82;
+    const float t176 = 0.5f * t175;
+    const float t177 = t174 - t176;
+    const float t178 = t33 * t177;
+    const float t179 = t55 * t118;
+    const float t180 = 0.5f * t179;
+    const float t181 = t89 * t160;
+    const float t182 = 0.5f * t181;
+    const float t183 = t148 * t78;
+    const float t184 = t182 + t183;
+    const float t185 = t180 + t184;
+    const float t186 = t34 * t185;
+    const float t187 = t178 - t186;
+    const float t188 = t169 + t187;
+    const float t189 = t55 * t79;
+    const float t190 = t51 * t116;
+    const float t191 = t33 * t131;
+    const float t192 = t190 + t191;
+    const float t193 = t189 + t192;
+    const float t194 = t51 * t143;
+    const float t195 = t33 * t151;
+    const float t196 = t194 + t195;
+    const float t197 = t55 * t161;
+    const float t198 = t196 - t197;
+    const float t199 = t55 * t167;
+    const float t200 = 2.0f * t199;
+    const float t201 = t51 * t177;
+    const float t202 = t33 * t185;
     const float t203 = t201 - t202;
-    const float t204 = t37 * t187;
-    const float t205 = 2.0f * t204;
-    const float t206 = t203 + t205;
-    const float t207 = t50 * t98;
-    const float t208 = t37 * t112;
+    const float t204 = t200 + t203;
+    const float t205 = t16 * t28;
+    const float t206 = t205 * t79;
+    const float t207 = t55 * t116;
+    const float t208 = t30 * t131;
     const float t209 = t207 + t208;
-    const float t210 = t16 * t28;
-    const float t211 = t210 * t133;
-    const float t212 = t209 + t211;
-    const float t213 = -t212;
-    const float t214 = t210 * t162;
-    const float t215 = t50 * t145;
-    const float t216 = t37 * t152;
-    const float t217 = t215 + t216;
-    const float t218 = t214 - t217;
-    const float t219 = t50 * t181;
-    const float t220 = t37 * t172;
-    const float t221 = t219 - t220;
-    const float t222 = t210 * t187;
-    const float t223 = 2.0f * t222;
-    const float t224 = t221 - t223;
-    float rest = t135 - t135;
-    rest += t164 - t164;
-    rest += t190 - t190;
-    rest += t195 - t195;
-    rest += t200 - t200;
-    rest += t206 - t206;
-    rest += t213 - t213;
-    rest += t218 - t218;
-    rest += t224 - t224;
-    if (isnan(rest) != 0) {
+    const float t210 = t206 + t209;
+    const float t211 = -t210;
+    const float t212 = t205 * t161;
+    const float t213 = t55 * t143;
+    const float t214 = t30 * t151;
+    const float t215 = t213 + t214;
+    const float t216 = t212 - t215;
+    const float t217 = t30 * t185;
+    const float t218 = t55 * t177;
+    const float t219 = t217 - t218;
+    const float t220 = t205 * t167;
+    const float t221 = 2.0f * t220;
+    const float t222 = t219 - t221;
+    float rest = (t134 - t134) * t163 * t188;
+    rest += (t193 - t193) * t198 * t204;
+    rest += (t211 - t211) * t216 * t222;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    C_tilde[0] = t135;
-    C_tilde[1] = t164;
-    C_tilde[2] = t190;
-    C_tilde[3] = t195;
-    C_tilde[4] = t200;
-    C_tilde[5] = t206;
-    C_tilde[6] = t213;
-    C_tilde[7] = t218;
-    C_tilde[8] = t224;
+    C_tilde[0] = t134;
+    C_tilde[1] = t163;
+    C_tilde[2] = t188;
+    C_tilde[3] = t193;
+    C_tilde[4] = t198;
+    C_tilde[5] = t204;
+    C_tilde[6] = t211;
+    C_tilde[7] = t216;
+    C_tilde[8] = t222;
     return SLIDER_CRANK_OK;
 }
 
 slider_crank_status slider_crank_projected_potential_force_f(const float q[3], const slider_crank_params_f *p, float Q_tilde[3]) {
-    const float alpha = q[0];
-    const float t1 = fabsf(alpha);
     const float beta = q[1];
-    const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    const float t1 = fabsf(beta);
+    const float alpha = q[0];
+    const float t2 = fabsf(alpha);
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const float angle[4] = {alpha, beta, beta, beta};
+    const float angle[4] = {beta, alpha, alpha, alpha};
     float sine[4];
     float cosine[4];
     slider_crank_sincos_group_f(2, angle, sine, cosine);
     const float l = p->l;
-    const float t6 = cosine[1];
-    const float t7 = l * t6;
+    const float t4 = cosine[0];
+    const float t7 = l * t4;
     const float t8 = t7 * t7;
     const float r = p->r;
-    const float t4 = cosine[0];
-    const float t9 = r * t4;
+    const float t6 = cosine[1];
+    const float t9 = r * t6;
     const float t10 = t9 * t9;
     const float t11 = r * l;
-    const float t5 = sine[1];
-    const float t12 = t4 * t5;
     const float t3 = sine[0];
-    const float t13 = t6 * t3;
+    const float t12 = t6 * t3;
+    const float t5 = sine[1];
+    const float t13 = t4 * t5;
     const float t14 = t12 + t13;
     const float t15 = t11 * t14;
     const float t16 = t15 * t15;
     const float t17 = t10 + t16;
     const float t18 = t8 + t17;
-    const float t19 = r * t3;
+    const float t19 = r * t5;
     const float t20 = t19 * t19;
-    const float t21 = l * t5;
+    const float t21 = l * t3;
     const float t22 = t21 * t21;
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
+    const float t28 = 1.0f / t18;
+    const float t29 = t8 * t28;
     const float m_rod = p->m_rod;
     const float g = p->g;
-    const float t28 = m_rod * g;
-    const float t29 = r * t28;
+    const float t30 = m_rod * g;
     const float m_crank = p->m_crank;
-    const float t30 = r * m_crank;
-    const float t31 = g * t30;
+    const float t31 = m_crank * g;
     const float t32 = 0.5f * t31;
-    const float t33 = t29 + t32;
-    const float t34 = t4 * t33;
-    const float t35 = 1.0f / t18;
-    const float t36 = t8 * t35;
-    const float t37 = t34 * t36;
-    const float t38 = l * t28;
-    const float t39 = t6 * t38;
-    const float t40 = t9 * t7;
-    const float t41 = t40 * t35;
-    const float t42 = t39 * t41;
-    const float t43 = 0.5f * t42;
-    const float t44 = t37 - t43;
+    const float t33 = t30 + t32;
+    const float t34 = r * t33;
+    const float t35 = t6 * t34;
+    const float t36 = t29 * t35;
+    const float t37 = l * t30;
+    const float t38 = t4 * t37;
+    const float t39 = t9 * t7;
+    const float t40 = t39 * t28;
+    const float t41 = t38 * t40;
+    const float t42 = 0.5f * t41;
+    const float t43 = t36 - t42;
     const float s = q[2];
-    const float t45 = s - l;
+    const float t44 = s - l;
     const float k = p->k;
-    const float t46 = k * t45;
-    const float t47 = t7 * t15;
-    const float t48 = t35 * t47;
-    const float t49 = t46 * t48;
-    const float t50 = t44 - t49;
-    const float t51 = t34 * t41;
-    const float t52 = t10 * t35;
-    const float t53 = t39 * t52;
-    const float t54 = 0.5f * t53;
-    const float t55 = t51 - t54;
-    const float t56 = t9 * t15;
-    const float t57 = t35 * t56;
-    const float t58 = t46 * t57;
-    const float t59 = t55 - t58;
-    const float t60 = t39 * t57;
-    const float t61 = 0.5f * t60;
-    const float t62 = t34 * t48;
-    const float t63 = t61 - t62;
-    const float t64 = t16 * t35;
-    const float t65 = t46 * t64;
-    const float t66 = t63 + t65;
-    float rest = t50 - t50;
-    rest += t59 - t59;
-    rest += t66 - t66;
-    if (isnan(rest) != 0) {
+    const float t45 = k * t44;
+    const float t46 = t7 * t15;
+    const float t47 = t28 * t46;
+    const float t48 = t45 * t47;
+    const float t49 = t43 - t48;
+    const float t50 = t40 * t35;
+    const float t51 = t10 * t28;
+    const float t52 = t38 * t51;
+    const float t53 = 0.5f * t52;
+    const float t54 = t50 - t53;
+    const float t55 = t9 * t15;
+    const float t56 = t28 * t55;
+    const float t57 = t45 * t56;
+    const float t58 = t54 - t57;
+    const float t59 = t16 * t28;
+    const float t60 = t45 * t59;
+    const float t61 = t38 * t56;
+    const float t62 = 0.5f * t61;
+    const float t63 = t47 * t35;
+    const float t64 = t62 - t63;
+    const float t65 = t60 + t64;
+    float rest = (t49 - t49) * t58 * t65;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    Q_tilde[0] = t50;
-    Q_tilde[1] = t59;
-    Q_tilde[2] = t66;
+    Q_tilde[0] = t49;
+    Q_tilde[1] = t58;
+    Q_tilde[2] = t65;
     return SLIDER_CRANK_OK;
 }
 
@@ -1884,10 +1841,10 @@ slider_crank_status slider_crank_projected_applied_force_f(const float q[3], con
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -1921,7 +1878,7 @@ slider_crank_status slider_crank_projected_applied_force_f(const float q[3], con
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = 1.0f / t18;
@@ -1944,10 +1901,8 @@ slider_crank_status slider_crank_projected_applied_force_f(const float q[3], con
     const float t41 = t35 * t39;
     const float t42 = t31 * t39;
     const float t43 = -t42;
-    float rest = t40 - t40;
-    rest += t41 - t41;
-    rest += t43 - t43;
-    if (isnan(rest) != 0) {
+    float rest = (t40 - t40) * t41 * t43;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a_tilde[0] = t40;
@@ -1961,10 +1916,10 @@ slider_crank_status slider_crank_minimal_mass_matrix_f(const float q[3], const s
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -1990,7 +1945,7 @@ slider_crank_status slider_crank_minimal_mass_matrix_f(const float q[3], const s
     const float t19 = t18 * 2.046363e-12f;
     const float t3 = sine[0];
     const float t5 = sine[1];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         const float t20 = r * l;
         const float t21 = t6 * t3;
         const float t22 = t4 * t5;
@@ -2051,7 +2006,7 @@ slider_crank_status slider_crank_minimal_mass_matrix_f(const float q[3], const s
     const float t68 = t45 + t67;
     const float t69 = t68 / t8;
     float rest = t69 - t69;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G_bar[0] = t69;
@@ -2063,10 +2018,10 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -2100,7 +2055,7 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = fabsf(r);
@@ -2111,7 +2066,7 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
     const float t33 = 1.0f + t32;
     const float t34 = t25 * t33;
     const float t35 = t34 * 2.046363e-12f;
-    if (!(t8 > t35)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t35))) {
         if (!(t18 > t27)) {
             return SLIDER_CRANK_CONSTRAINT_RANK;
         }
@@ -2119,7 +2074,7 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
     }
     const float t36 = t15 / t7;
     const float t37 = 1.0f / t18;
-    const float t38 = t25 * t37;
+    const float t38 = t7 * t15;
     const float alpha_dot = qd[0];
     const float t39 = alpha_dot * t4;
     const float t40 = r * t39;
@@ -2130,71 +2085,67 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
     const float t44 = t42 * t43;
     const float t45 = t40 + t44;
     const float t46 = t38 * t45;
-    const float t47 = t7 * t21;
-    const float t48 = t9 * t19;
-    const float t49 = t47 - t48;
-    const float t50 = t49 * t37;
-    const float t51 = beta_dot * t5;
-    const float t52 = l * t51;
-    const float t53 = t52 * t43;
-    const float t54 = alpha_dot * t3;
-    const float t55 = r * t54;
-    const float t56 = t53 - t55;
-    const float t57 = t50 * t56;
-    const float t58 = t46 + t57;
-    const float t59 = t7 * t15;
-    const float t60 = t37 * t59;
-    const float t61 = t60 * t45;
-    const float t62 = t21 * t15;
-    const float t63 = t9 + t62;
-    const float t64 = t37 * t63;
-    const float t65 = t64 * t56;
-    const float t66 = t61 + t65;
-    const float t67 = t36 * t66;
-    const float t68 = t58 + t67;
+    const float t47 = t21 * t15;
+    const float t48 = t9 + t47;
+    const float t49 = beta_dot * t5;
+    const float t50 = l * t49;
+    const float t51 = t50 * t43;
+    const float t52 = alpha_dot * t3;
+    const float t53 = r * t52;
+    const float t54 = t51 - t53;
+    const float t55 = t48 * t54;
+    const float t56 = t46 + t55;
+    const float t57 = t37 * t56;
+    const float t58 = t36 * t57;
+    const float t59 = t25 * t45;
+    const float t60 = t7 * t21;
+    const float t61 = t9 * t19;
+    const float t62 = t60 - t61;
+    const float t63 = t62 * t54;
+    const float t64 = t59 + t63;
+    const float t65 = t37 * t64;
+    const float t66 = t58 + t65;
     const float m_s = p->m_s;
-    const float t69 = m_s * t68;
-    const float t70 = t36 * t69;
+    const float t67 = m_s * t66;
+    const float t68 = t36 * t67;
     const float m_rod = p->m_rod;
-    const float t71 = 0.5f * m_rod;
-    const float t72 = t71 * t15;
-    const float t73 = beta_dot * t72;
-    const float t74 = t43 * t73;
-    const float t75 = t43 * t66;
-    const float t76 = t9 * t15;
-    const float t77 = t37 * t76;
-    const float t78 = t77 * t45;
-    const float t79 = t19 * t15;
-    const float t80 = t7 + t79;
-    const float t81 = t37 * t80;
-    const float t82 = t81 * t56;
-    const float t83 = t78 - t82;
-    const float t84 = t75 - t83;
-    const float t85 = t4 * t6;
-    const float t86 = t3 * t5;
-    const float t87 = t85 - t86;
-    const float t88 = t11 * t87;
-    const float t89 = t71 * t88;
-    const float t90 = t84 * t89;
-    const float t91 = t74 - t90;
-    const float t92 = alpha_dot * t72;
+    const float t69 = 0.5f * m_rod;
+    const float t70 = t69 * t15;
+    const float t71 = beta_dot * t70;
+    const float t72 = alpha_dot * t70;
     const float J_rod = p->J_rod;
-    const float t93 = 0.5f * J_rod;
-    const float t94 = l * l;
-    const float t95 = m_rod * t94;
-    const float t96 = 0.125f * t95;
-    const float t97 = t93 + t96;
-    const float t98 = 2.0f * t97;
-    const float t99 = t98 * t84;
-    const float t100 = t92 + t99;
-    const float t101 = t43 * t100;
-    const float t102 = t91 + t101;
-    const float t103 = t70 + t102;
-    float rest = t103 - t103;
-    if (isnan(rest) != 0) {
+    const float t73 = 0.5f * J_rod;
+    const float t74 = l * l;
+    const float t75 = m_rod * t74;
+    const float t76 = 0.125f * t75;
+    const float t77 = t73 + t76;
+    const float t78 = 2.0f * t77;
+    const float t79 = t43 * t57;
+    const float t80 = t9 * t15;
+    const float t81 = t80 * t45;
+    const float t82 = t19 * t15;
+    const float t83 = t7 + t82;
+    const float t84 = t83 * t54;
+    const float t85 = t81 - t84;
+    const float t86 = t37 * t85;
+    const float t87 = t79 - t86;
+    const float t88 = t78 * t87;
+    const float t89 = t72 + t88;
+    const float t90 = t71 + t89;
+    const float t91 = t43 * t90;
+    const float t92 = t4 * t6;
+    const float t93 = t3 * t5;
+    const float t94 = t92 - t93;
+    const float t95 = t11 * t94;
+    const float t96 = t69 * t95;
+    const float t97 = t96 * t87;
+    const float t98 = t91 - t97;
+    const float t99 = t68 + t98;
+    float rest = t99 - t99;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    C_bar[0] = t103;
+    C_bar[0] = t99;
     return SLIDER_CRANK_OK;
 }
 
@@ -2203,10 +2154,10 @@ slider_crank_status slider_crank_minimal_potential_force_f(const float q[3], con
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -2232,7 +2183,7 @@ slider_crank_status slider_crank_minimal_potential_force_f(const float q[3], con
     const float t19 = t18 * 2.046363e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         const float t20 = r * l;
         const float t21 = t4 * t5;
         const float t22 = t6 * t3;
@@ -2255,31 +2206,31 @@ slider_crank_status slider_crank_minimal_potential_force_f(const float q[3], con
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t36 = t4 * t6;
-    const float m_crank = p->m_crank;
-    const float t37 = 0.5f * m_crank;
     const float m_rod = p->m_rod;
-    const float t38 = m_rod + t37;
     const float g = p->g;
-    const float t39 = r * g;
-    const float t40 = t38 * t39;
-    const float t41 = t36 * t40;
-    const float t42 = t4 * t5;
-    const float t43 = t6 * t3;
-    const float t44 = t42 + t43;
+    const float t37 = m_rod * g;
+    const float m_crank = p->m_crank;
+    const float t38 = m_crank * g;
+    const float t39 = 0.5f * t38;
+    const float t40 = t37 + t39;
+    const float t41 = r * t40;
+    const float t42 = t36 * t41;
+    const float t43 = t4 * t5;
+    const float t44 = t6 * t3;
+    const float t45 = t43 + t44;
     const float s = q[2];
-    const float t45 = l - s;
-    const float t46 = t44 * t45;
+    const float t46 = l - s;
+    const float t47 = t45 * t46;
     const float k = p->k;
-    const float t47 = k * t46;
-    const float t48 = m_rod * g;
-    const float t49 = t48 * t36;
+    const float t48 = k * t47;
+    const float t49 = t37 * t36;
     const float t50 = 0.5f * t49;
-    const float t51 = t47 - t50;
+    const float t51 = t48 - t50;
     const float t52 = r * t51;
-    const float t53 = t41 + t52;
+    const float t53 = t42 + t52;
     const float t54 = t53 / t6;
     float rest = t54 - t54;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_bar[0] = t54;
@@ -2291,10 +2242,10 @@ slider_crank_status slider_crank_minimal_applied_force_f(const float q[3], const
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -2320,7 +2271,7 @@ slider_crank_status slider_crank_minimal_applied_force_f(const float q[3], const
     const float t19 = t18 * 2.046363e-12f;
     const float t3 = sine[0];
     const float t5 = sine[1];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         const float t20 = r * l;
         const float t21 = t6 * t3;
         const float t22 = t4 * t5;
@@ -2352,7 +2303,7 @@ slider_crank_status slider_crank_minimal_applied_force_f(const float q[3], const
     const float t41 = s_dot * t40;
     const float t42 = t37 * t41;
     float rest = t42 - t42;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     Q_a_bar[0] = t42;
@@ -2371,10 +2322,10 @@ slider_crank_status slider_crank_admissible_velocity_f(const float q[3], const f
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -2408,7 +2359,7 @@ slider_crank_status slider_crank_admissible_velocity_f(const float q[3], const f
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = t13 + t12;
@@ -2455,10 +2406,8 @@ slider_crank_status slider_crank_admissible_velocity_f(const float q[3], const f
     const float t66 = l * t65;
     const float t67 = t64 - t66;
     const float t68 = t47 * t67;
-    float rest = t43 - t43;
-    rest += t46 - t46;
-    rest += t68 - t68;
-    if (isnan(rest) != 0) {
+    float rest = (t43 - t43) * t46 * t68;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     qd_admissible[0] = t43;
@@ -2472,10 +2421,10 @@ slider_crank_status slider_crank_admissible_acceleration_f(const float q[3], con
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -2509,7 +2458,7 @@ slider_crank_status slider_crank_admissible_acceleration_f(const float q[3], con
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = 1.0f / t18;
@@ -2523,283 +2472,229 @@ slider_crank_status slider_crank_admissible_acceleration_f(const float q[3], con
     const float t34 = t30 + t33;
     const float t35 = t7 * t15;
     const float t36 = t28 * t35;
-    const float s_ddot = qdd[2];
-    const float t37 = s_ddot * t36;
-    const float t38 = t34 - t37;
     const float alpha_dot = qd[0];
-    const float t39 = alpha_dot * t29;
+    const float t37 = alpha_dot * t29;
     const float beta_dot = qd[1];
-    const float t40 = beta_dot * t32;
-    const float t41 = t39 + t40;
+    const float t38 = beta_dot * t32;
+    const float t39 = t37 + t38;
     const float s_dot = qd[2];
-    const float t42 = s_dot * t36;
-    const float t43 = t41 - t42;
-    const float t44 = t6 * t43;
-    const float t45 = r * t44;
-    const float t46 = t43 * t45;
-    const float t47 = alpha_dot * t32;
-    const float t48 = t10 * t28;
-    const float t49 = beta_dot * t48;
-    const float t50 = t47 + t49;
-    const float t51 = t9 * t15;
-    const float t52 = t28 * t51;
-    const float t53 = s_dot * t52;
-    const float t54 = t50 - t53;
-    const float t55 = t54 * t45;
-    const float t56 = t46 + t55;
-    const float t57 = t36 * t56;
-    const float t58 = t21 * t15;
-    const float t59 = t9 + t58;
-    const float t60 = t28 * t59;
-    const float t61 = t3 * t54;
-    const float t62 = l * t61;
-    const float t63 = t54 * t62;
-    const float t64 = t5 * t43;
-    const float t65 = r * t64;
-    const float t66 = t43 * t65;
-    const float t67 = t63 - t66;
-    const float t68 = t60 * t67;
-    const float t69 = t57 + t68;
-    const float t70 = t38 - t69;
-    const float t71 = alpha_ddot * t32;
-    const float t72 = beta_ddot * t48;
-    const float t73 = t71 + t72;
-    const float t74 = s_ddot * t52;
-    const float t75 = t73 - t74;
-    const float t76 = t52 * t56;
-    const float t77 = t19 * t15;
-    const float t78 = t7 + t77;
-    const float t79 = t28 * t78;
-    const float t80 = t79 * t67;
-    const float t81 = t76 - t80;
-    const float t82 = t75 - t81;
-    const float t83 = t16 * t28;
-    const float t84 = s_ddot * t83;
-    const float t85 = alpha_ddot * t36;
-    const float t86 = beta_ddot * t52;
-    const float t87 = t85 + t86;
-    const float t88 = t84 - t87;
-    const float t89 = t25 * t28;
-    const float t90 = t89 * t56;
-    const float t91 = t7 * t21;
-    const float t92 = t9 * t19;
-    const float t93 = t91 - t92;
-    const float t94 = t93 * t28;
-    const float t95 = t94 * t67;
-    const float t96 = t90 + t95;
-    const float t97 = t88 - t96;
-    float rest = t70 - t70;
-    rest += t82 - t82;
-    rest += t97 - t97;
-    if (isnan(rest) != 0) {
+    const float t40 = s_dot * t36;
+    const float t41 = t39 - t40;
+    const float t42 = t6 * t41;
+    const float t43 = r * t42;
+    const float t44 = alpha_dot * t32;
+    const float t45 = t10 * t28;
+    const float t46 = beta_dot * t45;
+    const float t47 = t44 + t46;
+    const float t48 = t9 * t15;
+    const float t49 = t28 * t48;
+    const float t50 = s_dot * t49;
+    const float t51 = t47 - t50;
+    const float t52 = t51 + t41;
+    const float t53 = t43 * t52;
+    const float s_ddot = qdd[2];
+    const float t54 = s_ddot + t53;
+    const float t55 = t36 * t54;
+    const float t56 = t34 - t55;
+    const float t57 = t21 * t15;
+    const float t58 = t9 + t57;
+    const float t59 = t28 * t58;
+    const float t60 = t3 * t51;
+    const float t61 = l * t60;
+    const float t62 = t51 * t61;
+    const float t63 = t5 * t41;
+    const float t64 = r * t63;
+    const float t65 = t41 * t64;
+    const float t66 = t62 - t65;
+    const float t67 = t59 * t66;
+    const float t68 = t56 - t67;
+    const float t69 = t19 * t15;
+    const float t70 = t7 + t69;
+    const float t71 = t28 * t70;
+    const float t72 = t71 * t66;
+    const float t73 = alpha_ddot * t32;
+    const float t74 = beta_ddot * t45;
+    const float t75 = t73 + t74;
+    const float t76 = t49 * t54;
+    const float t77 = t75 - t76;
+    const float t78 = t72 + t77;
+    const float t79 = s_ddot * t16;
+    const float t80 = t25 * t53;
+    const float t81 = t79 - t80;
+    const float t82 = t7 * t21;
+    const float t83 = t9 * t19;
+    const float t84 = t82 - t83;
+    const float t85 = t84 * t66;
+    const float t86 = t81 - t85;
+    const float t87 = t28 * t86;
+    const float t88 = alpha_ddot * t36;
+    const float t89 = t87 - t88;
+    const float t90 = beta_ddot * t49;
+    const float t91 = t89 - t90;
+    float rest = (t68 - t68) * t78 * t91;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd_admissible[0] = t70;
-    qdd_admissible[1] = t82;
-    qdd_admissible[2] = t97;
+    qdd_admissible[0] = t68;
+    qdd_admissible[1] = t78;
+    qdd_admissible[2] = t91;
     return SLIDER_CRANK_OK;
 }
 
 slider_crank_status slider_crank_projected_configuration_f(const float q[3], const slider_crank_params_f *p, float q_projected[3]) {
-    const float alpha = q[0];
     const float beta = q[1];
-    const float t1 = alpha + beta;
+    const float t1 = fabsf(beta);
+    const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    const float t3 = fabsf(beta);
-    const float t4 = fabsf(t1);
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t3)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t4)) {
-        return SLIDER_CRANK_ANGLE_RANGE;
-    }
-    const float angle[4] = {alpha, beta, t1, t1};
+    const float angle[4] = {beta, alpha, alpha, alpha};
     float sine[4];
     float cosine[4];
-    slider_crank_sincos_group_f(3, angle, sine, cosine);
+    slider_crank_sincos_group_f(2, angle, sine, cosine);
     const float l = p->l;
-    const float t8 = cosine[1];
-    const float t11 = l * t8;
-    const float t12 = t11 * t11;
+    const float t4 = cosine[0];
+    const float t7 = l * t4;
+    const float t8 = t7 * t7;
     const float r = p->r;
-    const float t6 = cosine[0];
-    const float t13 = r * t6;
-    const float t14 = t13 * t13;
-    const float t15 = r * l;
-    const float t7 = sine[1];
-    const float t16 = t6 * t7;
-    const float t5 = sine[0];
-    const float t17 = t8 * t5;
-    const float t18 = t16 + t17;
-    const float t19 = t15 * t18;
+    const float t6 = cosine[1];
+    const float t9 = r * t6;
+    const float t10 = t9 * t9;
+    const float t11 = r * l;
+    const float t3 = sine[0];
+    const float t12 = t6 * t3;
+    const float t5 = sine[1];
+    const float t13 = t4 * t5;
+    const float t14 = t12 + t13;
+    const float t15 = t11 * t14;
+    const float t16 = t15 * t15;
+    const float t17 = t10 + t16;
+    const float t18 = t8 + t17;
+    const float t19 = r * t5;
     const float t20 = t19 * t19;
-    const float t21 = t14 + t20;
-    const float t22 = t12 + t21;
-    const float t23 = r * t5;
-    const float t24 = t23 * t23;
-    const float t25 = l * t7;
-    const float t26 = t25 * t25;
-    const float t27 = t24 + t26;
-    const float t28 = 1.0f + t27;
-    const float t29 = t14 + t12;
-    const float t30 = t28 * t29;
-    const float t31 = t30 * 2.046363e-12f;
-    if (!(t22 > t31)) {
+    const float t21 = l * t3;
+    const float t22 = t21 * t21;
+    const float t23 = t20 + t22;
+    const float t24 = 1.0f + t23;
+    const float t25 = t10 + t8;
+    const float t26 = t24 * t25;
+    const float t27 = t26 * 2.046363e-12f;
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float t32 = t23 - t25;
+    const float t28 = 1.0f / t18;
+    const float t29 = t19 - t21;
     const float e = p->e;
-    const float t33 = t32 - e;
-    const float t34 = 1.0f / t22;
-    const float t35 = t25 * t19;
-    const float t36 = t13 + t35;
-    const float t37 = t34 * t36;
-    const float t38 = t33 * t37;
-    const float t39 = t13 + t11;
+    const float t30 = t29 - e;
+    const float t31 = t21 * t15;
+    const float t32 = t9 + t31;
+    const float t33 = t30 * t32;
+    const float t34 = t9 + t7;
     const float s = q[2];
-    const float t40 = t39 - s;
-    const float t41 = t11 * t19;
-    const float t42 = t34 * t41;
-    const float t43 = t40 * t42;
-    const float t44 = t38 - t43;
-    const float t45 = alpha - t44;
-    const float t46 = fabsf(t45);
-    if (!(100.0f >= t46)) {
+    const float t35 = t34 - s;
+    const float t36 = t7 * t15;
+    const float t37 = t35 * t36;
+    const float t38 = t33 - t37;
+    const float t39 = t28 * t38;
+    const float t40 = alpha - t39;
+    const float t41 = t9 * t15;
+    const float t42 = t35 * t41;
+    const float t43 = t19 * t15;
+    const float t44 = t7 + t43;
+    const float t45 = t30 * t44;
+    const float t46 = t42 + t45;
+    const float t47 = t28 * t46;
+    const float t48 = beta + t47;
+    const float t49 = t40 + t48;
+    const float t50 = fabsf(t49);
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t50))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const float t47 = t13 * t19;
-    const float t48 = t34 * t47;
-    const float t49 = t40 * t48;
-    const float t50 = t23 * t19;
-    const float t51 = t11 + t50;
-    const float t52 = t34 * t51;
-    const float t53 = t33 * t52;
-    const float t54 = t49 + t53;
-    const float t55 = beta + t54;
-    const float t56 = fabsf(t55);
-    if (!(100.0f >= t56)) {
+    const float t51 = fabsf(t40);
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t51))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const float t9 = sine[2];
-    const float t57 = t9 * t15;
-    const float t58 = t57 * t57;
-    const float t59 = t58 + t14;
-    const float t60 = t59 + t12;
-    const float t61 = 1.0f / t60;
-    const float t62 = t13 * t57;
-    const float t63 = t61 * t62;
-    const float t64 = t40 * t63;
-    const float t65 = t23 * t57;
-    const float t66 = t11 + t65;
-    const float t67 = t61 * t66;
-    const float t68 = t33 * t67;
-    const float t69 = t64 + t68;
-    const float t70 = beta + t69;
-    const float t71 = fabsf(t70);
-    if (!(100.0f >= t71)) {
+    const float t52 = fabsf(t48);
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t52))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    const float t72 = t25 * t57;
-    const float t73 = t13 + t72;
-    const float t74 = t61 * t73;
-    const float t75 = t33 * t74;
-    const float t76 = t11 * t57;
-    const float t77 = t61 * t76;
-    const float t78 = t40 * t77;
-    const float t79 = t75 - t78;
-    const float t80 = alpha - t79;
-    const float t81 = fabsf(t80);
-    if (!(100.0f >= t81)) {
-        return SLIDER_CRANK_ANGLE_RANGE;
-    }
-    float t82;
-    float t83;
-    slider_crank_sincos_f(t55, &t82, &t83);
-    const float t84 = l * t83;
-    const float t85 = t84 * t84;
-    float t86;
-    float t87;
-    slider_crank_sincos_f(t45, &t86, &t87);
-    const float t88 = r * t87;
-    const float t89 = t88 * t88;
-    float t90;
-    float t91;
-    slider_crank_sincos_f(t70, &t90, &t91);
-    float t92;
-    float t93;
-    slider_crank_sincos_f(t80, &t92, &t93);
-    const float t94 = t90 * t93;
-    const float t95 = t92 * t91;
-    const float t96 = t94 + t95;
-    const float t97 = t15 * t96;
-    const float t98 = t97 * t97;
-    const float t99 = t89 + t98;
-    const float t100 = t85 + t99;
-    const float t101 = t89 + t85;
-    const float t102 = r * t86;
-    const float t103 = t102 * t102;
-    const float t104 = l * t82;
-    const float t105 = t104 * t104;
-    const float t106 = t103 + t105;
-    const float t107 = 1.0f + t106;
-    const float t108 = t101 * t107;
-    const float t109 = 2.046363e-12f * t108;
-    if (!(t100 > t109)) {
+    float t53;
+    float t54;
+    slider_crank_sincos_f(t49, &t53, &t54);
+    const float t55 = t11 * t53;
+    const float t56 = t55 * t55;
+    float t57;
+    float t58;
+    slider_crank_sincos_f(t40, &t57, &t58);
+    const float t59 = r * t58;
+    const float t60 = t59 * t59;
+    const float t61 = t56 + t60;
+    float t62;
+    float t63;
+    slider_crank_sincos_f(t48, &t62, &t63);
+    const float t64 = l * t63;
+    const float t65 = t64 * t64;
+    const float t66 = t61 + t65;
+    const float t67 = t60 + t65;
+    const float t68 = r * t57;
+    const float t69 = t68 * t68;
+    const float t70 = l * t62;
+    const float t71 = t70 * t70;
+    const float t72 = t69 + t71;
+    const float t73 = 1.0f + t72;
+    const float t74 = t67 * t73;
+    const float t75 = 2.046363e-12f * t74;
+    if (SLIDER_CRANK_RARELY_F(!(t66 > t75))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float t110 = t102 - t104;
-    const float t111 = t110 - e;
-    const float t112 = 1.0f / t100;
-    const float t113 = t104 * t97;
-    const float t114 = t88 + t113;
-    const float t115 = t112 * t114;
-    const float t116 = t111 * t115;
-    const float t117 = t88 + t84;
-    const float t118 = t11 * t25;
-    const float t119 = t13 * t23;
-    const float t120 = t118 - t119;
-    const float t121 = t120 * t34;
-    const float t122 = t33 * t121;
-    const float t123 = t29 * t34;
-    const float t124 = t40 * t123;
-    const float t125 = t122 - t124;
-    const float t126 = s - t125;
-    const float t127 = t117 - t126;
-    const float t128 = t84 * t97;
-    const float t129 = t112 * t128;
-    const float t130 = t127 * t129;
-    const float t131 = t116 - t130;
-    const float t132 = t45 - t131;
-    const float t133 = t88 * t97;
-    const float t134 = t112 * t133;
-    const float t135 = t127 * t134;
-    const float t136 = t102 * t97;
-    const float t137 = t84 + t136;
-    const float t138 = t112 * t137;
-    const float t139 = t111 * t138;
-    const float t140 = t135 + t139;
-    const float t141 = t55 + t140;
-    const float t142 = t104 * t84;
-    const float t143 = t102 * t88;
-    const float t144 = t142 - t143;
-    const float t145 = t144 * t112;
-    const float t146 = t111 * t145;
-    const float t147 = t101 * t112;
-    const float t148 = t127 * t147;
-    const float t149 = t146 - t148;
-    const float t150 = t126 - t149;
-    float rest = t132 - t132;
-    rest += t141 - t141;
-    rest += t150 - t150;
-    if (isnan(rest) != 0) {
+    const float t76 = 1.0f / t66;
+    const float t77 = t68 - t70;
+    const float t78 = t77 - e;
+    const float t79 = t55 * t70;
+    const float t80 = t59 + t79;
+    const float t81 = t78 * t80;
+    const float t82 = t59 + t64;
+    const float t83 = t7 * t21;
+    const float t84 = t9 * t19;
+    const float t85 = t83 - t84;
+    const float t86 = t30 * t85;
+    const float t87 = t35 * t25;
+    const float t88 = t86 - t87;
+    const float t89 = t28 * t88;
+    const float t90 = s - t89;
+    const float t91 = t82 - t90;
+    const float t92 = t55 * t64;
+    const float t93 = t91 * t92;
+    const float t94 = t81 - t93;
+    const float t95 = t76 * t94;
+    const float t96 = t40 - t95;
+    const float t97 = t55 * t59;
+    const float t98 = t91 * t97;
+    const float t99 = t55 * t68;
+    const float t100 = t64 + t99;
+    const float t101 = t78 * t100;
+    const float t102 = t98 + t101;
+    const float t103 = t76 * t102;
+    const float t104 = t48 + t103;
+    const float t105 = t64 * t70;
+    const float t106 = t59 * t68;
+    const float t107 = t105 - t106;
+    const float t108 = t78 * t107;
+    const float t109 = t91 * t67;
+    const float t110 = t108 - t109;
+    const float t111 = t76 * t110;
+    const float t112 = t90 - t111;
+    float rest = (t96 - t96) * t104 * t112;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    q_projected[0] = t132;
-    q_projected[1] = t141;
-    q_projected[2] = t150;
+    q_projected[0] = t96;
+    q_projected[1] = t104;
+    q_projected[2] = t112;
     return SLIDER_CRANK_OK;
 }
 
@@ -2808,10 +2703,10 @@ slider_crank_status slider_crank_inverse_dynamics_f(const float q[3], const floa
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -2826,7 +2721,7 @@ slider_crank_status slider_crank_inverse_dynamics_f(const float q[3], const floa
     const float t10 = t9 * 1.4305115e-06f;
     const float r = p->r;
     const float t4 = cosine[0];
-    if (!(t8 > t10)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t10))) {
         const float t11 = r * t4;
         const float t12 = t11 * t11;
         const float t13 = t7 * t7;
@@ -2876,10 +2771,10 @@ slider_crank_status slider_crank_inverse_dynamics_f(const float q[3], const floa
     const float t44 = t39 - t43;
     const float t45 = t15 * t44;
     const float m_crank = p->m_crank;
-    const float t46 = 0.5f * m_crank;
-    const float t47 = m_rod + t46;
-    const float t48 = r * g;
-    const float t49 = t47 * t48;
+    const float t46 = m_crank * g;
+    const float t47 = 0.5f * t46;
+    const float t48 = t40 + t47;
+    const float t49 = r * t48;
     const float t50 = t4 * t49;
     const float beta_dot = qd[1];
     const float t51 = beta_dot * beta_dot;
@@ -2917,7 +2812,7 @@ slider_crank_status slider_crank_inverse_dynamics_f(const float q[3], const floa
     const float t76 = t68 - t75;
     const float t77 = t76 / t7;
     float rest = t77 - t77;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     u[0] = t77;
@@ -2940,7 +2835,7 @@ slider_crank_status slider_crank_actuator_velocity_f(const float q[3], const flo
     (void)p;
     const float alpha_dot = qd[0];
     float rest = alpha_dot - alpha_dot;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     nu[0] = alpha_dot;
@@ -2952,10 +2847,10 @@ slider_crank_status slider_crank_actuator_mass_matrix_f(const float q[3], const 
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -2981,7 +2876,7 @@ slider_crank_status slider_crank_actuator_mass_matrix_f(const float q[3], const 
     const float t19 = t18 * 2.046363e-12f;
     const float t3 = sine[0];
     const float t5 = sine[1];
-    if (!(t8 > t19)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         const float t20 = r * l;
         const float t21 = t6 * t3;
         const float t22 = t4 * t5;
@@ -3042,7 +2937,7 @@ slider_crank_status slider_crank_actuator_mass_matrix_f(const float q[3], const 
     const float t68 = t45 + t67;
     const float t69 = t68 / t8;
     float rest = t69 - t69;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     G_nu[0] = t69;
@@ -3054,10 +2949,10 @@ slider_crank_status slider_crank_actuator_bias_f(const float q[3], const float q
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -3071,151 +2966,144 @@ slider_crank_status slider_crank_actuator_bias_f(const float q[3], const float q
     const float r = p->r;
     const float t6 = cosine[1];
     const float t9 = r * t6;
-    const float t10 = t6 * t9;
+    const float t10 = t9 * t9;
+    const float t11 = r * l;
     const float t3 = sine[0];
-    const float t11 = t6 * t3;
+    const float t12 = t6 * t3;
     const float t5 = sine[1];
-    const float t12 = t4 * t5;
-    const float t13 = t11 + t12;
-    const float t14 = r * l;
-    const float t15 = l * t14;
-    const float t16 = t13 * t15;
-    const float t17 = t13 * t16;
-    const float t18 = t10 + t17;
-    const float t19 = r * t18;
-    const float t20 = t8 + t19;
-    const float t21 = r * t5;
+    const float t13 = t4 * t5;
+    const float t14 = t12 + t13;
+    const float t15 = t11 * t14;
+    const float t16 = t15 * t15;
+    const float t17 = t10 + t16;
+    const float t18 = t8 + t17;
+    const float t19 = r * t5;
+    const float t20 = t19 * t19;
+    const float t21 = l * t3;
     const float t22 = t21 * t21;
-    const float t23 = l * t3;
-    const float t24 = t23 * t23;
-    const float t25 = t22 + t24;
-    const float t26 = 1.0f + t25;
-    const float t27 = t9 * t9;
-    const float t28 = t27 + t8;
-    const float t29 = t26 * t28;
-    const float t30 = t29 * 2.046363e-12f;
-    if (!(t20 > t30)) {
+    const float t23 = t20 + t22;
+    const float t24 = 1.0f + t23;
+    const float t25 = t10 + t8;
+    const float t26 = t24 * t25;
+    const float t27 = t26 * 2.046363e-12f;
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float t31 = fabsf(r);
-    const float t32 = t31 * t31;
-    const float t33 = fabsf(l);
-    const float t34 = t33 * t33;
-    const float t35 = t32 + t34;
-    const float t36 = 1.0f + t35;
-    const float t37 = t28 * t36;
-    const float t38 = t37 * 2.046363e-12f;
-    if (!(t8 > t38)) {
-        const float t39 = t14 * t13;
-        const float t40 = t39 * t39;
-        const float t41 = t27 + t40;
-        const float t42 = t8 + t41;
-        if (!(t42 > t30)) {
+    const float t28 = fabsf(r);
+    const float t29 = t28 * t28;
+    const float t30 = fabsf(l);
+    const float t31 = t30 * t30;
+    const float t32 = t29 + t31;
+    const float t33 = 1.0f + t32;
+    const float t34 = t25 * t33;
+    const float t35 = t34 * 2.046363e-12f;
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t35))) {
+        if (!(t18 > t27)) {
             return SLIDER_CRANK_CONSTRAINT_RANK;
         }
         return SLIDER_CRANK_ACTUATION_RANK;
     }
-    const float t43 = t6 * t4;
-    const float t44 = t4 * t43;
-    const float t45 = t4 * t44;
-    const float t46 = t4 * t45;
-    const float t47 = l * l;
-    const float t48 = l * t47;
-    const float m_crank = p->m_crank;
-    const float t49 = 0.5f * m_crank;
+    const float t36 = t6 * t4;
+    const float t37 = t4 * t36;
+    const float t38 = t4 * t37;
+    const float t39 = t4 * t38;
+    const float t40 = l * l;
+    const float t41 = l * t40;
     const float m_rod = p->m_rod;
-    const float t50 = m_rod + t49;
     const float g = p->g;
-    const float t51 = r * g;
-    const float t52 = t50 * t51;
-    const float t53 = t48 * t52;
-    const float t54 = t46 * t53;
-    const float t55 = r * r;
+    const float t42 = m_rod * g;
+    const float m_crank = p->m_crank;
+    const float t43 = m_crank * g;
+    const float t44 = 0.5f * t43;
+    const float t45 = t42 + t44;
+    const float t46 = r * t45;
+    const float t47 = t41 * t46;
+    const float t48 = t39 * t47;
+    const float t49 = r * r;
     const float J_rod = p->J_rod;
-    const float t56 = 0.5f * J_rod;
-    const float t57 = m_rod * t47;
-    const float t58 = 0.125f * t57;
-    const float t59 = t56 + t58;
-    const float t60 = t55 * t59;
+    const float t50 = 0.5f * J_rod;
+    const float t51 = m_rod * t40;
+    const float t52 = 0.125f * t51;
+    const float t53 = t50 + t52;
+    const float t54 = t49 * t53;
     const float alpha_dot = qd[0];
-    const float t61 = alpha_dot * alpha_dot;
-    const float t62 = t6 * t61;
-    const float t63 = t6 * t62;
-    const float t64 = t6 * t63;
-    const float t65 = t3 * t64;
-    const float t66 = t60 * t65;
-    const float t67 = 2.0f * t66;
+    const float t55 = alpha_dot * alpha_dot;
+    const float t56 = t6 * t55;
+    const float t57 = t6 * t56;
+    const float t58 = t6 * t57;
+    const float t59 = t3 * t58;
+    const float t60 = t54 * t59;
+    const float t61 = 2.0f * t60;
     const float m_s = p->m_s;
-    const float t68 = m_s * t55;
-    const float t69 = t68 * t65;
-    const float t70 = 0.5f * m_rod;
-    const float t71 = m_s + t70;
-    const float t72 = t5 * t63;
-    const float t73 = t71 * t72;
-    const float t74 = t55 * t73;
-    const float t75 = alpha_dot * t6;
+    const float t62 = m_s * t49;
+    const float t63 = t62 * t59;
+    const float t64 = 0.5f * m_rod;
+    const float t65 = m_s + t64;
+    const float t66 = t5 * t57;
+    const float t67 = t65 * t66;
+    const float t68 = t49 * t67;
+    const float t69 = alpha_dot * t6;
     const float d = p->d;
-    const float t76 = d * t6;
-    const float t77 = alpha_dot * t5;
-    const float t78 = m_s * t77;
-    const float t79 = t76 - t78;
-    const float t80 = t75 * t79;
-    const float t81 = r * t80;
+    const float t70 = d * t6;
+    const float t71 = alpha_dot * t5;
+    const float t72 = m_s * t71;
+    const float t73 = t70 - t72;
+    const float t74 = t69 * t73;
+    const float t75 = r * t74;
     const float s = q[2];
-    const float t82 = l - s;
-    const float t83 = t13 * t82;
+    const float t76 = l - s;
+    const float t77 = t14 * t76;
     const float k = p->k;
-    const float t84 = k * t83;
-    const float t85 = m_rod * g;
-    const float t86 = t85 * t43;
-    const float t87 = 0.5f * t86;
-    const float t88 = t84 - t87;
-    const float t89 = t5 * t3;
-    const float t90 = t43 - t89;
+    const float t78 = k * t77;
+    const float t79 = t42 * t36;
+    const float t80 = 0.5f * t79;
+    const float t81 = t78 - t80;
+    const float t82 = t5 * t3;
+    const float t83 = t36 - t82;
+    const float t84 = t6 * t83;
+    const float t85 = 2.0f * t84;
+    const float t86 = t4 - t85;
+    const float t87 = d * t86;
+    const float t88 = 2.0f * m_s;
+    const float t89 = m_rod + t88;
+    const float t90 = t14 * t89;
     const float t91 = t6 * t90;
-    const float t92 = 2.0f * t91;
-    const float t93 = t4 - t92;
-    const float t94 = d * t93;
-    const float t95 = 2.0f * m_s;
-    const float t96 = m_rod + t95;
-    const float t97 = t13 * t96;
-    const float t98 = t6 * t97;
-    const float t99 = t3 * t71;
-    const float t100 = t98 - t99;
-    const float t101 = alpha_dot * t100;
-    const float t102 = t94 + t101;
-    const float t103 = r * t102;
-    const float t104 = alpha_dot * t103;
-    const float t105 = t88 + t104;
-    const float t106 = t4 * t105;
-    const float t107 = t81 + t106;
-    const float t108 = t4 * t107;
-    const float t109 = l * t108;
-    const float t110 = t74 + t109;
-    const float t111 = t4 * t110;
-    const float t112 = t69 + t111;
-    const float t113 = l * t112;
-    const float t114 = r * t59;
-    const float t115 = t4 * t62;
-    const float t116 = t4 * t115;
-    const float t117 = t5 * t116;
-    const float t118 = t114 * t117;
-    const float t119 = 2.0f * t118;
-    const float t120 = t113 - t119;
-    const float t121 = l * t120;
-    const float t122 = t67 + t121;
-    const float t123 = r * t122;
-    const float t124 = t54 + t123;
-    const float t125 = t4 * t48;
-    const float t126 = t4 * t125;
-    const float t127 = t4 * t126;
-    const float t128 = t4 * t127;
-    const float t129 = t124 / t128;
-    float rest = t129 - t129;
-    if (isnan(rest) != 0) {
+    const float t92 = t3 * t65;
+    const float t93 = t91 - t92;
+    const float t94 = alpha_dot * t93;
+    const float t95 = t87 + t94;
+    const float t96 = r * t95;
+    const float t97 = alpha_dot * t96;
+    const float t98 = t81 + t97;
+    const float t99 = t4 * t98;
+    const float t100 = t75 + t99;
+    const float t101 = t4 * t100;
+    const float t102 = l * t101;
+    const float t103 = t68 + t102;
+    const float t104 = t4 * t103;
+    const float t105 = t63 + t104;
+    const float t106 = l * t105;
+    const float t107 = r * t53;
+    const float t108 = t4 * t56;
+    const float t109 = t4 * t108;
+    const float t110 = t5 * t109;
+    const float t111 = t107 * t110;
+    const float t112 = 2.0f * t111;
+    const float t113 = t106 - t112;
+    const float t114 = l * t113;
+    const float t115 = t61 + t114;
+    const float t116 = r * t115;
+    const float t117 = t48 + t116;
+    const float t118 = t4 * t41;
+    const float t119 = t4 * t118;
+    const float t120 = t4 * t119;
+    const float t121 = t4 * t120;
+    const float t122 = t117 / t121;
+    float rest = t122 - t122;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    bias_nu[0] = t129;
+    bias_nu[0] = t122;
     return SLIDER_CRANK_OK;
 }
 
@@ -3224,10 +3112,10 @@ slider_crank_status slider_crank_forward_dynamics_f(const float q[3], const floa
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -3261,7 +3149,7 @@ slider_crank_status slider_crank_forward_dynamics_f(const float q[3], const floa
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = t4 * t4;
@@ -3321,125 +3209,118 @@ slider_crank_status slider_crank_forward_dynamics_f(const float q[3], const floa
     const float t78 = t75 + t77;
     const float t79 = t66 + t78;
     const float t80 = 1.4305115e-06f * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY_F(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float g = p->g;
-    const float t81 = m_rod * g;
+    const float t81 = r * t53;
     const float t82 = r * t81;
-    const float m_crank = p->m_crank;
-    const float t83 = r * m_crank;
-    const float t84 = g * t83;
-    const float t85 = 0.5f * t84;
-    const float t86 = t82 + t85;
-    const float t87 = t6 * t86;
-    const float beta_dot = qd[1];
-    const float t88 = beta_dot * beta_dot;
-    const float t89 = m_rod * t15;
-    const float t90 = t88 * t89;
-    const float t91 = 0.5f * t90;
-    const float t92 = t87 + t91;
-    const float crank = u[0];
-    const float t93 = crank - t92;
-    const float t94 = t7 * t93;
-    const float t95 = l * t81;
-    const float t96 = t4 * t95;
-    const float t97 = 0.5f * t96;
-    const float alpha_dot = qd[0];
-    const float t98 = alpha_dot * alpha_dot;
-    const float t99 = t98 * t89;
-    const float t100 = 0.5f * t99;
-    const float t101 = t97 - t100;
-    const float t102 = t9 * t101;
-    const float t103 = t94 + t102;
+    const float t83 = t31 + t82;
+    const float t84 = 1.0f / t83;
     const float s = q[2];
-    const float t104 = s - l;
+    const float t85 = s - l;
     const float k = p->k;
-    const float t105 = k * t104;
+    const float t86 = k * t85;
     const float s_dot = qd[2];
     const float d = p->d;
-    const float t106 = s_dot * d;
-    const float t107 = t105 + t106;
-    const float t108 = t15 * t107;
-    const float t109 = t103 + t108;
+    const float t87 = s_dot * d;
+    const float t88 = t86 + t87;
+    const float t89 = t15 * t88;
+    const float g = p->g;
+    const float t90 = m_rod * g;
+    const float t91 = l * t90;
+    const float t92 = t4 * t91;
+    const float t93 = 0.5f * t92;
+    const float t94 = 0.5f * m_rod;
+    const float alpha_dot = qd[0];
+    const float t95 = alpha_dot * alpha_dot;
+    const float t96 = t95 * t15;
+    const float t97 = t94 * t96;
+    const float t98 = t93 - t97;
+    const float t99 = t9 * t98;
+    const float m_crank = p->m_crank;
+    const float t100 = m_crank * g;
+    const float t101 = 0.5f * t100;
+    const float t102 = t90 + t101;
+    const float t103 = r * t102;
+    const float t104 = t6 * t103;
+    const float beta_dot = qd[1];
+    const float t105 = beta_dot * beta_dot;
+    const float t106 = t105 * t15;
+    const float t107 = t94 * t106;
+    const float t108 = t104 + t107;
+    const float crank = u[0];
+    const float t109 = crank - t108;
     const float t110 = t7 * t109;
-    const float t111 = r * t53;
-    const float t112 = r * t111;
-    const float t113 = t31 + t112;
-    const float t114 = 1.0f / t113;
-    const float t115 = t110 * t114;
-    const float t116 = m_s * t15;
-    const float t117 = alpha_dot * t6;
-    const float t118 = r * t117;
-    const float t119 = alpha_dot * t118;
-    const float t120 = beta_dot * t4;
-    const float t121 = l * t120;
-    const float t122 = beta_dot * t121;
-    const float t123 = t119 + t122;
-    const float t124 = t7 * t123;
-    const float t125 = beta_dot * t3;
-    const float t126 = l * t125;
-    const float t127 = beta_dot * t126;
-    const float t128 = alpha_dot * t5;
-    const float t129 = r * t128;
-    const float t130 = alpha_dot * t129;
-    const float t131 = t127 - t130;
-    const float t132 = t21 * t131;
-    const float t133 = t124 + t132;
-    const float t134 = t116 * t133;
-    const float t135 = t6 * t4;
-    const float t136 = t5 * t3;
-    const float t137 = t135 - t136;
-    const float t138 = t11 * t137;
-    const float t139 = m_rod * t138;
-    const float t140 = t7 * t139;
-    const float t141 = 0.5f * t140;
-    const float t142 = 0.5f * J_rod;
-    const float t143 = m_rod * t29;
-    const float t144 = 0.125f * t143;
-    const float t145 = t142 + t144;
-    const float t146 = t9 * t145;
-    const float t147 = 2.0f * t146;
-    const float t148 = t141 - t147;
-    const float t149 = t148 * t131;
-    const float t150 = t134 - t149;
-    const float t151 = t150 * t114;
-    const float t152 = t115 - t151;
-    const float t153 = t9 * t109;
-    const float t154 = t153 * t114;
-    const float t155 = t9 * t123;
-    const float t156 = t19 * t131;
-    const float t157 = t155 - t156;
-    const float t158 = t116 * t157;
-    const float t159 = r * m_rod;
-    const float t160 = t6 * t137;
-    const float t161 = 0.5f * t160;
-    const float t162 = t161 - t4;
-    const float t163 = t159 * t162;
-    const float t164 = r * t163;
-    const float t165 = J_crank * t4;
-    const float t166 = t164 - t165;
-    const float t167 = l * t166;
-    const float t168 = t131 * t167;
-    const float t169 = t158 + t168;
-    const float t170 = t169 * t114;
-    const float t171 = t154 - t170;
-    const float t172 = t148 * t157;
-    const float t173 = t133 * t167;
-    const float t174 = t172 + t173;
-    const float t175 = t174 * t114;
-    const float t176 = t15 * t109;
-    const float t177 = t176 * t114;
-    const float t178 = t175 - t177;
-    float rest = t152 - t152;
-    rest += t171 - t171;
-    rest += t178 - t178;
-    if (isnan(rest) != 0) {
+    const float t111 = t99 + t110;
+    const float t112 = t89 + t111;
+    const float t113 = t7 * t112;
+    const float t114 = m_s * t15;
+    const float t115 = alpha_dot * t6;
+    const float t116 = r * t115;
+    const float t117 = alpha_dot * t116;
+    const float t118 = beta_dot * t4;
+    const float t119 = l * t118;
+    const float t120 = beta_dot * t119;
+    const float t121 = t117 + t120;
+    const float t122 = t7 * t121;
+    const float t123 = beta_dot * t3;
+    const float t124 = l * t123;
+    const float t125 = beta_dot * t124;
+    const float t126 = alpha_dot * t5;
+    const float t127 = r * t126;
+    const float t128 = alpha_dot * t127;
+    const float t129 = t125 - t128;
+    const float t130 = t21 * t129;
+    const float t131 = t122 + t130;
+    const float t132 = t114 * t131;
+    const float t133 = t6 * t4;
+    const float t134 = t5 * t3;
+    const float t135 = t133 - t134;
+    const float t136 = t11 * t135;
+    const float t137 = t7 * t136;
+    const float t138 = t94 * t137;
+    const float t139 = 0.5f * J_rod;
+    const float t140 = m_rod * t29;
+    const float t141 = 0.125f * t140;
+    const float t142 = t139 + t141;
+    const float t143 = t9 * t142;
+    const float t144 = 2.0f * t143;
+    const float t145 = t138 - t144;
+    const float t146 = t129 * t145;
+    const float t147 = t132 - t146;
+    const float t148 = t113 - t147;
+    const float t149 = t84 * t148;
+    const float t150 = t9 * t112;
+    const float t151 = t9 * t121;
+    const float t152 = t19 * t129;
+    const float t153 = t151 - t152;
+    const float t154 = t114 * t153;
+    const float t155 = r * m_rod;
+    const float t156 = t6 * t135;
+    const float t157 = 0.5f * t156;
+    const float t158 = t157 - t4;
+    const float t159 = t155 * t158;
+    const float t160 = r * t159;
+    const float t161 = J_crank * t4;
+    const float t162 = t160 - t161;
+    const float t163 = l * t162;
+    const float t164 = t129 * t163;
+    const float t165 = t154 + t164;
+    const float t166 = t150 - t165;
+    const float t167 = t84 * t166;
+    const float t168 = t131 * t163;
+    const float t169 = t153 * t145;
+    const float t170 = t168 + t169;
+    const float t171 = t15 * t112;
+    const float t172 = t170 - t171;
+    const float t173 = t84 * t172;
+    float rest = (t149 - t149) * t167 * t173;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd[0] = t152;
-    qdd[1] = t171;
-    qdd[2] = t178;
+    qdd[0] = t149;
+    qdd[1] = t167;
+    qdd[2] = t173;
     return SLIDER_CRANK_OK;
 }
 
@@ -3448,10 +3329,10 @@ slider_crank_status slider_crank_multipliers_f(const float q[3], const float qd[
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -3485,7 +3366,7 @@ slider_crank_status slider_crank_multipliers_f(const float q[3], const float qd[
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = t4 * t4;
@@ -3545,144 +3426,141 @@ slider_crank_status slider_crank_multipliers_f(const float q[3], const float qd[
     const float t78 = t75 + t77;
     const float t79 = t66 + t78;
     const float t80 = 1.4305115e-06f * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY_F(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
     const float t81 = 1.0f / t55;
-    const float t82 = r * m_rod;
+    const float t82 = 0.5f * m_rod;
     const float t83 = t6 * t4;
     const float t84 = t5 * t3;
     const float t85 = t83 - t84;
-    const float t86 = t6 * t85;
-    const float t87 = 0.5f * t86;
-    const float t88 = t87 - t4;
-    const float t89 = t82 * t88;
-    const float t90 = r * t89;
-    const float t91 = J_crank * t4;
-    const float t92 = t90 - t91;
-    const float t93 = l * t92;
+    const float t86 = t11 * t85;
+    const float t87 = t7 * t86;
+    const float t88 = t82 * t87;
+    const float t89 = 0.5f * J_rod;
+    const float t90 = m_rod * t29;
+    const float t91 = 0.125f * t90;
+    const float t92 = t89 + t91;
+    const float t93 = t9 * t92;
+    const float t94 = 2.0f * t93;
+    const float t95 = t88 - t94;
     const float s = q[2];
-    const float t94 = s - l;
+    const float t96 = s - l;
     const float k = p->k;
-    const float t95 = k * t94;
+    const float t97 = k * t96;
     const float s_dot = qd[2];
     const float d = p->d;
-    const float t96 = s_dot * d;
-    const float t97 = t95 + t96;
-    const float t98 = t11 * t85;
-    const float t99 = m_rod * t98;
-    const float t100 = t7 * t99;
-    const float t101 = 0.5f * t100;
-    const float t102 = 0.5f * J_rod;
-    const float t103 = m_rod * t29;
-    const float t104 = 0.125f * t103;
-    const float t105 = t102 + t104;
-    const float t106 = t9 * t105;
-    const float t107 = 2.0f * t106;
-    const float t108 = t101 - t107;
+    const float t98 = s_dot * d;
+    const float t99 = t97 + t98;
     const float alpha_dot = qd[0];
-    const float t109 = alpha_dot * t6;
-    const float t110 = r * t109;
-    const float t111 = alpha_dot * t110;
+    const float t100 = alpha_dot * t6;
+    const float t101 = r * t100;
+    const float t102 = alpha_dot * t101;
     const float beta_dot = qd[1];
-    const float t112 = beta_dot * t4;
-    const float t113 = l * t112;
-    const float t114 = beta_dot * t113;
-    const float t115 = t111 + t114;
-    const float t116 = t9 * t115;
-    const float t117 = beta_dot * t3;
-    const float t118 = l * t117;
-    const float t119 = beta_dot * t118;
-    const float t120 = alpha_dot * t5;
-    const float t121 = r * t120;
-    const float t122 = alpha_dot * t121;
-    const float t123 = t119 - t122;
-    const float t124 = t19 * t123;
-    const float t125 = t116 - t124;
-    const float t126 = t108 * t125;
-    const float t127 = t7 * t115;
-    const float t128 = t21 * t123;
-    const float t129 = t127 + t128;
-    const float t130 = t129 * t93;
+    const float t103 = beta_dot * t4;
+    const float t104 = l * t103;
+    const float t105 = beta_dot * t104;
+    const float t106 = t102 + t105;
+    const float t107 = t7 * t106;
+    const float t108 = beta_dot * t3;
+    const float t109 = l * t108;
+    const float t110 = beta_dot * t109;
+    const float t111 = alpha_dot * t5;
+    const float t112 = r * t111;
+    const float t113 = alpha_dot * t112;
+    const float t114 = t110 - t113;
+    const float t115 = t21 * t114;
+    const float t116 = t107 + t115;
+    const float t117 = r * m_rod;
+    const float t118 = t6 * t85;
+    const float t119 = 0.5f * t118;
+    const float t120 = t119 - t4;
+    const float t121 = t117 * t120;
+    const float t122 = r * t121;
+    const float t123 = J_crank * t4;
+    const float t124 = t122 - t123;
+    const float t125 = l * t124;
+    const float t126 = t116 * t125;
+    const float t127 = t9 * t106;
+    const float t128 = t19 * t114;
+    const float t129 = t127 - t128;
+    const float t130 = t129 * t95;
     const float t131 = t126 + t130;
-    const float t132 = t131 * t81;
+    const float t132 = t81 * t131;
     const float t133 = m_s * t132;
-    const float t134 = t97 + t133;
-    const float t135 = t93 * t134;
+    const float t134 = t99 + t133;
+    const float t135 = t95 * t134;
     const float t136 = m_s * t15;
     const float g = p->g;
     const float t137 = m_rod * g;
-    const float t138 = r * t137;
+    const float t138 = l * t137;
+    const float t139 = t4 * t138;
+    const float t140 = 0.5f * t139;
+    const float t141 = alpha_dot * alpha_dot;
+    const float t142 = t141 * t15;
+    const float t143 = t82 * t142;
+    const float t144 = t140 - t143;
+    const float t145 = t136 * t129;
+    const float t146 = t114 * t125;
+    const float t147 = t145 + t146;
+    const float t148 = t147 * t81;
+    const float t149 = t92 * t148;
+    const float t150 = 2.0f * t149;
+    const float t151 = t136 * t116;
+    const float t152 = t114 * t95;
+    const float t153 = t151 - t152;
+    const float t154 = t81 * t153;
+    const float t155 = t86 * t154;
+    const float t156 = t82 * t155;
+    const float t157 = t150 - t156;
+    const float t158 = t144 + t157;
+    const float t159 = t136 * t158;
+    const float t160 = t135 + t159;
+    const float t161 = t9 * t160;
+    const float t162 = t125 * t134;
     const float m_crank = p->m_crank;
-    const float t139 = r * m_crank;
-    const float t140 = g * t139;
-    const float t141 = 0.5f * t140;
-    const float t142 = t138 + t141;
-    const float t143 = t6 * t142;
-    const float t144 = beta_dot * beta_dot;
-    const float t145 = m_rod * t15;
-    const float t146 = t144 * t145;
-    const float t147 = 0.5f * t146;
-    const float t148 = t143 + t147;
+    const float t163 = m_crank * g;
+    const float t164 = 0.5f * t163;
+    const float t165 = t137 + t164;
+    const float t166 = r * t165;
+    const float t167 = t6 * t166;
+    const float t168 = beta_dot * beta_dot;
+    const float t169 = t168 * t15;
+    const float t170 = t82 * t169;
+    const float t171 = t167 + t170;
     const float crank = u[0];
-    const float t149 = crank - t148;
-    const float t150 = 0.5f * J_crank;
-    const float t151 = r * t82;
-    const float t152 = 0.5f * t151;
-    const float t153 = t150 + t152;
-    const float t154 = t136 * t129;
-    const float t155 = t108 * t123;
-    const float t156 = t154 - t155;
-    const float t157 = t156 * t81;
-    const float t158 = t153 * t157;
-    const float t159 = 2.0f * t158;
-    const float t160 = t136 * t125;
-    const float t161 = t123 * t93;
-    const float t162 = t160 + t161;
-    const float t163 = t162 * t81;
-    const float t164 = t99 * t163;
-    const float t165 = 0.5f * t164;
-    const float t166 = t159 - t165;
-    const float t167 = t149 + t166;
-    const float t168 = t136 * t167;
-    const float t169 = t135 + t168;
-    const float t170 = t7 * t169;
-    const float t171 = t108 * t134;
-    const float t172 = l * t137;
-    const float t173 = t4 * t172;
-    const float t174 = 0.5f * t173;
-    const float t175 = alpha_dot * alpha_dot;
-    const float t176 = t175 * t145;
-    const float t177 = 0.5f * t176;
-    const float t178 = t174 - t177;
-    const float t179 = t105 * t163;
-    const float t180 = 2.0f * t179;
-    const float t181 = t99 * t157;
-    const float t182 = 0.5f * t181;
-    const float t183 = t180 - t182;
-    const float t184 = t178 + t183;
-    const float t185 = t136 * t184;
-    const float t186 = t171 + t185;
-    const float t187 = t9 * t186;
-    const float t188 = t170 + t187;
-    const float t189 = t81 * t188;
-    const float t190 = -t189;
-    const float t191 = t108 * t167;
-    const float t192 = t93 * t184;
-    const float t193 = t191 - t192;
-    const float t194 = t21 * t169;
-    const float t195 = t193 - t194;
-    const float t196 = t19 * t186;
-    const float t197 = t195 + t196;
-    const float t198 = t81 * t197;
-    const float t199 = -t198;
-    float rest = t190 - t190;
-    rest += t199 - t199;
-    if (isnan(rest) != 0) {
+    const float t172 = crank - t171;
+    const float t173 = 0.5f * J_crank;
+    const float t174 = r * t117;
+    const float t175 = 0.5f * t174;
+    const float t176 = t173 + t175;
+    const float t177 = t176 * t154;
+    const float t178 = 2.0f * t177;
+    const float t179 = t86 * t148;
+    const float t180 = t82 * t179;
+    const float t181 = t178 - t180;
+    const float t182 = t172 + t181;
+    const float t183 = t136 * t182;
+    const float t184 = t162 + t183;
+    const float t185 = t7 * t184;
+    const float t186 = t161 + t185;
+    const float t187 = t81 * t186;
+    const float t188 = -t187;
+    const float t189 = t19 * t160;
+    const float t190 = t95 * t182;
+    const float t191 = t125 * t158;
+    const float t192 = t190 - t191;
+    const float t193 = t21 * t184;
+    const float t194 = t192 - t193;
+    const float t195 = t189 + t194;
+    const float t196 = t81 * t195;
+    const float t197 = -t196;
+    float rest = (t188 - t188) * t197;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    lambda_B[0] = t190;
-    lambda_B[1] = t199;
+    lambda_B[0] = t188;
+    lambda_B[1] = t197;
     return SLIDER_CRANK_OK;
 }
 
@@ -3691,10 +3569,10 @@ slider_crank_status slider_crank_energy_f(const float q[3], const float qd[3], c
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -3761,9 +3639,8 @@ slider_crank_status slider_crank_energy_f(const float q[3], const float qd[3], c
     const float g = p->g;
     const float t47 = g * t46;
     const float t48 = t37 + t47;
-    float rest = t33 - t33;
-    rest += t48 - t48;
-    if (isnan(rest) != 0) {
+    float rest = (t33 - t33) * t48;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     T_U[0] = t33;
@@ -3776,10 +3653,10 @@ slider_crank_status slider_crank_singularity_f(const float q[3], const slider_cr
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -3836,9 +3713,8 @@ slider_crank_status slider_crank_singularity_f(const float q[3], const slider_cr
     const float t48 = t45 + t47;
     const float t49 = t48 + t43;
     const float t50 = ((t49 != 0.0f) ? t43 : 0.0f) / ((t49 != 0.0f) ? t49 : 1.0f);
-    float rest = t41 - t41;
-    rest += t50 - t50;
-    if (isnan(rest) != 0) {
+    float rest = (t41 - t41) * t50;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     measure[0] = t41;

@@ -30,24 +30,24 @@
  * projected_control_pseudoinverse       4     11      2      0      2      0
  * orthogonal_complement                 4     11      2      0      2      0
  * projected_mass_matrix                27     71      1      0      2      0
- * projected_coriolis_matrix            64    152      1      0      2      0
- * projected_potential_force            14     45      1      0      2      0
+ * projected_coriolis_matrix            64    150      1      0      2      0
+ * projected_potential_force            14     44      1      0      2      0
  * projected_applied_force               8     27      1      0      2      0
  * minimal_mass_matrix                  11     33      1      0      2      0
- * minimal_coriolis_matrix              24     68      3      0      2      0
+ * minimal_coriolis_matrix              24     64      3      0      2      0
  * minimal_potential_force               8     21      1      0      2      0
  * minimal_applied_force                 4     13      1      0      2      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                  16     43      3      0      2      0
- * admissible_acceleration              27     63      1      0      2      0
- * projected_configuration              47     79      3      0      7      0
+ * admissible_acceleration              26     58      1      0      2      0
+ * projected_configuration              38     57      2      0      5      0
  * inverse_dynamics                     16     48      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                 11     33      1      0      2      0
- * actuator_bias                        26     90      1      0      2      0
- * forward_dynamics                     42    122      1      0      2      0
- * multipliers                          48    135      1      0      2      0
+ * actuator_bias                        26     87      1      0      2      0
+ * forward_dynamics                     42    117      1      0      2      0
+ * multipliers                          48    133      1      0      2      0
  * energy                               11     31      0      0      2      0
  * singularity                          10     23      6      2      2      0
  * (changes of sign are not counted)

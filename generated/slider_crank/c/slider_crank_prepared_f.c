@@ -16,6 +16,15 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SLIDER_CRANK_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SLIDER_CRANK_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SLIDER_CRANK_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SLIDER_CRANK_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -131,10 +140,10 @@ slider_crank_prepared_f slider_crank_prepare_f(const slider_crank_params_f *p) {
     const float v11 = m_rod * g;
     const float v12 = l * v11;
     const float v13 = 0.5f * v12;
-    const float v14 = 0.5f * m_crank;
-    const float v15 = m_rod + v14;
-    const float v16 = r * g;
-    const float v17 = v15 * v16;
+    const float v14 = m_crank * g;
+    const float v15 = 0.5f * v14;
+    const float v16 = v11 + v15;
+    const float v17 = r * v16;
     const float v18 = 0.5f * J_crank;
     const float v19 = r * r;
     const float v20 = m_rod * v19;
@@ -158,15 +167,10 @@ slider_crank_prepared_f slider_crank_prepare_f(const slider_crank_params_f *p) {
     const float v38 = 0.125f * v37;
     const float v39 = v35 + v38;
     const float v40 = fabsf(m_s);
-    const float v41 = r * v11;
-    const float v42 = r * m_crank;
-    const float v43 = g * v42;
-    const float v44 = 0.5f * v43;
-    const float v45 = v41 + v44;
-    const float v46 = r * m_rod;
-    const float v47 = r * v46;
-    const float v48 = 0.5f * v47;
-    const float v49 = v18 + v48;
+    const float v41 = r * m_rod;
+    const float v42 = r * v41;
+    const float v43 = 0.5f * v42;
+    const float v44 = v18 + v43;
     slider_crank_prepared_f prepared;
     prepared.value[0] = r;
     prepared.value[1] = l;
@@ -190,11 +194,10 @@ slider_crank_prepared_f slider_crank_prepare_f(const slider_crank_params_f *p) {
     prepared.value[19] = v33;
     prepared.value[20] = v39;
     prepared.value[21] = v40;
-    prepared.value[22] = v45;
-    prepared.value[23] = v12;
-    prepared.value[24] = v9;
-    prepared.value[25] = v46;
-    prepared.value[26] = v49;
+    prepared.value[22] = v12;
+    prepared.value[23] = v9;
+    prepared.value[24] = v41;
+    prepared.value[25] = v44;
     return prepared;
 }
 
@@ -203,10 +206,10 @@ slider_crank_status slider_crank_inverse_dynamics_prepared_f(const float q[3], c
     const float t1 = fabsf(alpha);
     const float beta = q[1];
     const float t2 = fabsf(beta);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {alpha, beta, beta, beta};
@@ -220,7 +223,7 @@ slider_crank_status slider_crank_inverse_dynamics_prepared_f(const float q[3], c
     const float t10 = p->value[6];
     const float r = p->value[0];
     const float t4 = cosine[0];
-    if (!(t8 > t10)) {
+    if (SLIDER_CRANK_RARELY_F(!(t8 > t10))) {
         const float t11 = r * t4;
         const float t12 = t11 * t11;
         const float t13 = t7 * t7;
@@ -292,7 +295,7 @@ slider_crank_status slider_crank_inverse_dynamics_prepared_f(const float q[3], c
     const float t76 = t68 - t75;
     const float t77 = t76 / t7;
     float rest = t77 - t77;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     u[0] = t77;
@@ -304,10 +307,10 @@ slider_crank_status slider_crank_forward_dynamics_prepared_f(const float q[3], c
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -341,7 +344,7 @@ slider_crank_status slider_crank_forward_dynamics_prepared_f(const float q[3], c
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = t4 * t4;
@@ -387,116 +390,110 @@ slider_crank_status slider_crank_forward_dynamics_prepared_f(const float q[3], c
     const float t78 = t75 + t77;
     const float t79 = t66 + t78;
     const float t80 = 1.4305115e-06f * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY_F(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t86 = p->value[22];
-    const float t87 = t6 * t86;
-    const float beta_dot = qd[1];
-    const float t88 = beta_dot * beta_dot;
-    const float t89 = m_rod * t15;
-    const float t90 = t88 * t89;
-    const float t91 = 0.5f * t90;
-    const float t92 = t87 + t91;
-    const float crank = u[0];
-    const float t93 = crank - t92;
-    const float t94 = t7 * t93;
-    const float t95 = p->value[23];
-    const float t96 = t4 * t95;
-    const float t97 = 0.5f * t96;
-    const float alpha_dot = qd[0];
-    const float t98 = alpha_dot * alpha_dot;
-    const float t99 = t98 * t89;
-    const float t100 = 0.5f * t99;
-    const float t101 = t97 - t100;
-    const float t102 = t9 * t101;
-    const float t103 = t94 + t102;
+    const float t81 = r * t53;
+    const float t82 = r * t81;
+    const float t83 = t31 + t82;
+    const float t84 = 1.0f / t83;
     const float s = q[2];
-    const float t104 = s - l;
+    const float t85 = s - l;
     const float k = p->value[4];
-    const float t105 = k * t104;
+    const float t86 = k * t85;
     const float s_dot = qd[2];
     const float d = p->value[5];
-    const float t106 = s_dot * d;
-    const float t107 = t105 + t106;
-    const float t108 = t15 * t107;
-    const float t109 = t103 + t108;
+    const float t87 = s_dot * d;
+    const float t88 = t86 + t87;
+    const float t89 = t15 * t88;
+    const float t91 = p->value[22];
+    const float t92 = t4 * t91;
+    const float t93 = 0.5f * t92;
+    const float alpha_dot = qd[0];
+    const float t95 = alpha_dot * alpha_dot;
+    const float t96 = t95 * t15;
+    const float t94 = p->value[7];
+    const float t97 = t94 * t96;
+    const float t98 = t93 - t97;
+    const float t99 = t9 * t98;
+    const float t103 = p->value[11];
+    const float t104 = t6 * t103;
+    const float beta_dot = qd[1];
+    const float t105 = beta_dot * beta_dot;
+    const float t106 = t105 * t15;
+    const float t107 = t94 * t106;
+    const float t108 = t104 + t107;
+    const float crank = u[0];
+    const float t109 = crank - t108;
     const float t110 = t7 * t109;
-    const float t111 = r * t53;
-    const float t112 = r * t111;
-    const float t113 = t31 + t112;
-    const float t114 = 1.0f / t113;
-    const float t115 = t110 * t114;
-    const float t116 = m_s * t15;
-    const float t117 = alpha_dot * t6;
-    const float t118 = r * t117;
-    const float t119 = alpha_dot * t118;
-    const float t120 = beta_dot * t4;
-    const float t121 = l * t120;
-    const float t122 = beta_dot * t121;
-    const float t123 = t119 + t122;
-    const float t124 = t7 * t123;
-    const float t125 = beta_dot * t3;
-    const float t126 = l * t125;
-    const float t127 = beta_dot * t126;
-    const float t128 = alpha_dot * t5;
-    const float t129 = r * t128;
-    const float t130 = alpha_dot * t129;
-    const float t131 = t127 - t130;
-    const float t132 = t21 * t131;
-    const float t133 = t124 + t132;
-    const float t134 = t116 * t133;
-    const float t135 = t6 * t4;
-    const float t136 = t5 * t3;
-    const float t137 = t135 - t136;
-    const float t138 = t11 * t137;
-    const float t139 = m_rod * t138;
-    const float t140 = t7 * t139;
-    const float t141 = 0.5f * t140;
-    const float t145 = p->value[24];
-    const float t146 = t9 * t145;
-    const float t147 = 2.0f * t146;
-    const float t148 = t141 - t147;
-    const float t149 = t148 * t131;
-    const float t150 = t134 - t149;
-    const float t151 = t150 * t114;
-    const float t152 = t115 - t151;
-    const float t153 = t9 * t109;
-    const float t154 = t153 * t114;
-    const float t155 = t9 * t123;
-    const float t156 = t19 * t131;
-    const float t157 = t155 - t156;
-    const float t158 = t116 * t157;
-    const float t160 = t6 * t137;
-    const float t161 = 0.5f * t160;
-    const float t162 = t161 - t4;
-    const float t159 = p->value[25];
-    const float t163 = t159 * t162;
-    const float t164 = r * t163;
+    const float t111 = t99 + t110;
+    const float t112 = t89 + t111;
+    const float t113 = t7 * t112;
+    const float t114 = m_s * t15;
+    const float t115 = alpha_dot * t6;
+    const float t116 = r * t115;
+    const float t117 = alpha_dot * t116;
+    const float t118 = beta_dot * t4;
+    const float t119 = l * t118;
+    const float t120 = beta_dot * t119;
+    const float t121 = t117 + t120;
+    const float t122 = t7 * t121;
+    const float t123 = beta_dot * t3;
+    const float t124 = l * t123;
+    const float t125 = beta_dot * t124;
+    const float t126 = alpha_dot * t5;
+    const float t127 = r * t126;
+    const float t128 = alpha_dot * t127;
+    const float t129 = t125 - t128;
+    const float t130 = t21 * t129;
+    const float t131 = t122 + t130;
+    const float t132 = t114 * t131;
+    const float t133 = t6 * t4;
+    const float t134 = t5 * t3;
+    const float t135 = t133 - t134;
+    const float t136 = t11 * t135;
+    const float t137 = t7 * t136;
+    const float t138 = t94 * t137;
+    const float t142 = p->value[23];
+    const float t143 = t9 * t142;
+    const float t144 = 2.0f * t143;
+    const float t145 = t138 - t144;
+    const float t146 = t129 * t145;
+    const float t147 = t132 - t146;
+    const float t148 = t113 - t147;
+    const float t149 = t84 * t148;
+    const float t150 = t9 * t112;
+    const float t151 = t9 * t121;
+    const float t152 = t19 * t129;
+    const float t153 = t151 - t152;
+    const float t154 = t114 * t153;
+    const float t156 = t6 * t135;
+    const float t157 = 0.5f * t156;
+    const float t158 = t157 - t4;
+    const float t155 = p->value[24];
+    const float t159 = t155 * t158;
+    const float t160 = r * t159;
     const float J_crank = p->value[14];
-    const float t165 = J_crank * t4;
-    const float t166 = t164 - t165;
-    const float t167 = l * t166;
-    const float t168 = t131 * t167;
-    const float t169 = t158 + t168;
-    const float t170 = t169 * t114;
-    const float t171 = t154 - t170;
-    const float t172 = t148 * t157;
-    const float t173 = t133 * t167;
-    const float t174 = t172 + t173;
-    const float t175 = t174 * t114;
-    const float t176 = t15 * t109;
-    const float t177 = t176 * t114;
-    const float t178 = t175 - t177;
-    float rest = t152 - t152;
-    rest += t171 - t171;
-    rest += t178 - t178;
-    if (isnan(rest) != 0) {
+    const float t161 = J_crank * t4;
+    const float t162 = t160 - t161;
+    const float t163 = l * t162;
+    const float t164 = t129 * t163;
+    const float t165 = t154 + t164;
+    const float t166 = t150 - t165;
+    const float t167 = t84 * t166;
+    const float t168 = t131 * t163;
+    const float t169 = t153 * t145;
+    const float t170 = t168 + t169;
+    const float t171 = t15 * t112;
+    const float t172 = t170 - t171;
+    const float t173 = t84 * t172;
+    float rest = (t149 - t149) * t167 * t173;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd[0] = t152;
-    qdd[1] = t171;
-    qdd[2] = t178;
+    qdd[0] = t149;
+    qdd[1] = t167;
+    qdd[2] = t173;
     return SLIDER_CRANK_OK;
 }
 
@@ -505,10 +502,10 @@ slider_crank_status slider_crank_multipliers_prepared_f(const float q[3], const 
     const float t1 = fabsf(beta);
     const float alpha = q[0];
     const float t2 = fabsf(alpha);
-    if (!(100.0f >= t1)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SLIDER_CRANK_RARELY_F(!(100.0f >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const float angle[4] = {beta, alpha, alpha, alpha};
@@ -542,7 +539,7 @@ slider_crank_status slider_crank_multipliers_prepared_f(const float q[3], const 
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
     const float t27 = t26 * 2.046363e-12f;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t28 = t4 * t4;
@@ -588,131 +585,129 @@ slider_crank_status slider_crank_multipliers_prepared_f(const float q[3], const 
     const float t78 = t75 + t77;
     const float t79 = t66 + t78;
     const float t80 = 1.4305115e-06f * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY_F(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
     const float t81 = 1.0f / t55;
     const float t83 = t6 * t4;
     const float t84 = t5 * t3;
     const float t85 = t83 - t84;
-    const float t86 = t6 * t85;
-    const float t87 = 0.5f * t86;
-    const float t88 = t87 - t4;
-    const float t82 = p->value[25];
-    const float t89 = t82 * t88;
-    const float t90 = r * t89;
-    const float J_crank = p->value[14];
-    const float t91 = J_crank * t4;
-    const float t92 = t90 - t91;
-    const float t93 = l * t92;
+    const float t86 = t11 * t85;
+    const float t87 = t7 * t86;
+    const float t82 = p->value[7];
+    const float t88 = t82 * t87;
+    const float t92 = p->value[23];
+    const float t93 = t9 * t92;
+    const float t94 = 2.0f * t93;
+    const float t95 = t88 - t94;
     const float s = q[2];
-    const float t94 = s - l;
+    const float t96 = s - l;
     const float k = p->value[4];
-    const float t95 = k * t94;
+    const float t97 = k * t96;
     const float s_dot = qd[2];
     const float d = p->value[5];
-    const float t96 = s_dot * d;
-    const float t97 = t95 + t96;
-    const float t98 = t11 * t85;
-    const float t99 = m_rod * t98;
-    const float t100 = t7 * t99;
-    const float t101 = 0.5f * t100;
-    const float t105 = p->value[24];
-    const float t106 = t9 * t105;
-    const float t107 = 2.0f * t106;
-    const float t108 = t101 - t107;
+    const float t98 = s_dot * d;
+    const float t99 = t97 + t98;
     const float alpha_dot = qd[0];
-    const float t109 = alpha_dot * t6;
-    const float t110 = r * t109;
-    const float t111 = alpha_dot * t110;
+    const float t100 = alpha_dot * t6;
+    const float t101 = r * t100;
+    const float t102 = alpha_dot * t101;
     const float beta_dot = qd[1];
-    const float t112 = beta_dot * t4;
-    const float t113 = l * t112;
-    const float t114 = beta_dot * t113;
-    const float t115 = t111 + t114;
-    const float t116 = t9 * t115;
-    const float t117 = beta_dot * t3;
-    const float t118 = l * t117;
-    const float t119 = beta_dot * t118;
-    const float t120 = alpha_dot * t5;
-    const float t121 = r * t120;
-    const float t122 = alpha_dot * t121;
-    const float t123 = t119 - t122;
-    const float t124 = t19 * t123;
-    const float t125 = t116 - t124;
-    const float t126 = t108 * t125;
-    const float t127 = t7 * t115;
-    const float t128 = t21 * t123;
-    const float t129 = t127 + t128;
-    const float t130 = t129 * t93;
+    const float t103 = beta_dot * t4;
+    const float t104 = l * t103;
+    const float t105 = beta_dot * t104;
+    const float t106 = t102 + t105;
+    const float t107 = t7 * t106;
+    const float t108 = beta_dot * t3;
+    const float t109 = l * t108;
+    const float t110 = beta_dot * t109;
+    const float t111 = alpha_dot * t5;
+    const float t112 = r * t111;
+    const float t113 = alpha_dot * t112;
+    const float t114 = t110 - t113;
+    const float t115 = t21 * t114;
+    const float t116 = t107 + t115;
+    const float t118 = t6 * t85;
+    const float t119 = 0.5f * t118;
+    const float t120 = t119 - t4;
+    const float t117 = p->value[24];
+    const float t121 = t117 * t120;
+    const float t122 = r * t121;
+    const float J_crank = p->value[14];
+    const float t123 = J_crank * t4;
+    const float t124 = t122 - t123;
+    const float t125 = l * t124;
+    const float t126 = t116 * t125;
+    const float t127 = t9 * t106;
+    const float t128 = t19 * t114;
+    const float t129 = t127 - t128;
+    const float t130 = t129 * t95;
     const float t131 = t126 + t130;
-    const float t132 = t131 * t81;
+    const float t132 = t81 * t131;
     const float t133 = m_s * t132;
-    const float t134 = t97 + t133;
-    const float t135 = t93 * t134;
+    const float t134 = t99 + t133;
+    const float t135 = t95 * t134;
     const float t136 = m_s * t15;
-    const float t142 = p->value[22];
-    const float t143 = t6 * t142;
-    const float t144 = beta_dot * beta_dot;
-    const float t145 = m_rod * t15;
-    const float t146 = t144 * t145;
-    const float t147 = 0.5f * t146;
-    const float t148 = t143 + t147;
+    const float t138 = p->value[22];
+    const float t139 = t4 * t138;
+    const float t140 = 0.5f * t139;
+    const float t141 = alpha_dot * alpha_dot;
+    const float t142 = t141 * t15;
+    const float t143 = t82 * t142;
+    const float t144 = t140 - t143;
+    const float t145 = t136 * t129;
+    const float t146 = t114 * t125;
+    const float t147 = t145 + t146;
+    const float t148 = t147 * t81;
+    const float t149 = t92 * t148;
+    const float t150 = 2.0f * t149;
+    const float t151 = t136 * t116;
+    const float t152 = t114 * t95;
+    const float t153 = t151 - t152;
+    const float t154 = t81 * t153;
+    const float t155 = t86 * t154;
+    const float t156 = t82 * t155;
+    const float t157 = t150 - t156;
+    const float t158 = t144 + t157;
+    const float t159 = t136 * t158;
+    const float t160 = t135 + t159;
+    const float t161 = t9 * t160;
+    const float t162 = t125 * t134;
+    const float t166 = p->value[11];
+    const float t167 = t6 * t166;
+    const float t168 = beta_dot * beta_dot;
+    const float t169 = t168 * t15;
+    const float t170 = t82 * t169;
+    const float t171 = t167 + t170;
     const float crank = u[0];
-    const float t149 = crank - t148;
-    const float t154 = t136 * t129;
-    const float t155 = t108 * t123;
-    const float t156 = t154 - t155;
-    const float t157 = t156 * t81;
-    const float t153 = p->value[26];
-    const float t158 = t153 * t157;
-    const float t159 = 2.0f * t158;
-    const float t160 = t136 * t125;
-    const float t161 = t123 * t93;
-    const float t162 = t160 + t161;
-    const float t163 = t162 * t81;
-    const float t164 = t99 * t163;
-    const float t165 = 0.5f * t164;
-    const float t166 = t159 - t165;
-    const float t167 = t149 + t166;
-    const float t168 = t136 * t167;
-    const float t169 = t135 + t168;
-    const float t170 = t7 * t169;
-    const float t171 = t108 * t134;
-    const float t172 = p->value[23];
-    const float t173 = t4 * t172;
-    const float t174 = 0.5f * t173;
-    const float t175 = alpha_dot * alpha_dot;
-    const float t176 = t175 * t145;
-    const float t177 = 0.5f * t176;
-    const float t178 = t174 - t177;
-    const float t179 = t105 * t163;
-    const float t180 = 2.0f * t179;
-    const float t181 = t99 * t157;
-    const float t182 = 0.5f * t181;
-    const float t183 = t180 - t182;
-    const float t184 = t178 + t183;
-    const float t185 = t136 * t184;
-    const float t186 = t171 + t185;
-    const float t187 = t9 * t186;
-    const float t188 = t170 + t187;
-    const float t189 = t81 * t188;
-    const float t190 = -t189;
-    const float t191 = t108 * t167;
-    const float t192 = t93 * t184;
-    const float t193 = t191 - t192;
-    const float t194 = t21 * t169;
-    const float t195 = t193 - t194;
-    const float t196 = t19 * t186;
-    const float t197 = t195 + t196;
-    const float t198 = t81 * t197;
-    const float t199 = -t198;
-    float rest = t190 - t190;
-    rest += t199 - t199;
-    if (isnan(rest) != 0) {
+    const float t172 = crank - t171;
+    const float t176 = p->value[25];
+    const float t177 = t176 * t154;
+    const float t178 = 2.0f * t177;
+    const float t179 = t86 * t148;
+    const float t180 = t82 * t179;
+    const float t181 = t178 - t180;
+    const float t182 = t172 + t181;
+    const float t183 = t136 * t182;
+    const float t184 = t162 + t183;
+    const float t185 = t7 * t184;
+    const float t186 = t161 + t185;
+    const float t187 = t81 * t186;
+    const float t188 = -t187;
+    const float t189 = t19 * t160;
+    const float t190 = t95 * t182;
+    const float t191 = t125 * t158;
+    const float t192 = t190 - t191;
+    const float t193 = t21 * t184;
+    const float t194 = t192 - t193;
+    const float t195 = t189 + t194;
+    const float t196 = t81 * t195;
+    const float t197 = -t196;
+    float rest = (t188 - t188) * t197;
+    if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    lambda_B[0] = t190;
-    lambda_B[1] = t199;
+    lambda_B[0] = t188;
+    lambda_B[1] = t197;
     return SLIDER_CRANK_OK;
 }

@@ -21,10 +21,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      89    138      3      0     10      0
- * forward_dynamics     420    682     26     11      9      0
- * multipliers          386    628     32     11      9      0
- * singularity          231    337     31     12      9      0
+ * inverse_dynamics      78    126      3      0     10      0
+ * forward_dynamics     477    756     24     12      7      0
+ * multipliers          443    692     30     12      7      0
+ * singularity          156    230     30     12      7      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

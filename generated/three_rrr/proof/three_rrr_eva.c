@@ -72,7 +72,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t212, t331, t413, t464, t469, t498, t426, t539, t504, t609, t663, t669, t432, t860, t981, t863, t985. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t341, t414, t491, t497, t557, t442, t655, t657, t729, t735, t452, t966, t1093, t970, t1097. */
 void eva_forward_dynamics(void) {
     double q[9];
     double qd[9];
@@ -118,7 +118,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t212, t331, t413, t463, t483, t552, t550, t426, t630, t628, t739, t746, t432, t855, t851, t931, t1042. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t341, t490, t519, t414, t615, t442, t688, t686, t452, t834, t841, t960, t956, t1034, t1153. */
 void eva_multipliers(void) {
     double q[9];
     double qd[9];

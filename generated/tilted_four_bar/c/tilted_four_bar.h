@@ -12,10 +12,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      63    129      1      0      5      0
- * forward_dynamics     174    301      2      0      5      0
- * multipliers          185    315      2      0      5      0
- * singularity           44     82     14      3      5      0
+ * inverse_dynamics      57    111      1      0      5      0
+ * forward_dynamics     154    260      2      0      5      0
+ * multipliers          165    280      2      0      5      0
+ * singularity           37     64     14      3      5      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -14,15 +14,15 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[29];
+    double value[37];
 } tilted_four_bar_prepared;
 
 tilted_four_bar_prepared tilted_four_bar_prepare(const tilted_four_bar_params *p);
 
-/* q̈: accelerations under the inputs, (15); 440 operations instead of 493 */
+/* q̈: accelerations under the inputs, (15); 372 operations instead of 432 */
 tilted_four_bar_status tilted_four_bar_forward_dynamics_prepared(const double q[3], const double qd[3], const double u[1], const tilted_four_bar_prepared *p, double qdd[3]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 465 operations instead of 518 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 403 operations instead of 463 */
 tilted_four_bar_status tilted_four_bar_multipliers_prepared(const double q[3], const double qd[3], const double u[1], const tilted_four_bar_prepared *p, double lambda_B[3]);
 
 #ifdef __cplusplus

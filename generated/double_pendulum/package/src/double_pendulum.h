@@ -40,7 +40,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                  6     16      0      0      1      0
- * actuator_bias                         9     22      0      0      2      0
+ * actuator_bias                         9     21      0      0      2      0
  * forward_dynamics                     29     56      1      0      2      0
  * energy                                9     24      0      0      2      0
  * singularity                           0      0      0      0      0      0
@@ -206,6 +206,15 @@ double_pendulum_status double_pendulum_singularity(const double q[2], const doub
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define DOUBLE_PENDULUM_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define DOUBLE_PENDULUM_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define DOUBLE_PENDULUM_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define DOUBLE_PENDULUM_INLINE static inline __attribute__((always_inline))
 #else
@@ -327,7 +336,7 @@ double_pendulum_params double_pendulum_default_params(void) {
 double_pendulum_status double_pendulum_mass_matrix(const double q[2], const double_pendulum_params *p, double G[4]) {
     const double q_2 = q[1];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     double t2;
@@ -362,10 +371,8 @@ double_pendulum_status double_pendulum_mass_matrix(const double q[2], const doub
     const double t23 = t18 + t22;
     const double t24 = t12 + t23;
     const double t25 = t21 + t18;
-    double rest = t24 - t24;
-    rest += t25 - t25;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    double rest = (t24 - t24) * t25 * t18;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G[0] = t24;
@@ -378,7 +385,7 @@ double_pendulum_status double_pendulum_mass_matrix(const double q[2], const doub
 double_pendulum_status double_pendulum_coriolis_matrix(const double q[2], const double qd[2], const double_pendulum_params *p, double C[4]) {
     const double q_2 = q[1];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     double t2;
@@ -399,10 +406,8 @@ double_pendulum_status double_pendulum_coriolis_matrix(const double q[2], const 
     const double t10 = t5 * t9;
     const double t11 = -t10;
     const double t12 = q_1_dot * t6;
-    double rest = t8 - t8;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    double rest = (t8 - t8) * t11 * t12;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C[0] = t8;
@@ -415,7 +420,7 @@ double_pendulum_status double_pendulum_coriolis_matrix(const double q[2], const 
 double_pendulum_status double_pendulum_coriolis_force(const double q[2], const double qd[2], const double_pendulum_params *p, double C_qd[2]) {
     const double q_2 = q[1];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     double t2;
@@ -437,9 +442,8 @@ double_pendulum_status double_pendulum_coriolis_force(const double q[2], const d
     const double t12 = q_1_dot * q_1_dot;
     const double t13 = t5 * t2;
     const double t14 = t12 * t13;
-    double rest = t11 - t11;
-    rest += t14 - t14;
-    if (isnan(rest) != 0) {
+    double rest = (t11 - t11) * t14;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_qd[0] = t11;
@@ -453,10 +457,10 @@ double_pendulum_status double_pendulum_potential_force(const double q[2], const 
     const double angle_2 = q_1 + q_2;
     const double t1 = fabs(angle_2);
     const double t2 = fabs(q_1);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const double angle[2] = {angle_2, q_1};
@@ -480,9 +484,8 @@ double_pendulum_status double_pendulum_potential_force(const double q[2], const 
     const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
-    double rest = t15 - t15;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    double rest = (t15 - t15) * t9;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q[0] = t15;
@@ -500,9 +503,8 @@ double_pendulum_status double_pendulum_applied_force(const double q[2], const do
     const double d_2 = p->d_2;
     const double t3 = q_2_dot * d_2;
     const double t4 = -t3;
-    double rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t4;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a[0] = t2;
@@ -584,7 +586,7 @@ double_pendulum_status double_pendulum_orthogonal_complement(const double q[2], 
 double_pendulum_status double_pendulum_projected_mass_matrix(const double q[2], const double_pendulum_params *p, double G_tilde[4]) {
     const double q_2 = q[1];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     double t2;
@@ -619,10 +621,8 @@ double_pendulum_status double_pendulum_projected_mass_matrix(const double q[2], 
     const double t23 = t18 + t22;
     const double t24 = t12 + t23;
     const double t25 = t21 + t18;
-    double rest = t24 - t24;
-    rest += t25 - t25;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    double rest = (t24 - t24) * t25 * t18;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_tilde[0] = t24;
@@ -635,7 +635,7 @@ double_pendulum_status double_pendulum_projected_mass_matrix(const double q[2], 
 double_pendulum_status double_pendulum_projected_coriolis_matrix(const double q[2], const double qd[2], const double_pendulum_params *p, double C_tilde[4]) {
     const double q_2 = q[1];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     double t2;
@@ -656,10 +656,8 @@ double_pendulum_status double_pendulum_projected_coriolis_matrix(const double q[
     const double t10 = t5 * t9;
     const double t11 = -t10;
     const double t12 = q_1_dot * t6;
-    double rest = t8 - t8;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    double rest = (t8 - t8) * t11 * t12;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_tilde[0] = t8;
@@ -675,10 +673,10 @@ double_pendulum_status double_pendulum_projected_potential_force(const double q[
     const double angle_2 = q_1 + q_2;
     const double t1 = fabs(angle_2);
     const double t2 = fabs(q_1);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const double angle[2] = {angle_2, q_1};
@@ -702,9 +700,8 @@ double_pendulum_status double_pendulum_projected_potential_force(const double q[
     const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
-    double rest = t15 - t15;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    double rest = (t15 - t15) * t9;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_tilde[0] = t15;
@@ -722,9 +719,8 @@ double_pendulum_status double_pendulum_projected_applied_force(const double q[2]
     const double d_2 = p->d_2;
     const double t3 = q_2_dot * d_2;
     const double t4 = -t3;
-    double rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t4;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a_tilde[0] = t2;
@@ -735,7 +731,7 @@ double_pendulum_status double_pendulum_projected_applied_force(const double q[2]
 double_pendulum_status double_pendulum_minimal_mass_matrix(const double q[2], const double_pendulum_params *p, double G_bar[4]) {
     const double q_2 = q[1];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     double t2;
@@ -770,10 +766,8 @@ double_pendulum_status double_pendulum_minimal_mass_matrix(const double q[2], co
     const double t23 = t18 + t22;
     const double t24 = t12 + t23;
     const double t25 = t21 + t18;
-    double rest = t24 - t24;
-    rest += t25 - t25;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    double rest = (t24 - t24) * t25 * t18;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_bar[0] = t24;
@@ -786,7 +780,7 @@ double_pendulum_status double_pendulum_minimal_mass_matrix(const double q[2], co
 double_pendulum_status double_pendulum_minimal_coriolis_matrix(const double q[2], const double qd[2], const double_pendulum_params *p, double C_bar[4]) {
     const double q_2 = q[1];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     double t2;
@@ -807,10 +801,8 @@ double_pendulum_status double_pendulum_minimal_coriolis_matrix(const double q[2]
     const double t10 = t5 * t9;
     const double t11 = -t10;
     const double t12 = q_1_dot * t6;
-    double rest = t8 - t8;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    double rest = (t8 - t8) * t11 * t12;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_bar[0] = t8;
@@ -826,10 +818,10 @@ double_pendulum_status double_pendulum_minimal_potential_force(const double q[2]
     const double angle_2 = q_1 + q_2;
     const double t1 = fabs(angle_2);
     const double t2 = fabs(q_1);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const double angle[2] = {angle_2, q_1};
@@ -853,9 +845,8 @@ double_pendulum_status double_pendulum_minimal_potential_force(const double q[2]
     const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
-    double rest = t15 - t15;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    double rest = (t15 - t15) * t9;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_bar[0] = t15;
@@ -873,9 +864,8 @@ double_pendulum_status double_pendulum_minimal_applied_force(const double q[2], 
     const double d_2 = p->d_2;
     const double t3 = q_2_dot * d_2;
     const double t4 = -t3;
-    double rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t4;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a_bar[0] = t2;
@@ -898,9 +888,8 @@ double_pendulum_status double_pendulum_admissible_velocity(const double q[2], co
     (void)p;
     const double q_1_dot = qd[0];
     const double q_2_dot = qd[1];
-    double rest = q_1_dot - q_1_dot;
-    rest += q_2_dot - q_2_dot;
-    if (isnan(rest) != 0) {
+    double rest = (q_1_dot - q_1_dot) * q_2_dot;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qd_admissible[0] = q_1_dot;
@@ -914,9 +903,8 @@ double_pendulum_status double_pendulum_admissible_acceleration(const double q[2]
     (void)p;
     const double q_1_ddot = qdd[0];
     const double q_2_ddot = qdd[1];
-    double rest = q_1_ddot - q_1_ddot;
-    rest += q_2_ddot - q_2_ddot;
-    if (isnan(rest) != 0) {
+    double rest = (q_1_ddot - q_1_ddot) * q_2_ddot;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd_admissible[0] = q_1_ddot;
@@ -928,9 +916,8 @@ double_pendulum_status double_pendulum_projected_configuration(const double q[2]
     (void)p;
     const double q_1 = q[0];
     const double q_2 = q[1];
-    double rest = q_1 - q_1;
-    rest += q_2 - q_2;
-    if (isnan(rest) != 0) {
+    double rest = (q_1 - q_1) * q_2;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     q_projected[0] = q_1;
@@ -943,10 +930,10 @@ double_pendulum_status double_pendulum_inverse_dynamics(const double q[2], const
     const double t1 = fabs(q_1);
     const double q_2 = q[1];
     const double t2 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const double angle[2] = {q_1, q_2};
@@ -1027,9 +1014,8 @@ double_pendulum_status double_pendulum_inverse_dynamics(const double q[2], const
     const double t59 = t58 + t49;
     const double t60 = t59 + t18;
     const double t61 = t55 + t60;
-    double rest = t54 - t54;
-    rest += t61 - t61;
-    if (isnan(rest) != 0) {
+    double rest = (t54 - t54) * t61;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     u[0] = t54;
@@ -1052,9 +1038,8 @@ double_pendulum_status double_pendulum_actuator_velocity(const double q[2], cons
     (void)p;
     const double q_1_dot = qd[0];
     const double q_2_dot = qd[1];
-    double rest = q_1_dot - q_1_dot;
-    rest += q_2_dot - q_2_dot;
-    if (isnan(rest) != 0) {
+    double rest = (q_1_dot - q_1_dot) * q_2_dot;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     nu[0] = q_1_dot;
@@ -1065,7 +1050,7 @@ double_pendulum_status double_pendulum_actuator_velocity(const double q[2], cons
 double_pendulum_status double_pendulum_actuator_mass_matrix(const double q[2], const double_pendulum_params *p, double G_nu[4]) {
     const double q_2 = q[1];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     double t2;
@@ -1100,10 +1085,8 @@ double_pendulum_status double_pendulum_actuator_mass_matrix(const double q[2], c
     const double t23 = t18 + t22;
     const double t24 = t12 + t23;
     const double t25 = t21 + t18;
-    double rest = t24 - t24;
-    rest += t25 - t25;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    double rest = (t24 - t24) * t25 * t18;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_nu[0] = t24;
@@ -1114,72 +1097,70 @@ double_pendulum_status double_pendulum_actuator_mass_matrix(const double q[2], c
 }
 
 double_pendulum_status double_pendulum_actuator_bias(const double q[2], const double qd[2], const double_pendulum_params *p, double bias_nu[2]) {
-    const double q_2 = q[1];
-    const double t1 = fabs(q_2);
     const double q_1 = q[0];
-    const double t2 = fabs(q_1);
-    if (!(100000.0 >= t1)) {
+    const double t1 = fabs(q_1);
+    const double q_2 = q[1];
+    const double t2 = fabs(q_2);
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    const double angle[2] = {q_2, q_1};
+    const double angle[2] = {q_1, q_2};
     double sine[2];
     double cosine[2];
     double_pendulum_sincos_group(2, angle, sine, cosine);
-    const double g = p->g;
-    const double t6 = cosine[1];
-    const double t7 = g * t6;
     const double q_1_dot = qd[0];
-    const double t8 = 2.0 * q_1_dot;
-    const double q_2_dot = qd[1];
-    const double t9 = q_2_dot + t8;
-    const double l_1 = p->l_1;
-    const double t10 = l_1 * t9;
-    const double t11 = q_2_dot * t10;
-    const double t12 = t7 - t11;
-    const double t3 = sine[0];
-    const double t13 = t3 * t12;
-    const double t4 = cosine[0];
-    const double t5 = sine[1];
-    const double t14 = t4 * t5;
-    const double t15 = g * t14;
-    const double t16 = t13 + t15;
-    const double m_2 = p->m_2;
-    const double t17 = m_2 * t16;
-    const double c_2 = p->c_2;
-    const double t18 = c_2 * t17;
     const double d_1 = p->d_1;
-    const double t19 = q_1_dot * d_1;
+    const double t7 = q_1_dot * d_1;
     const double c_1 = p->c_1;
     const double m_1 = p->m_1;
-    const double t20 = c_1 * m_1;
-    const double t21 = l_1 * m_2;
-    const double t22 = t20 + t21;
+    const double t8 = c_1 * m_1;
+    const double l_1 = p->l_1;
+    const double m_2 = p->m_2;
+    const double t9 = l_1 * m_2;
+    const double t10 = t8 + t9;
+    const double g = p->g;
+    const double t11 = g * t10;
+    const double t3 = sine[0];
+    const double t12 = t3 * t11;
+    const double t13 = t7 + t12;
+    const double c_2 = p->c_2;
+    const double t14 = c_2 * m_2;
+    const double t4 = cosine[0];
+    const double t15 = g * t4;
+    const double t16 = 2.0 * q_1_dot;
+    const double q_2_dot = qd[1];
+    const double t17 = q_2_dot + t16;
+    const double t18 = l_1 * t17;
+    const double t19 = q_2_dot * t18;
+    const double t20 = t15 - t19;
+    const double t5 = sine[1];
+    const double t21 = t5 * t20;
+    const double t6 = cosine[1];
+    const double t22 = t6 * t3;
     const double t23 = g * t22;
-    const double t24 = t5 * t23;
-    const double t25 = t19 + t24;
-    const double t26 = t18 + t25;
+    const double t24 = t21 + t23;
+    const double t25 = t14 * t24;
+    const double t26 = t13 + t25;
     const double d_2 = p->d_2;
     const double t27 = q_2_dot * d_2;
     const double t28 = q_1_dot * q_1_dot;
-    const double t29 = t28 * t3;
+    const double t29 = t28 * t5;
     const double t30 = l_1 * t29;
-    const double t31 = t3 * t6;
-    const double t32 = t14 + t31;
+    const double t31 = t5 * t4;
+    const double t32 = t22 + t31;
     const double t33 = g * t32;
     const double t34 = t30 + t33;
-    const double t35 = m_2 * t34;
-    const double t36 = c_2 * t35;
-    const double t37 = t27 + t36;
-    double rest = t26 - t26;
-    rest += t37 - t37;
-    if (isnan(rest) != 0) {
+    const double t35 = t14 * t34;
+    const double t36 = t27 + t35;
+    double rest = (t26 - t26) * t36;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     bias_nu[0] = t26;
-    bias_nu[1] = t37;
+    bias_nu[1] = t36;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1188,10 +1169,10 @@ double_pendulum_status double_pendulum_forward_dynamics(const double q[2], const
     const double t1 = fabs(q_2);
     const double q_1 = q[0];
     const double t2 = fabs(q_1);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const double angle[2] = {q_2, q_1};
@@ -1245,7 +1226,7 @@ double_pendulum_status double_pendulum_forward_dynamics(const double q[2], const
     const double t43 = t38 * t42;
     const double t44 = t41 + t43;
     const double t45 = t44 * 1.7763568394002505e-15;
-    if (!(t23 > t45)) {
+    if (DOUBLE_PENDULUM_RARELY(!(t23 > t45))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }
     const double t46 = 1.0 / t22;
@@ -1314,9 +1295,8 @@ double_pendulum_status double_pendulum_forward_dynamics(const double q[2], const
     const double t98 = t74 * t97;
     const double t99 = t91 + t98;
     const double t100 = t46 * t99;
-    double rest = t90 - t90;
-    rest += t100 - t100;
-    if (isnan(rest) != 0) {
+    double rest = (t90 - t90) * t100;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd[0] = t90;
@@ -1329,10 +1309,10 @@ double_pendulum_status double_pendulum_energy(const double q[2], const double qd
     const double t1 = fabs(q_2);
     const double q_1 = q[0];
     const double t2 = fabs(q_1);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const double angle[2] = {q_2, q_1};
@@ -1343,37 +1323,37 @@ double_pendulum_status double_pendulum_energy(const double q[2], const double qd
     const double q_2_dot = qd[1];
     const double turn_2 = q_1_dot + q_2_dot;
     const double t7 = turn_2 * turn_2;
-    const double c_2 = p->c_2;
-    const double t8 = c_2 * c_2;
-    const double t9 = t7 * t8;
-    const double l_1 = p->l_1;
-    const double t10 = q_1_dot * l_1;
-    const double t11 = c_2 * turn_2;
-    const double t4 = cosine[0];
-    const double t12 = t4 * t11;
-    const double t13 = 2.0 * t12;
-    const double t14 = t10 + t13;
-    const double t15 = t10 * t14;
-    const double t16 = t9 + t15;
-    const double m_2 = p->m_2;
-    const double t17 = m_2 * t16;
-    const double t18 = 0.5 * t17;
     const double J_2 = p->J_2;
-    const double t19 = J_2 * t7;
-    const double t20 = 0.5 * t19;
-    const double t21 = q_1_dot * q_1_dot;
+    const double t8 = J_2 * t7;
+    const double t9 = 0.5 * t8;
+    const double t10 = q_1_dot * q_1_dot;
     const double c_1 = p->c_1;
     const double m_1 = p->m_1;
-    const double t22 = c_1 * m_1;
-    const double t23 = c_1 * t22;
+    const double t11 = c_1 * m_1;
+    const double t12 = c_1 * t11;
     const double J_1 = p->J_1;
-    const double t24 = J_1 + t23;
-    const double t25 = t21 * t24;
-    const double t26 = 0.5 * t25;
-    const double t27 = t20 + t26;
-    const double t28 = t18 + t27;
+    const double t13 = J_1 + t12;
+    const double t14 = t10 * t13;
+    const double t15 = 0.5 * t14;
+    const double t16 = t9 + t15;
+    const double c_2 = p->c_2;
+    const double t17 = c_2 * c_2;
+    const double t18 = t7 * t17;
+    const double l_1 = p->l_1;
+    const double t19 = q_1_dot * l_1;
+    const double t20 = c_2 * turn_2;
+    const double t4 = cosine[0];
+    const double t21 = t4 * t20;
+    const double t22 = 2.0 * t21;
+    const double t23 = t19 + t22;
+    const double t24 = t19 * t23;
+    const double t25 = t18 + t24;
+    const double m_2 = p->m_2;
+    const double t26 = m_2 * t25;
+    const double t27 = 0.5 * t26;
+    const double t28 = t16 + t27;
     const double t6 = cosine[1];
-    const double t29 = t22 * t6;
+    const double t29 = t11 * t6;
     const double t30 = l_1 * t6;
     const double t31 = t4 * t6;
     const double t3 = sine[0];
@@ -1387,9 +1367,8 @@ double_pendulum_status double_pendulum_energy(const double q[2], const double qd
     const double g = p->g;
     const double t38 = g * t37;
     const double t39 = -t38;
-    double rest = t28 - t28;
-    rest += t39 - t39;
-    if (isnan(rest) != 0) {
+    double rest = (t28 - t28) * t39;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     T_U[0] = t28;

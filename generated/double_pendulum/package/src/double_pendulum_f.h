@@ -40,7 +40,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                  6     16      0      0      1      0
- * actuator_bias                         9     22      0      0      2      0
+ * actuator_bias                         9     21      0      0      2      0
  * forward_dynamics                     29     56      1      0      2      0
  * energy                                9     24      0      0      2      0
  * singularity                           0      0      0      0      0      0
@@ -206,6 +206,15 @@ double_pendulum_status double_pendulum_singularity_f(const float q[2], const dou
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define DOUBLE_PENDULUM_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define DOUBLE_PENDULUM_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define DOUBLE_PENDULUM_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define DOUBLE_PENDULUM_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -319,7 +328,7 @@ double_pendulum_params_f double_pendulum_default_params_f(void) {
 double_pendulum_status double_pendulum_mass_matrix_f(const float q[2], const double_pendulum_params_f *p, float G[4]) {
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     float t2;
@@ -354,10 +363,8 @@ double_pendulum_status double_pendulum_mass_matrix_f(const float q[2], const dou
     const float t23 = t18 + t22;
     const float t24 = t12 + t23;
     const float t25 = t21 + t18;
-    float rest = t24 - t24;
-    rest += t25 - t25;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    float rest = (t24 - t24) * t25 * t18;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G[0] = t24;
@@ -370,7 +377,7 @@ double_pendulum_status double_pendulum_mass_matrix_f(const float q[2], const dou
 double_pendulum_status double_pendulum_coriolis_matrix_f(const float q[2], const float qd[2], const double_pendulum_params_f *p, float C[4]) {
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     float t2;
@@ -391,10 +398,8 @@ double_pendulum_status double_pendulum_coriolis_matrix_f(const float q[2], const
     const float t10 = t5 * t9;
     const float t11 = -t10;
     const float t12 = q_1_dot * t6;
-    float rest = t8 - t8;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    float rest = (t8 - t8) * t11 * t12;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C[0] = t8;
@@ -407,7 +412,7 @@ double_pendulum_status double_pendulum_coriolis_matrix_f(const float q[2], const
 double_pendulum_status double_pendulum_coriolis_force_f(const float q[2], const float qd[2], const double_pendulum_params_f *p, float C_qd[2]) {
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     float t2;
@@ -429,9 +434,8 @@ double_pendulum_status double_pendulum_coriolis_force_f(const float q[2], const 
     const float t12 = q_1_dot * q_1_dot;
     const float t13 = t5 * t2;
     const float t14 = t12 * t13;
-    float rest = t11 - t11;
-    rest += t14 - t14;
-    if (isnan(rest) != 0) {
+    float rest = (t11 - t11) * t14;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_qd[0] = t11;
@@ -445,10 +449,10 @@ double_pendulum_status double_pendulum_potential_force_f(const float q[2], const
     const float angle_2 = q_1 + q_2;
     const float t1 = fabsf(angle_2);
     const float t2 = fabsf(q_1);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const float angle[4] = {angle_2, q_1, q_1, q_1};
@@ -472,9 +476,8 @@ double_pendulum_status double_pendulum_potential_force_f(const float q[2], const
     const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
-    float rest = t15 - t15;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    float rest = (t15 - t15) * t9;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q[0] = t15;
@@ -492,9 +495,8 @@ double_pendulum_status double_pendulum_applied_force_f(const float q[2], const f
     const float d_2 = p->d_2;
     const float t3 = q_2_dot * d_2;
     const float t4 = -t3;
-    float rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    float rest = (t2 - t2) * t4;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a[0] = t2;
@@ -576,7 +578,7 @@ double_pendulum_status double_pendulum_orthogonal_complement_f(const float q[2],
 double_pendulum_status double_pendulum_projected_mass_matrix_f(const float q[2], const double_pendulum_params_f *p, float G_tilde[4]) {
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     float t2;
@@ -611,10 +613,8 @@ double_pendulum_status double_pendulum_projected_mass_matrix_f(const float q[2],
     const float t23 = t18 + t22;
     const float t24 = t12 + t23;
     const float t25 = t21 + t18;
-    float rest = t24 - t24;
-    rest += t25 - t25;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    float rest = (t24 - t24) * t25 * t18;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_tilde[0] = t24;
@@ -627,7 +627,7 @@ double_pendulum_status double_pendulum_projected_mass_matrix_f(const float q[2],
 double_pendulum_status double_pendulum_projected_coriolis_matrix_f(const float q[2], const float qd[2], const double_pendulum_params_f *p, float C_tilde[4]) {
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     float t2;
@@ -648,10 +648,8 @@ double_pendulum_status double_pendulum_projected_coriolis_matrix_f(const float q
     const float t10 = t5 * t9;
     const float t11 = -t10;
     const float t12 = q_1_dot * t6;
-    float rest = t8 - t8;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    float rest = (t8 - t8) * t11 * t12;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_tilde[0] = t8;
@@ -667,10 +665,10 @@ double_pendulum_status double_pendulum_projected_potential_force_f(const float q
     const float angle_2 = q_1 + q_2;
     const float t1 = fabsf(angle_2);
     const float t2 = fabsf(q_1);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const float angle[4] = {angle_2, q_1, q_1, q_1};
@@ -694,9 +692,8 @@ double_pendulum_status double_pendulum_projected_potential_force_f(const float q
     const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
-    float rest = t15 - t15;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    float rest = (t15 - t15) * t9;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_tilde[0] = t15;
@@ -714,9 +711,8 @@ double_pendulum_status double_pendulum_projected_applied_force_f(const float q[2
     const float d_2 = p->d_2;
     const float t3 = q_2_dot * d_2;
     const float t4 = -t3;
-    float rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    float rest = (t2 - t2) * t4;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a_tilde[0] = t2;
@@ -727,7 +723,7 @@ double_pendulum_status double_pendulum_projected_applied_force_f(const float q[2
 double_pendulum_status double_pendulum_minimal_mass_matrix_f(const float q[2], const double_pendulum_params_f *p, float G_bar[4]) {
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     float t2;
@@ -762,10 +758,8 @@ double_pendulum_status double_pendulum_minimal_mass_matrix_f(const float q[2], c
     const float t23 = t18 + t22;
     const float t24 = t12 + t23;
     const float t25 = t21 + t18;
-    float rest = t24 - t24;
-    rest += t25 - t25;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    float rest = (t24 - t24) * t25 * t18;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_bar[0] = t24;
@@ -778,7 +772,7 @@ double_pendulum_status double_pendulum_minimal_mass_matrix_f(const float q[2], c
 double_pendulum_status double_pendulum_minimal_coriolis_matrix_f(const float q[2], const float qd[2], const double_pendulum_params_f *p, float C_bar[4]) {
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     float t2;
@@ -799,10 +793,8 @@ double_pendulum_status double_pendulum_minimal_coriolis_matrix_f(const float q[2
     const float t10 = t5 * t9;
     const float t11 = -t10;
     const float t12 = q_1_dot * t6;
-    float rest = t8 - t8;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    float rest = (t8 - t8) * t11 * t12;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_bar[0] = t8;
@@ -818,10 +810,10 @@ double_pendulum_status double_pendulum_minimal_potential_force_f(const float q[2
     const float angle_2 = q_1 + q_2;
     const float t1 = fabsf(angle_2);
     const float t2 = fabsf(q_1);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const float angle[4] = {angle_2, q_1, q_1, q_1};
@@ -845,9 +837,8 @@ double_pendulum_status double_pendulum_minimal_potential_force_f(const float q[2
     const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
-    float rest = t15 - t15;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    float rest = (t15 - t15) * t9;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_bar[0] = t15;
@@ -865,9 +856,8 @@ double_pendulum_status double_pendulum_minimal_applied_force_f(const float q[2],
     const float d_2 = p->d_2;
     const float t3 = q_2_dot * d_2;
     const float t4 = -t3;
-    float rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    float rest = (t2 - t2) * t4;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     Q_a_bar[0] = t2;
@@ -890,9 +880,8 @@ double_pendulum_status double_pendulum_admissible_velocity_f(const float q[2], c
     (void)p;
     const float q_1_dot = qd[0];
     const float q_2_dot = qd[1];
-    float rest = q_1_dot - q_1_dot;
-    rest += q_2_dot - q_2_dot;
-    if (isnan(rest) != 0) {
+    float rest = (q_1_dot - q_1_dot) * q_2_dot;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qd_admissible[0] = q_1_dot;
@@ -906,9 +895,8 @@ double_pendulum_status double_pendulum_admissible_acceleration_f(const float q[2
     (void)p;
     const float q_1_ddot = qdd[0];
     const float q_2_ddot = qdd[1];
-    float rest = q_1_ddot - q_1_ddot;
-    rest += q_2_ddot - q_2_ddot;
-    if (isnan(rest) != 0) {
+    float rest = (q_1_ddot - q_1_ddot) * q_2_ddot;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd_admissible[0] = q_1_ddot;
@@ -920,9 +908,8 @@ double_pendulum_status double_pendulum_projected_configuration_f(const float q[2
     (void)p;
     const float q_1 = q[0];
     const float q_2 = q[1];
-    float rest = q_1 - q_1;
-    rest += q_2 - q_2;
-    if (isnan(rest) != 0) {
+    float rest = (q_1 - q_1) * q_2;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     q_projected[0] = q_1;
@@ -935,10 +922,10 @@ double_pendulum_status double_pendulum_inverse_dynamics_f(const float q[2], cons
     const float t1 = fabsf(q_1);
     const float q_2 = q[1];
     const float t2 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const float angle[4] = {q_1, q_2, q_2, q_2};
@@ -1019,9 +1006,8 @@ double_pendulum_status double_pendulum_inverse_dynamics_f(const float q[2], cons
     const float t59 = t58 + t49;
     const float t60 = t59 + t18;
     const float t61 = t55 + t60;
-    float rest = t54 - t54;
-    rest += t61 - t61;
-    if (isnan(rest) != 0) {
+    float rest = (t54 - t54) * t61;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     u[0] = t54;
@@ -1044,9 +1030,8 @@ double_pendulum_status double_pendulum_actuator_velocity_f(const float q[2], con
     (void)p;
     const float q_1_dot = qd[0];
     const float q_2_dot = qd[1];
-    float rest = q_1_dot - q_1_dot;
-    rest += q_2_dot - q_2_dot;
-    if (isnan(rest) != 0) {
+    float rest = (q_1_dot - q_1_dot) * q_2_dot;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     nu[0] = q_1_dot;
@@ -1057,7 +1042,7 @@ double_pendulum_status double_pendulum_actuator_velocity_f(const float q[2], con
 double_pendulum_status double_pendulum_actuator_mass_matrix_f(const float q[2], const double_pendulum_params_f *p, float G_nu[4]) {
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     float t2;
@@ -1092,10 +1077,8 @@ double_pendulum_status double_pendulum_actuator_mass_matrix_f(const float q[2], 
     const float t23 = t18 + t22;
     const float t24 = t12 + t23;
     const float t25 = t21 + t18;
-    float rest = t24 - t24;
-    rest += t25 - t25;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    float rest = (t24 - t24) * t25 * t18;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     G_nu[0] = t24;
@@ -1106,72 +1089,70 @@ double_pendulum_status double_pendulum_actuator_mass_matrix_f(const float q[2], 
 }
 
 double_pendulum_status double_pendulum_actuator_bias_f(const float q[2], const float qd[2], const double_pendulum_params_f *p, float bias_nu[2]) {
-    const float q_2 = q[1];
-    const float t1 = fabsf(q_2);
     const float q_1 = q[0];
-    const float t2 = fabsf(q_1);
-    if (!(100.0f >= t1)) {
+    const float t1 = fabsf(q_1);
+    const float q_2 = q[1];
+    const float t2 = fabsf(q_2);
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    const float angle[4] = {q_2, q_1, q_1, q_1};
+    const float angle[4] = {q_1, q_2, q_2, q_2};
     float sine[4];
     float cosine[4];
     double_pendulum_sincos_group_f(2, angle, sine, cosine);
-    const float g = p->g;
-    const float t6 = cosine[1];
-    const float t7 = g * t6;
     const float q_1_dot = qd[0];
-    const float t8 = 2.0f * q_1_dot;
-    const float q_2_dot = qd[1];
-    const float t9 = q_2_dot + t8;
-    const float l_1 = p->l_1;
-    const float t10 = l_1 * t9;
-    const float t11 = q_2_dot * t10;
-    const float t12 = t7 - t11;
-    const float t3 = sine[0];
-    const float t13 = t3 * t12;
-    const float t4 = cosine[0];
-    const float t5 = sine[1];
-    const float t14 = t4 * t5;
-    const float t15 = g * t14;
-    const float t16 = t13 + t15;
-    const float m_2 = p->m_2;
-    const float t17 = m_2 * t16;
-    const float c_2 = p->c_2;
-    const float t18 = c_2 * t17;
     const float d_1 = p->d_1;
-    const float t19 = q_1_dot * d_1;
+    const float t7 = q_1_dot * d_1;
     const float c_1 = p->c_1;
     const float m_1 = p->m_1;
-    const float t20 = c_1 * m_1;
-    const float t21 = l_1 * m_2;
-    const float t22 = t20 + t21;
+    const float t8 = c_1 * m_1;
+    const float l_1 = p->l_1;
+    const float m_2 = p->m_2;
+    const float t9 = l_1 * m_2;
+    const float t10 = t8 + t9;
+    const float g = p->g;
+    const float t11 = g * t10;
+    const float t3 = sine[0];
+    const float t12 = t3 * t11;
+    const float t13 = t7 + t12;
+    const float c_2 = p->c_2;
+    const float t14 = c_2 * m_2;
+    const float t4 = cosine[0];
+    const float t15 = g * t4;
+    const float t16 = 2.0f * q_1_dot;
+    const float q_2_dot = qd[1];
+    const float t17 = q_2_dot + t16;
+    const float t18 = l_1 * t17;
+    const float t19 = q_2_dot * t18;
+    const float t20 = t15 - t19;
+    const float t5 = sine[1];
+    const float t21 = t5 * t20;
+    const float t6 = cosine[1];
+    const float t22 = t6 * t3;
     const float t23 = g * t22;
-    const float t24 = t5 * t23;
-    const float t25 = t19 + t24;
-    const float t26 = t18 + t25;
+    const float t24 = t21 + t23;
+    const float t25 = t14 * t24;
+    const float t26 = t13 + t25;
     const float d_2 = p->d_2;
     const float t27 = q_2_dot * d_2;
     const float t28 = q_1_dot * q_1_dot;
-    const float t29 = t28 * t3;
+    const float t29 = t28 * t5;
     const float t30 = l_1 * t29;
-    const float t31 = t3 * t6;
-    const float t32 = t14 + t31;
+    const float t31 = t5 * t4;
+    const float t32 = t22 + t31;
     const float t33 = g * t32;
     const float t34 = t30 + t33;
-    const float t35 = m_2 * t34;
-    const float t36 = c_2 * t35;
-    const float t37 = t27 + t36;
-    float rest = t26 - t26;
-    rest += t37 - t37;
-    if (isnan(rest) != 0) {
+    const float t35 = t14 * t34;
+    const float t36 = t27 + t35;
+    float rest = (t26 - t26) * t36;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     bias_nu[0] = t26;
-    bias_nu[1] = t37;
+    bias_nu[1] = t36;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1180,10 +1161,10 @@ double_pendulum_status double_pendulum_forward_dynamics_f(const float q[2], cons
     const float t1 = fabsf(q_2);
     const float q_1 = q[0];
     const float t2 = fabsf(q_1);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const float angle[4] = {q_2, q_1, q_1, q_1};
@@ -1237,7 +1218,7 @@ double_pendulum_status double_pendulum_forward_dynamics_f(const float q[2], cons
     const float t43 = t38 * t42;
     const float t44 = t41 + t43;
     const float t45 = t44 * 9.536743e-07f;
-    if (!(t23 > t45)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(t23 > t45))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }
     const float t46 = 1.0f / t22;
@@ -1306,9 +1287,8 @@ double_pendulum_status double_pendulum_forward_dynamics_f(const float q[2], cons
     const float t98 = t74 * t97;
     const float t99 = t91 + t98;
     const float t100 = t46 * t99;
-    float rest = t90 - t90;
-    rest += t100 - t100;
-    if (isnan(rest) != 0) {
+    float rest = (t90 - t90) * t100;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd[0] = t90;
@@ -1321,10 +1301,10 @@ double_pendulum_status double_pendulum_energy_f(const float q[2], const float qd
     const float t1 = fabsf(q_2);
     const float q_1 = q[0];
     const float t2 = fabsf(q_1);
-    if (!(100.0f >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const float angle[4] = {q_2, q_1, q_1, q_1};
@@ -1335,37 +1315,37 @@ double_pendulum_status double_pendulum_energy_f(const float q[2], const float qd
     const float q_2_dot = qd[1];
     const float turn_2 = q_1_dot + q_2_dot;
     const float t7 = turn_2 * turn_2;
-    const float c_2 = p->c_2;
-    const float t8 = c_2 * c_2;
-    const float t9 = t7 * t8;
-    const float l_1 = p->l_1;
-    const float t10 = q_1_dot * l_1;
-    const float t11 = c_2 * turn_2;
-    const float t4 = cosine[0];
-    const float t12 = t4 * t11;
-    const float t13 = 2.0f * t12;
-    const float t14 = t10 + t13;
-    const float t15 = t10 * t14;
-    const float t16 = t9 + t15;
-    const float m_2 = p->m_2;
-    const float t17 = m_2 * t16;
-    const float t18 = 0.5f * t17;
     const float J_2 = p->J_2;
-    const float t19 = J_2 * t7;
-    const float t20 = 0.5f * t19;
-    const float t21 = q_1_dot * q_1_dot;
+    const float t8 = J_2 * t7;
+    const float t9 = 0.5f * t8;
+    const float t10 = q_1_dot * q_1_dot;
     const float c_1 = p->c_1;
     const float m_1 = p->m_1;
-    const float t22 = c_1 * m_1;
-    const float t23 = c_1 * t22;
+    const float t11 = c_1 * m_1;
+    const float t12 = c_1 * t11;
     const float J_1 = p->J_1;
-    const float t24 = J_1 + t23;
-    const float t25 = t21 * t24;
-    const float t26 = 0.5f * t25;
-    const float t27 = t20 + t26;
-    const float t28 = t18 + t27;
+    const float t13 = J_1 + t12;
+    const float t14 = t10 * t13;
+    const float t15 = 0.5f * t14;
+    const float t16 = t9 + t15;
+    const float c_2 = p->c_2;
+    const float t17 = c_2 * c_2;
+    const float t18 = t7 * t17;
+    const float l_1 = p->l_1;
+    const float t19 = q_1_dot * l_1;
+    const float t20 = c_2 * turn_2;
+    const float t4 = cosine[0];
+    const float t21 = t4 * t20;
+    const float t22 = 2.0f * t21;
+    const float t23 = t19 + t22;
+    const float t24 = t19 * t23;
+    const float t25 = t18 + t24;
+    const float m_2 = p->m_2;
+    const float t26 = m_2 * t25;
+    const float t27 = 0.5f * t26;
+    const float t28 = t16 + t27;
     const float t6 = cosine[1];
-    const float t29 = t22 * t6;
+    const float t29 = t11 * t6;
     const float t30 = l_1 * t6;
     const float t31 = t4 * t6;
     const float t3 = sine[0];
@@ -1379,9 +1359,8 @@ double_pendulum_status double_pendulum_energy_f(const float q[2], const float qd
     const float g = p->g;
     const float t38 = g * t37;
     const float t39 = -t38;
-    float rest = t28 - t28;
-    rest += t39 - t39;
-    if (isnan(rest) != 0) {
+    float rest = (t28 - t28) * t39;
+    if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     T_U[0] = t28;

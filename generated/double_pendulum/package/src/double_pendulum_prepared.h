@@ -52,6 +52,15 @@ double_pendulum_status double_pendulum_forward_dynamics_prepared(const double q[
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define DOUBLE_PENDULUM_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define DOUBLE_PENDULUM_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define DOUBLE_PENDULUM_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define DOUBLE_PENDULUM_INLINE static inline __attribute__((always_inline))
 #else
@@ -233,10 +242,10 @@ double_pendulum_status double_pendulum_inverse_dynamics_prepared(const double q[
     const double t1 = fabs(q_1);
     const double q_2 = q[1];
     const double t2 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const double angle[2] = {q_1, q_2};
@@ -296,9 +305,8 @@ double_pendulum_status double_pendulum_inverse_dynamics_prepared(const double q[
     const double t59 = t58 + t49;
     const double t60 = t59 + t18;
     const double t61 = t55 + t60;
-    double rest = t54 - t54;
-    rest += t61 - t61;
-    if (isnan(rest) != 0) {
+    double rest = (t54 - t54) * t61;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     u[0] = t54;
@@ -311,10 +319,10 @@ double_pendulum_status double_pendulum_forward_dynamics_prepared(const double q[
     const double t1 = fabs(q_2);
     const double q_1 = q[0];
     const double t2 = fabs(q_1);
-    if (!(100000.0 >= t1)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     const double angle[2] = {q_2, q_1};
@@ -339,7 +347,7 @@ double_pendulum_status double_pendulum_forward_dynamics_prepared(const double q[
     const double t22 = t19 + t21;
     const double t23 = fabs(t22);
     const double t45 = p->value[14];
-    if (!(t23 > t45)) {
+    if (DOUBLE_PENDULUM_RARELY(!(t23 > t45))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }
     const double t46 = 1.0 / t22;
@@ -397,9 +405,8 @@ double_pendulum_status double_pendulum_forward_dynamics_prepared(const double q[
     const double t98 = t74 * t97;
     const double t99 = t91 + t98;
     const double t100 = t46 * t99;
-    double rest = t90 - t90;
-    rest += t100 - t100;
-    if (isnan(rest) != 0) {
+    double rest = (t90 - t90) * t100;
+    if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     qdd[0] = t90;

@@ -15,9 +15,9 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics       7     15      1      0      2      0
- * forward_dynamics      38    101      1      0      2      0
- * multipliers           42     99      1      0      2      0
+ * inverse_dynamics       7     14      1      0      2      0
+ * forward_dynamics      38     94      1      0      2      0
+ * multipliers           42     95      1      0      2      0
  * singularity           12     26      5      1      2      0
  * (changes of sign are not counted)
  *
@@ -90,6 +90,15 @@ front_car_bodies_status front_car_bodies_singularity(const double q[4], const fr
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
+#endif
+
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define FRONT_CAR_BODIES_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define FRONT_CAR_BODIES_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define FRONT_CAR_BODIES_RARELY(condition) (condition)
 #endif
 
 #ifdef __GNUC__
@@ -206,10 +215,10 @@ front_car_bodies_status front_car_bodies_inverse_dynamics(const double q[4], con
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -224,42 +233,40 @@ front_car_bodies_status front_car_bodies_inverse_dynamics(const double q[4], con
     const double t8 = y_ddot * t5;
     const double t9 = t7 + t8;
     const double m_1 = p->m_1;
-    const double t10 = m_1 * t9;
-    const double theta_dot = qd[2];
-    const double L = p->L;
-    const double t11 = theta_dot * L;
-    const double t12 = theta_dot * t11;
-    const double t13 = t9 - t12;
     const double m_2 = p->m_2;
-    const double t14 = m_2 * t13;
-    const double t15 = t10 + t14;
+    const double t10 = m_1 + m_2;
+    const double t11 = t9 * t10;
+    const double theta_dot = qd[2];
+    const double t12 = theta_dot * theta_dot;
+    const double L = p->L;
+    const double t13 = L * m_2;
+    const double t14 = t12 * t13;
+    const double t15 = t11 - t14;
     const double t4 = cosine[0];
     const double t16 = t4 * t15;
-    const double theta_ddot = qdd[2];
+    const double t17 = L * t13;
     const double Theta_1 = p->Theta_1;
-    const double t17 = theta_ddot * Theta_1;
-    const double t18 = y_ddot * t6;
-    const double t19 = x_ddot * t5;
-    const double t20 = t18 - t19;
-    const double t21 = theta_ddot * L;
-    const double t22 = t20 + t21;
-    const double t23 = m_2 * t22;
-    const double t24 = L * t23;
-    const double t25 = t17 + t24;
-    const double t26 = t25 / L;
+    const double t18 = Theta_1 + t17;
+    const double theta_ddot = qdd[2];
+    const double t19 = theta_ddot * t18;
+    const double t20 = y_ddot * t6;
+    const double t21 = x_ddot * t5;
+    const double t22 = t20 - t21;
+    const double t23 = t13 * t22;
+    const double t24 = t19 + t23;
+    const double t25 = t24 / L;
     const double t3 = sine[0];
-    const double t27 = t3 * t26;
-    const double t28 = t16 + t27;
+    const double t26 = t3 * t25;
+    const double t27 = t16 + t26;
     const double phi_ddot = qdd[3];
     const double Theta_2 = p->Theta_2;
-    const double t29 = phi_ddot * Theta_2;
-    double rest = t28 - t28;
-    rest += t29 - t29;
-    if (isnan(rest) != 0) {
+    const double t28 = phi_ddot * Theta_2;
+    double rest = (t27 - t27) * t28;
+    if (FRONT_CAR_BODIES_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
-    u[0] = t28;
-    u[1] = t29;
+    u[0] = t27;
+    u[1] = t28;
     return FRONT_CAR_BODIES_OK;
 }
 
@@ -268,10 +275,10 @@ front_car_bodies_status front_car_bodies_forward_dynamics(const double q[4], con
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -294,7 +301,7 @@ front_car_bodies_status front_car_bodies_forward_dynamics(const double q[4], con
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_BODIES_RARELY(!(t14 > t17))) {
         return FRONT_CAR_BODIES_CONSTRAINT_RANK;
     }
     const double t18 = t4 * t4;
@@ -310,152 +317,143 @@ front_car_bodies_status front_car_bodies_forward_dynamics(const double q[4], con
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
-    const double t27 = fabs(m_1);
-    const double t28 = fabs(m_2);
-    const double t29 = t27 + t28;
-    const double t30 = fabs(Theta_2);
-    const double t31 = t29 * t30;
-    const double t32 = t13 * t31;
-    const double t33 = fabs(Theta_1);
-    const double t34 = fabs(L);
-    const double t35 = t28 * t34;
-    const double t36 = t34 * t35;
-    const double t37 = t33 + t36;
-    const double t38 = t37 * t30;
-    const double t39 = t7 * t38;
-    const double t40 = t10 * t31;
-    const double t41 = t39 + t40;
-    const double t42 = t32 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t27 = fabs(Theta_1);
+    const double t28 = fabs(L);
+    const double t29 = fabs(m_2);
+    const double t30 = t29 * t28;
+    const double t31 = t28 * t30;
+    const double t32 = t27 + t31;
+    const double t33 = fabs(Theta_2);
+    const double t34 = t32 * t33;
+    const double t35 = t7 * t34;
+    const double t36 = fabs(m_1);
+    const double t37 = t36 + t29;
+    const double t38 = t37 * t33;
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_BODIES_RARELY(!(t26 > t42))) {
         return FRONT_CAR_BODIES_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * t3;
+    const double t43 = 1.0 / t25;
+    const double t44 = L * t3;
     const double K_f = u[0];
-    const double t46 = K_f * t45;
-    const double t47 = t3 * t46;
+    const double t45 = K_f * t44;
+    const double t46 = t3 * t45;
+    const double t47 = t6 * t4;
+    const double t48 = t5 * t3;
+    const double t49 = t47 - t48;
+    const double t50 = K_f * t49;
+    const double t51 = L * m_2;
     const double theta_dot = qd[2];
-    const double t48 = theta_dot * L;
-    const double t49 = theta_dot * t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t6 * t50;
-    const double t52 = t6 * t4;
-    const double t53 = t5 * t3;
-    const double t54 = t52 - t53;
-    const double t55 = K_f * t54;
-    const double t56 = t51 + t55;
-    const double t57 = t12 * t56;
-    const double t58 = t5 * t50;
-    const double t59 = t5 * t4;
-    const double t60 = t6 * t3;
-    const double t61 = t59 + t60;
-    const double t62 = K_f * t61;
-    const double t63 = t58 + t62;
-    const double t64 = t9 * t63;
-    const double t65 = t57 + t64;
-    const double t66 = t47 + t65;
-    const double t67 = Theta_2 * t66;
-    const double t68 = t12 * t67;
-    const double t69 = t44 * t68;
-    const double t70 = L * m_2;
-    const double t71 = L * t70;
-    const double t72 = Theta_1 + t71;
-    const double t73 = t3 * t72;
-    const double t74 = Theta_2 * t73;
+    const double t52 = theta_dot * theta_dot;
+    const double t53 = t51 * t52;
+    const double t54 = t6 * t53;
+    const double t55 = t50 + t54;
+    const double t56 = t12 * t55;
+    const double t57 = t5 * t4;
+    const double t58 = t6 * t3;
+    const double t59 = t57 + t58;
+    const double t60 = K_f * t59;
+    const double t61 = t5 * t53;
+    const double t62 = t60 + t61;
+    const double t63 = t9 * t62;
+    const double t64 = t56 + t63;
+    const double t65 = t46 + t64;
+    const double t66 = Theta_2 * t65;
+    const double t67 = t12 * t66;
+    const double t68 = L * t51;
+    const double t69 = Theta_1 + t68;
+    const double t70 = t3 * t69;
+    const double t71 = Theta_2 * t70;
     const double phi_dot = qd[3];
-    const double t75 = phi_dot * t3;
-    const double t76 = L * t75;
-    const double t77 = theta_dot * t76;
-    const double t78 = theta_dot + phi_dot;
-    const double t79 = t78 * t54;
+    const double t72 = phi_dot * t3;
+    const double t73 = L * t72;
+    const double t74 = theta_dot * t73;
+    const double t75 = theta_dot + phi_dot;
     const double x_dot = qd[0];
-    const double t80 = x_dot * t79;
-    const double t81 = t78 * t61;
+    const double t76 = x_dot * t49;
     const double y_dot = qd[1];
-    const double t82 = y_dot * t81;
-    const double t83 = t80 + t82;
-    const double t84 = t77 + t83;
-    const double t85 = t6 * t84;
-    const double t86 = theta_dot * t6;
-    const double t87 = x_dot * t86;
-    const double t88 = theta_dot * t5;
-    const double t89 = y_dot * t88;
-    const double t90 = t87 + t89;
-    const double t91 = t90 * t54;
-    const double t92 = t85 - t91;
-    const double t93 = t74 * t92;
-    const double t94 = t8 * t90;
-    const double t95 = L * Theta_2;
-    const double t96 = m_1 * t59;
-    const double t97 = m_2 * t61;
-    const double t98 = t96 + t97;
-    const double t99 = t95 * t98;
-    const double t100 = t94 * t99;
-    const double t101 = t93 + t100;
-    const double t102 = t44 * t101;
-    const double t103 = t69 - t102;
-    const double t104 = t9 * t67;
-    const double t105 = t44 * t104;
-    const double t106 = t5 * t84;
-    const double t107 = t90 * t61;
-    const double t108 = t106 - t107;
-    const double t109 = t74 * t108;
-    const double t110 = m_1 * t52;
-    const double t111 = m_2 * t54;
-    const double t112 = t110 + t111;
-    const double t113 = t95 * t112;
-    const double t114 = t94 * t113;
-    const double t115 = t109 - t114;
-    const double t116 = t44 * t115;
-    const double t117 = t105 - t116;
-    const double t118 = t3 * t67;
-    const double t119 = t44 * t118;
-    const double t120 = t91 - t85;
-    const double t121 = t113 * t120;
-    const double t122 = t99 * t108;
-    const double t123 = t121 - t122;
-    const double t124 = t44 * t123;
-    const double t125 = t119 - t124;
-    const double t126 = m_1 * t5;
-    const double t127 = m_2 * t5;
-    const double t128 = t126 + t127;
-    const double t129 = t5 * t128;
-    const double t130 = m_2 * t6;
-    const double t131 = m_1 * t6;
-    const double t132 = t130 + t131;
-    const double t133 = t6 * t132;
-    const double t134 = t129 + t133;
+    const double t77 = y_dot * t59;
+    const double t78 = t76 + t77;
+    const double t79 = t75 * t78;
+    const double t80 = t74 + t79;
+    const double t81 = t6 * t80;
+    const double t82 = x_dot * t6;
+    const double t83 = y_dot * t5;
+    const double t84 = t82 + t83;
+    const double t85 = theta_dot * t84;
+    const double t86 = t49 * t85;
+    const double t87 = t81 - t86;
+    const double t88 = t71 * t87;
+    const double t89 = L * Theta_2;
+    const double t90 = m_1 * t57;
+    const double t91 = m_2 * t59;
+    const double t92 = t90 + t91;
+    const double t93 = t89 * t92;
+    const double t94 = t8 * t85;
+    const double t95 = t93 * t94;
+    const double t96 = t88 + t95;
+    const double t97 = t67 - t96;
+    const double t98 = t43 * t97;
+    const double t99 = t9 * t66;
+    const double t100 = t5 * t80;
+    const double t101 = t59 * t85;
+    const double t102 = t100 - t101;
+    const double t103 = t71 * t102;
+    const double t104 = m_1 * t47;
+    const double t105 = m_2 * t49;
+    const double t106 = t104 + t105;
+    const double t107 = t89 * t106;
+    const double t108 = t107 * t94;
+    const double t109 = t103 - t108;
+    const double t110 = t99 - t109;
+    const double t111 = t43 * t110;
+    const double t112 = t3 * t66;
+    const double t113 = t86 - t81;
+    const double t114 = t107 * t113;
+    const double t115 = t93 * t102;
+    const double t116 = t114 - t115;
+    const double t117 = t112 - t116;
+    const double t118 = t43 * t117;
+    const double t119 = m_1 * t5;
+    const double t120 = m_2 * t5;
+    const double t121 = t119 + t120;
+    const double t122 = t5 * t121;
+    const double t123 = m_2 * t6;
+    const double t124 = m_1 * t6;
+    const double t125 = t123 + t124;
+    const double t126 = t6 * t125;
+    const double t127 = t122 + t126;
     const double T = u[1];
-    const double t135 = T * t12;
-    const double t136 = t134 * t135;
-    const double t137 = L * t127;
-    const double t138 = T * t3;
-    const double t139 = t137 * t138;
-    const double t140 = t136 - t139;
-    const double t141 = t12 * t140;
-    const double t142 = T * t9;
-    const double t143 = t134 * t142;
-    const double t144 = L * t130;
-    const double t145 = t144 * t138;
-    const double t146 = t143 + t145;
-    const double t147 = t9 * t146;
-    const double t148 = t141 + t147;
-    const double t149 = t72 * t138;
-    const double t150 = t3 * t149;
-    const double t151 = t148 + t150;
-    const double t152 = t44 * t151;
-    double rest = t103 - t103;
-    rest += t117 - t117;
-    rest += t125 - t125;
-    rest += t152 - t152;
-    if (isnan(rest) != 0) {
+    const double t128 = T * t12;
+    const double t129 = t127 * t128;
+    const double t130 = L * t120;
+    const double t131 = T * t3;
+    const double t132 = t130 * t131;
+    const double t133 = t129 - t132;
+    const double t134 = t12 * t133;
+    const double t135 = T * t9;
+    const double t136 = t127 * t135;
+    const double t137 = L * t123;
+    const double t138 = t137 * t131;
+    const double t139 = t136 + t138;
+    const double t140 = t9 * t139;
+    const double t141 = t134 + t140;
+    const double t142 = t69 * t131;
+    const double t143 = t3 * t142;
+    const double t144 = t141 + t143;
+    const double t145 = t43 * t144;
+    double rest = (t98 - t98) * t111 * t118;
+    rest += t145 - t145;
+    if (FRONT_CAR_BODIES_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
-    qdd[0] = t103;
-    qdd[1] = t117;
-    qdd[2] = t125;
-    qdd[3] = t152;
+    qdd[0] = t98;
+    qdd[1] = t111;
+    qdd[2] = t118;
+    qdd[3] = t145;
     return FRONT_CAR_BODIES_OK;
 }
 
@@ -464,10 +462,10 @@ front_car_bodies_status front_car_bodies_multipliers(const double q[4], const do
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -490,7 +488,7 @@ front_car_bodies_status front_car_bodies_multipliers(const double q[4], const do
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_BODIES_RARELY(!(t14 > t17))) {
         return FRONT_CAR_BODIES_CONSTRAINT_RANK;
     }
     const double t18 = t4 * t4;
@@ -506,149 +504,144 @@ front_car_bodies_status front_car_bodies_multipliers(const double q[4], const do
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
-    const double t27 = fabs(m_1);
-    const double t28 = fabs(m_2);
-    const double t29 = t27 + t28;
-    const double t30 = fabs(Theta_2);
-    const double t31 = t29 * t30;
-    const double t32 = t13 * t31;
-    const double t33 = fabs(Theta_1);
-    const double t34 = fabs(L);
-    const double t35 = t28 * t34;
-    const double t36 = t34 * t35;
-    const double t37 = t33 + t36;
-    const double t38 = t37 * t30;
-    const double t39 = t7 * t38;
-    const double t40 = t10 * t31;
-    const double t41 = t39 + t40;
-    const double t42 = t32 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t27 = fabs(Theta_1);
+    const double t28 = fabs(L);
+    const double t29 = fabs(m_2);
+    const double t30 = t29 * t28;
+    const double t31 = t28 * t30;
+    const double t32 = t27 + t31;
+    const double t33 = fabs(Theta_2);
+    const double t34 = t32 * t33;
+    const double t35 = t7 * t34;
+    const double t36 = fabs(m_1);
+    const double t37 = t36 + t29;
+    const double t38 = t37 * t33;
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_BODIES_RARELY(!(t26 > t42))) {
         return FRONT_CAR_BODIES_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * Theta_2;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t45 * t51;
-    const double theta_dot = qd[2];
-    const double t53 = theta_dot * L;
-    const double t54 = theta_dot * t53;
-    const double t55 = m_2 * t54;
-    const double t56 = t6 * t55;
-    const double t57 = t6 * t4;
-    const double t58 = t5 * t3;
-    const double t59 = t57 - t58;
+    const double t43 = 1.0 / t25;
+    const double t44 = L * Theta_2;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t44 * t50;
+    const double t52 = t6 * t4;
+    const double t53 = t5 * t3;
+    const double t54 = t52 - t53;
     const double K_f = u[0];
-    const double t60 = K_f * t59;
-    const double t61 = t56 + t60;
-    const double t62 = m_1 * t5;
-    const double t63 = m_2 * t5;
-    const double t64 = t62 + t63;
-    const double t65 = t5 * t64;
-    const double t66 = m_2 * t6;
-    const double t67 = m_1 * t6;
-    const double t68 = t66 + t67;
-    const double t69 = t6 * t68;
-    const double t70 = t65 + t69;
-    const double t71 = L * m_2;
-    const double t72 = L * t71;
-    const double t73 = Theta_1 + t72;
-    const double t74 = t3 * t73;
-    const double t75 = Theta_2 * t74;
+    const double t55 = K_f * t54;
+    const double t56 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t57 = theta_dot * theta_dot;
+    const double t58 = t56 * t57;
+    const double t59 = t6 * t58;
+    const double t60 = t55 + t59;
+    const double t61 = m_1 * t5;
+    const double t62 = m_2 * t5;
+    const double t63 = t61 + t62;
+    const double t64 = t5 * t63;
+    const double t65 = m_2 * t6;
+    const double t66 = m_1 * t6;
+    const double t67 = t65 + t66;
+    const double t68 = t6 * t67;
+    const double t69 = t64 + t68;
+    const double t70 = L * t56;
+    const double t71 = Theta_1 + t70;
+    const double t72 = t3 * t71;
+    const double t73 = Theta_2 * t72;
     const double phi_dot = qd[3];
-    const double t76 = phi_dot * t3;
-    const double t77 = L * t76;
-    const double t78 = theta_dot * t77;
-    const double t79 = theta_dot + phi_dot;
-    const double t80 = t79 * t59;
+    const double t74 = phi_dot * t3;
+    const double t75 = L * t74;
+    const double t76 = theta_dot * t75;
+    const double t77 = theta_dot + phi_dot;
     const double x_dot = qd[0];
-    const double t81 = x_dot * t80;
-    const double t82 = t79 * t49;
+    const double t78 = x_dot * t54;
     const double y_dot = qd[1];
-    const double t83 = y_dot * t82;
-    const double t84 = t81 + t83;
-    const double t85 = t78 + t84;
-    const double t86 = t6 * t85;
-    const double t87 = theta_dot * t6;
-    const double t88 = x_dot * t87;
-    const double t89 = theta_dot * t5;
-    const double t90 = y_dot * t89;
-    const double t91 = t88 + t90;
-    const double t92 = t91 * t59;
-    const double t93 = t86 - t92;
-    const double t94 = t75 * t93;
-    const double t95 = t8 * t91;
-    const double t96 = t95 * t52;
-    const double t97 = t94 + t96;
-    const double t98 = t44 * t97;
-    const double t99 = t70 * t98;
-    const double t100 = L * t63;
-    const double t101 = m_1 * t57;
-    const double t102 = m_2 * t59;
-    const double t103 = t101 + t102;
-    const double t104 = t45 * t103;
-    const double t105 = t92 - t86;
-    const double t106 = t104 * t105;
-    const double t107 = t5 * t85;
-    const double t108 = t91 * t49;
-    const double t109 = t107 - t108;
-    const double t110 = t52 * t109;
-    const double t111 = t106 - t110;
-    const double t112 = t44 * t111;
-    const double t113 = t100 * t112;
-    const double t114 = t99 - t113;
-    const double t115 = t61 + t114;
-    const double t116 = t52 * t115;
-    const double t117 = t5 * t55;
-    const double t118 = K_f * t49;
-    const double t119 = t117 + t118;
-    const double t120 = t75 * t109;
-    const double t121 = t95 * t104;
-    const double t122 = t120 - t121;
-    const double t123 = t44 * t122;
-    const double t124 = t70 * t123;
-    const double t125 = L * t66;
-    const double t126 = t125 * t112;
-    const double t127 = t124 + t126;
-    const double t128 = t119 + t127;
-    const double t129 = t104 * t128;
-    const double t130 = t116 - t129;
-    const double t131 = t8 * t130;
-    const double t132 = t75 * t115;
-    const double t133 = L * t3;
-    const double t134 = K_f * t133;
-    const double t135 = t125 * t123;
-    const double t136 = t100 * t98;
-    const double t137 = t135 - t136;
-    const double t138 = t73 * t112;
-    const double t139 = t137 + t138;
-    const double t140 = t134 + t139;
-    const double t141 = t104 * t140;
-    const double t142 = t132 - t141;
-    const double t143 = t59 * t142;
-    const double t144 = t131 - t143;
-    const double t145 = t75 * t128;
-    const double t146 = t52 * t140;
-    const double t147 = t145 - t146;
-    const double t148 = t49 * t147;
-    const double t149 = t144 - t148;
-    const double t150 = t44 * t149;
-    const double t151 = t6 * t142;
-    const double t152 = t5 * t147;
-    const double t153 = t151 + t152;
-    const double t154 = t44 * t153;
-    double rest = t150 - t150;
-    rest += t154 - t154;
-    if (isnan(rest) != 0) {
+    const double t79 = y_dot * t48;
+    const double t80 = t78 + t79;
+    const double t81 = t77 * t80;
+    const double t82 = t76 + t81;
+    const double t83 = t6 * t82;
+    const double t84 = x_dot * t6;
+    const double t85 = y_dot * t5;
+    const double t86 = t84 + t85;
+    const double t87 = theta_dot * t86;
+    const double t88 = t54 * t87;
+    const double t89 = t83 - t88;
+    const double t90 = t73 * t89;
+    const double t91 = t8 * t87;
+    const double t92 = t51 * t91;
+    const double t93 = t90 + t92;
+    const double t94 = t43 * t93;
+    const double t95 = t69 * t94;
+    const double t96 = L * t62;
+    const double t97 = m_1 * t52;
+    const double t98 = m_2 * t54;
+    const double t99 = t97 + t98;
+    const double t100 = t44 * t99;
+    const double t101 = t88 - t83;
+    const double t102 = t100 * t101;
+    const double t103 = t5 * t82;
+    const double t104 = t48 * t87;
+    const double t105 = t103 - t104;
+    const double t106 = t51 * t105;
+    const double t107 = t102 - t106;
+    const double t108 = t43 * t107;
+    const double t109 = t96 * t108;
+    const double t110 = t95 - t109;
+    const double t111 = t60 + t110;
+    const double t112 = t51 * t111;
+    const double t113 = K_f * t48;
+    const double t114 = t5 * t58;
+    const double t115 = t113 + t114;
+    const double t116 = t73 * t105;
+    const double t117 = t100 * t91;
+    const double t118 = t116 - t117;
+    const double t119 = t43 * t118;
+    const double t120 = t69 * t119;
+    const double t121 = L * t65;
+    const double t122 = t121 * t108;
+    const double t123 = t120 + t122;
+    const double t124 = t115 + t123;
+    const double t125 = t100 * t124;
+    const double t126 = t112 - t125;
+    const double t127 = t8 * t126;
+    const double t128 = t73 * t111;
+    const double t129 = L * t3;
+    const double t130 = K_f * t129;
+    const double t131 = t121 * t119;
+    const double t132 = t96 * t94;
+    const double t133 = t131 - t132;
+    const double t134 = t71 * t108;
+    const double t135 = t133 + t134;
+    const double t136 = t130 + t135;
+    const double t137 = t100 * t136;
+    const double t138 = t128 - t137;
+    const double t139 = t54 * t138;
+    const double t140 = t127 - t139;
+    const double t141 = t73 * t124;
+    const double t142 = t51 * t136;
+    const double t143 = t141 - t142;
+    const double t144 = t48 * t143;
+    const double t145 = t140 - t144;
+    const double t146 = t43 * t145;
+    const double t147 = t6 * t138;
+    const double t148 = t5 * t143;
+    const double t149 = t147 + t148;
+    const double t150 = t43 * t149;
+    double rest = (t146 - t146) * t150;
+    if (FRONT_CAR_BODIES_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
-    lambda_B[0] = t150;
-    lambda_B[1] = t154;
+    lambda_B[0] = t146;
+    lambda_B[1] = t150;
     return FRONT_CAR_BODIES_OK;
 }
 
@@ -657,10 +650,10 @@ front_car_bodies_status front_car_bodies_singularity(const double q[4], const fr
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_BODIES_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -718,9 +711,8 @@ front_car_bodies_status front_car_bodies_singularity(const double q[4], const fr
     const double t50 = t34 * t34;
     const double t51 = 1.0 + t50;
     const double t52 = ((t51 != 0.0) ? t49 : 0.0) / ((t51 != 0.0) ? t51 : 1.0);
-    double rest = t33 - t33;
-    rest += t52 - t52;
-    if (isnan(rest) != 0) {
+    double rest = (t33 - t33) * t52;
+    if (FRONT_CAR_BODIES_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
     measure[0] = t33;

@@ -25,8 +25,8 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     47      3      0      2      0
- * weighted_nullspace_projector         15     54      4      0      2      0
+ * weighted_pseudoinverse               17     46      3      0      2      0
+ * weighted_nullspace_projector         15     53      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     14      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
@@ -48,9 +48,9 @@
  * actuator_velocity                     3      4      0      0      2      0
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                        12     29      2      0      2      0
- * forward_dynamics                     41     95      1      0      2      0
- * multipliers                          44     94      1      0      2      0
- * energy                                8     16      0      0      1      0
+ * forward_dynamics                     41     89      1      0      2      0
+ * multipliers                          43     90      1      0      2      0
+ * energy                                8     15      0      0      1      0
  * singularity                          12     26      5      1      2      0
  * (changes of sign are not counted)
  *
@@ -224,6 +224,15 @@ front_car_wheelset_status front_car_wheelset_singularity(const double q[4], cons
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define FRONT_CAR_WHEELSET_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define FRONT_CAR_WHEELSET_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define FRONT_CAR_WHEELSET_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define FRONT_CAR_WHEELSET_INLINE static inline __attribute__((always_inline))
 #else
@@ -340,7 +349,7 @@ front_car_wheelset_params front_car_wheelset_default_params(void) {
 front_car_wheelset_status front_car_wheelset_mass_matrix(const double q[4], const front_car_wheelset_params *p, double G[16]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t2;
@@ -359,12 +368,9 @@ front_car_wheelset_status front_car_wheelset_mass_matrix(const double q[4], cons
     const double t10 = Theta_1 + t9;
     const double Theta_2 = p->Theta_2;
     const double t11 = Theta_2 + t10;
-    double rest = t4 - t4;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    rest += t11 - t11;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t7 * t8;
+    rest += (t11 - t11) * Theta_2;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G[0] = t4;
@@ -389,7 +395,7 @@ front_car_wheelset_status front_car_wheelset_mass_matrix(const double q[4], cons
 front_car_wheelset_status front_car_wheelset_coriolis_matrix(const double q[4], const double qd[4], const front_car_wheelset_params *p, double C[16]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t2;
@@ -404,9 +410,8 @@ front_car_wheelset_status front_car_wheelset_coriolis_matrix(const double q[4], 
     const double t7 = -t6;
     const double t8 = t2 * t5;
     const double t9 = -t8;
-    double rest = t7 - t7;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    double rest = (t7 - t7) * t9;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C[0] = 0.0;
@@ -431,7 +436,7 @@ front_car_wheelset_status front_car_wheelset_coriolis_matrix(const double q[4], 
 front_car_wheelset_status front_car_wheelset_coriolis_force(const double q[4], const double qd[4], const front_car_wheelset_params *p, double C_qd[4]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t2;
@@ -448,9 +453,8 @@ front_car_wheelset_status front_car_wheelset_coriolis_force(const double q[4], c
     const double t9 = theta_dot * t2;
     const double t10 = t5 * t9;
     const double t11 = -t10;
-    double rest = t8 - t8;
-    rest += t11 - t11;
-    if (isnan(rest) != 0) {
+    double rest = (t8 - t8) * t11;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -486,10 +490,10 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian(const double q[
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -511,12 +515,9 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian(const double q[
     const double L = p->L;
     const double t15 = L * t6;
     const double t16 = -t15;
-    double rest = t3 - t3;
-    rest += t7 - t7;
-    rest += t10 - t10;
-    rest += t14 - t14;
-    rest += t16 - t16;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t7 * t10;
+    rest += (t14 - t14) * t16;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B[0] = t3;
@@ -535,10 +536,10 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot(const doubl
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -565,12 +566,9 @@ front_car_wheelset_status front_car_wheelset_constraint_jacobian_dot(const doubl
     const double t18 = phi_dot * t5;
     const double L = p->L;
     const double t19 = L * t18;
-    double rest = t7 - t7;
-    rest += t8 - t8;
-    rest += t13 - t13;
-    rest += t17 - t17;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    double rest = (t7 - t7) * t8 * t13;
+    rest += (t17 - t17) * t19;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -589,10 +587,10 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -615,7 +613,7 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double t18 = 1.0 / t14;
@@ -641,13 +639,9 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
     const double t38 = t36 * t37;
     const double t39 = t4 * t36;
     const double t40 = -t39;
-    double rest = t25 - t25;
-    rest += t27 - t27;
-    rest += t34 - t34;
-    rest += t35 - t35;
-    rest += t38 - t38;
-    rest += t40 - t40;
-    if (isnan(rest) != 0) {
+    double rest = (t25 - t25) * t27 * t34;
+    rest += (t35 - t35) * t38 * t40;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -666,10 +660,10 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -692,7 +686,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double t18 = 1.0 / t14;
@@ -705,13 +699,9 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
     const double t25 = t5 * t9;
     const double t26 = t18 * t25;
     const double t27 = t7 * t18;
-    double rest = t19 - t19;
-    rest += t21 - t21;
-    rest += t23 - t23;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    rest += t27 - t27;
-    if (isnan(rest) != 0) {
+    double rest = (t19 - t19) * t21 * t23;
+    rest += (t24 - t24) * t26 * t27;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -738,10 +728,10 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -764,7 +754,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -836,13 +826,9 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t82 = t3 * t81;
     const double t83 = t20 * t82;
     const double t84 = 2.0 * t83;
-    double rest = t34 - t34;
-    rest += t52 - t52;
-    rest += t63 - t63;
-    rest += t70 - t70;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    double rest = (t34 - t34) * t52 * t63;
+    rest += (t70 - t70) * t80 * t84;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -869,10 +855,10 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -895,7 +881,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -911,84 +897,78 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
-    const double t27 = fabs(m_1);
-    const double t28 = fabs(m_2);
-    const double t29 = t27 + t28;
-    const double t30 = fabs(Theta_2);
-    const double t31 = t29 * t30;
-    const double t32 = t13 * t31;
-    const double t33 = t10 * t31;
-    const double t34 = fabs(Theta_1);
-    const double t35 = fabs(L);
-    const double t36 = t35 * t35;
-    const double t37 = t28 * t36;
-    const double t38 = t34 + t37;
-    const double t39 = t30 * t38;
-    const double t40 = t7 * t39;
-    const double t41 = t33 + t40;
-    const double t42 = t32 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t27 = fabs(Theta_2);
+    const double t28 = fabs(Theta_1);
+    const double t29 = fabs(m_2);
+    const double t30 = fabs(L);
+    const double t31 = t30 * t30;
+    const double t32 = t29 * t31;
+    const double t33 = t28 + t32;
+    const double t34 = t27 * t33;
+    const double t35 = t7 * t34;
+    const double t36 = fabs(m_1);
+    const double t37 = t36 + t29;
+    const double t38 = t37 * t27;
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_WHEELSET_RARELY(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * Theta_2;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t45 * t51;
-    const double t53 = t8 * t52;
-    const double t54 = t6 * t4;
-    const double t55 = t5 * t3;
-    const double t56 = t54 - t55;
-    const double t57 = m_2 * t19;
-    const double t58 = Theta_1 + t57;
-    const double t59 = Theta_2 * t58;
-    const double t60 = t3 * t59;
-    const double t61 = t56 * t60;
-    const double t62 = t53 - t61;
-    const double t63 = t44 * t62;
-    const double t64 = t59 / t25;
-    const double t65 = t48 * t64;
-    const double t66 = m_1 * t54;
-    const double t67 = m_2 * t56;
-    const double t68 = t66 + t67;
-    const double t69 = t45 * t68;
-    const double t70 = t8 * t69;
-    const double t71 = t49 * t60;
-    const double t72 = t70 + t71;
-    const double t73 = t44 * t72;
-    const double t74 = -t73;
-    const double t75 = t55 * t64;
-    const double t76 = t45 / t25;
-    const double t77 = t22 * t76;
-    const double t78 = m_1 + m_2;
-    const double t79 = t4 * t78;
-    const double t80 = t79 * t76;
-    const double t81 = -t80;
-    const double t82 = -t77;
-    double rest = t63 - t63;
-    rest += t65 - t65;
-    rest += t74 - t74;
-    rest += t75 - t75;
-    rest += t77 - t77;
-    rest += t81 - t81;
-    rest += t82 - t82;
-    rest += t80 - t80;
-    if (isnan(rest) != 0) {
+    const double t43 = 1.0 / t25;
+    const double t44 = L * Theta_2;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t44 * t50;
+    const double t52 = t8 * t51;
+    const double t53 = t6 * t4;
+    const double t54 = t5 * t3;
+    const double t55 = t53 - t54;
+    const double t56 = m_2 * t19;
+    const double t57 = Theta_1 + t56;
+    const double t58 = Theta_2 * t57;
+    const double t59 = t3 * t58;
+    const double t60 = t55 * t59;
+    const double t61 = t52 - t60;
+    const double t62 = t43 * t61;
+    const double t63 = t58 / t25;
+    const double t64 = t47 * t63;
+    const double t65 = m_1 * t53;
+    const double t66 = m_2 * t55;
+    const double t67 = t65 + t66;
+    const double t68 = t44 * t67;
+    const double t69 = t8 * t68;
+    const double t70 = t48 * t59;
+    const double t71 = t69 + t70;
+    const double t72 = t43 * t71;
+    const double t73 = -t72;
+    const double t74 = t54 * t63;
+    const double t75 = t44 / t25;
+    const double t76 = t22 * t75;
+    const double t77 = m_1 + m_2;
+    const double t78 = t4 * t77;
+    const double t79 = t78 * t75;
+    const double t80 = -t79;
+    const double t81 = -t76;
+    double rest = (t62 - t62) * t64 * t73;
+    rest += (t74 - t74) * t76 * t80;
+    rest += (t81 - t81) * t79;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    B_G_pinv[0] = t63;
-    B_G_pinv[1] = t65;
-    B_G_pinv[2] = t74;
-    B_G_pinv[3] = t75;
-    B_G_pinv[4] = t77;
-    B_G_pinv[5] = t81;
-    B_G_pinv[6] = t82;
-    B_G_pinv[7] = t80;
+    B_G_pinv[0] = t62;
+    B_G_pinv[1] = t64;
+    B_G_pinv[2] = t73;
+    B_G_pinv[3] = t74;
+    B_G_pinv[4] = t76;
+    B_G_pinv[5] = t80;
+    B_G_pinv[6] = t81;
+    B_G_pinv[7] = t79;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -997,10 +977,10 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1023,7 +1003,7 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -1039,100 +1019,91 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
-    const double t27 = fabs(m_1);
-    const double t28 = fabs(m_2);
-    const double t29 = t27 + t28;
-    const double t30 = fabs(Theta_2);
-    const double t31 = t29 * t30;
-    const double t32 = t13 * t31;
-    const double t33 = t10 * t31;
-    const double t34 = fabs(Theta_1);
-    const double t35 = fabs(L);
-    const double t36 = t35 * t35;
-    const double t37 = t28 * t36;
-    const double t38 = t34 + t37;
-    const double t39 = t30 * t38;
-    const double t40 = t7 * t39;
-    const double t41 = t33 + t40;
-    const double t42 = t32 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t27 = fabs(Theta_2);
+    const double t28 = fabs(Theta_1);
+    const double t29 = fabs(m_2);
+    const double t30 = fabs(L);
+    const double t31 = t30 * t30;
+    const double t32 = t29 * t31;
+    const double t33 = t28 + t32;
+    const double t34 = t27 * t33;
+    const double t35 = t7 * t34;
+    const double t36 = fabs(m_1);
+    const double t37 = t36 + t29;
+    const double t38 = t37 * t27;
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_WHEELSET_RARELY(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const double t44 = Theta_2 * t19;
-    const double t45 = t44 / t25;
-    const double t46 = t6 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t5 * t3;
-    const double t49 = t46 - t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t46 * t51;
-    const double t53 = t45 * t52;
-    const double t54 = t5 * t4;
-    const double t55 = m_1 * t54;
-    const double t56 = t6 * t3;
-    const double t57 = t54 + t56;
-    const double t58 = m_2 * t57;
-    const double t59 = t55 + t58;
-    const double t60 = t46 * t59;
-    const double t61 = t45 * t60;
-    const double t62 = t3 * t46;
-    const double t63 = m_2 * t19;
-    const double t64 = Theta_1 + t63;
-    const double t65 = L * Theta_2;
-    const double t66 = t64 * t65;
-    const double t67 = t66 / t25;
-    const double t68 = t62 * t67;
-    const double t69 = t54 * t51;
-    const double t70 = t45 * t69;
-    const double t71 = t54 * t59;
-    const double t72 = t45 * t71;
-    const double t73 = t3 * t54;
-    const double t74 = t73 * t67;
-    const double t75 = t65 / t25;
-    const double t76 = t3 * t51;
-    const double t77 = t75 * t76;
-    const double t78 = t3 * t59;
-    const double t79 = t75 * t78;
-    const double t80 = Theta_2 * t64;
-    const double t81 = t80 / t25;
-    const double t82 = t7 * t81;
-    const double t83 = -t77;
-    const double t84 = -t79;
-    const double t85 = m_1 + m_2;
-    const double t86 = t85 * t20;
-    const double t87 = t86 * t45;
-    double rest = t53 - t53;
-    rest += t61 - t61;
-    rest += t68 - t68;
-    rest += t70 - t70;
-    rest += t72 - t72;
-    rest += t74 - t74;
-    rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t82 - t82;
-    rest += t83 - t83;
-    rest += t84 - t84;
-    rest += t87 - t87;
-    if (isnan(rest) != 0) {
+    const double t43 = Theta_2 * t19;
+    const double t44 = t43 / t25;
+    const double t45 = t6 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t5 * t3;
+    const double t48 = t45 - t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t45 * t50;
+    const double t52 = t44 * t51;
+    const double t53 = t5 * t4;
+    const double t54 = m_1 * t53;
+    const double t55 = t6 * t3;
+    const double t56 = t53 + t55;
+    const double t57 = m_2 * t56;
+    const double t58 = t54 + t57;
+    const double t59 = t45 * t58;
+    const double t60 = t44 * t59;
+    const double t61 = t3 * t45;
+    const double t62 = m_2 * t19;
+    const double t63 = Theta_1 + t62;
+    const double t64 = L * Theta_2;
+    const double t65 = t63 * t64;
+    const double t66 = t65 / t25;
+    const double t67 = t61 * t66;
+    const double t68 = t53 * t50;
+    const double t69 = t44 * t68;
+    const double t70 = t53 * t58;
+    const double t71 = t44 * t70;
+    const double t72 = t3 * t53;
+    const double t73 = t72 * t66;
+    const double t74 = t64 / t25;
+    const double t75 = t3 * t50;
+    const double t76 = t74 * t75;
+    const double t77 = t3 * t58;
+    const double t78 = t74 * t77;
+    const double t79 = Theta_2 * t63;
+    const double t80 = t79 / t25;
+    const double t81 = t7 * t80;
+    const double t82 = -t76;
+    const double t83 = -t78;
+    const double t84 = m_1 + m_2;
+    const double t85 = t84 * t20;
+    const double t86 = t85 * t44;
+    double rest = (t52 - t52) * t60 * t67;
+    rest += (t69 - t69) * t71 * t73;
+    rest += (t76 - t76) * t78 * t81;
+    rest += (t82 - t82) * t83 * t86;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    N_BG[0] = t53;
-    N_BG[1] = t61;
-    N_BG[2] = t68;
+    N_BG[0] = t52;
+    N_BG[1] = t60;
+    N_BG[2] = t67;
     N_BG[3] = 0.0;
-    N_BG[4] = t70;
-    N_BG[5] = t72;
-    N_BG[6] = t74;
+    N_BG[4] = t69;
+    N_BG[5] = t71;
+    N_BG[6] = t73;
     N_BG[7] = 0.0;
-    N_BG[8] = t77;
-    N_BG[9] = t79;
-    N_BG[10] = t82;
+    N_BG[8] = t76;
+    N_BG[9] = t78;
+    N_BG[10] = t81;
     N_BG[11] = 0.0;
-    N_BG[12] = t83;
-    N_BG[13] = t84;
-    N_BG[14] = t87;
+    N_BG[12] = t82;
+    N_BG[13] = t83;
+    N_BG[14] = t86;
     N_BG[15] = 1.0;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1143,10 +1114,10 @@ front_car_wheelset_status front_car_wheelset_control_matrix(const double q[4], c
     const double t1 = theta + phi;
     const double t2 = fabs(t1);
     const double t3 = fabs(phi);
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t3)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t3))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {t1, phi};
@@ -1158,10 +1129,8 @@ front_car_wheelset_status front_car_wheelset_control_matrix(const double q[4], c
     const double t8 = L * t6;
     const double t5 = cosine[0];
     const double t4 = sine[0];
-    double rest = t5 - t5;
-    rest += t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    double rest = (t5 - t5) * t4 * t8;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M[0] = t5;
@@ -1180,10 +1149,10 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix(const doub
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1206,7 +1175,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix(const doub
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -1218,10 +1187,8 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix(const doub
     const double t24 = t23 / t14;
     const double t25 = L * t3;
     const double t26 = t25 / t14;
-    double rest = t21 - t21;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    if (isnan(rest) != 0) {
+    double rest = (t21 - t21) * t24 * t26;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_tilde[0] = t21;
@@ -1240,10 +1207,10 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse(con
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -1256,7 +1223,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse(con
     const double t6 = cosine[1];
     const double t3 = sine[0];
     const double t4 = cosine[0];
-    if (!(t7 > 0.0)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t7 > 0.0))) {
         const double t8 = t5 * t5;
         const double t9 = L * t6;
         const double t10 = t3 * t9;
@@ -1276,10 +1243,8 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse(con
     const double t19 = t4 * t6;
     const double t20 = t3 * t6;
     const double t21 = t5 / L;
-    double rest = t19 - t19;
-    rest += t20 - t20;
-    rest += t21 - t21;
-    if (isnan(rest) != 0) {
+    double rest = (t19 - t19) * t20 * t21;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_tilde_pinv[0] = t19;
@@ -1298,10 +1263,10 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double 
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -1319,7 +1284,7 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double 
     const double t12 = t11 * 1.262177448353619e-29;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t9 > t12))) {
         const double t13 = t5 * t5;
         const double t14 = t3 * t7;
         const double t15 = t14 * t14;
@@ -1332,9 +1297,8 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double 
     }
     const double t18 = t3 / t4;
     const double t19 = t5 / t8;
-    double rest = t18 - t18;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    double rest = (t18 - t18) * t19;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     F_B[0] = 1.0;
@@ -1353,10 +1317,10 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1379,7 +1343,7 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -1440,17 +1404,11 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t69 = t68 / t19;
     const double t70 = Theta_2 / t14;
     const double t71 = t7 * t70;
-    double rest = t34 - t34;
-    rest += t43 - t43;
-    rest += t48 - t48;
-    rest += t51 - t51;
-    rest += t56 - t56;
-    rest += t60 - t60;
-    rest += t61 - t61;
-    rest += t69 - t69;
-    rest += t71 - t71;
+    double rest = (t34 - t34) * t43 * t48;
+    rest += (t51 - t51) * t56 * t60;
+    rest += (t61 - t61) * t69 * t71;
     rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_tilde[0] = t34;
@@ -1477,10 +1435,10 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1503,7 +1461,7 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double t18 = L * L;
@@ -1804,19 +1762,11 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double t305 = t304 / t19;
     const double t306 = t303 * t305;
     const double t307 = 2.0 * t306;
-    double rest = t87 - t87;
-    rest += t133 - t133;
-    rest += t146 - t146;
-    rest += t181 - t181;
-    rest += t183 - t183;
-    rest += t186 - t186;
-    rest += t233 - t233;
-    rest += t274 - t274;
-    rest += t279 - t279;
-    rest += t291 - t291;
-    rest += t301 - t301;
-    rest += t307 - t307;
-    if (isnan(rest) != 0) {
+    double rest = (t87 - t87) * t133 * t146;
+    rest += (t181 - t181) * t183 * t186;
+    rest += (t233 - t233) * t274 * t279;
+    rest += (t291 - t291) * t301 * t307;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C_tilde[0] = t87;
@@ -1864,10 +1814,10 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix(const double q[
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1885,7 +1835,7 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix(const double q[
     const double t12 = t11 * 1.262177448353619e-29;
     const double t3 = sine[0];
     const double t5 = sine[1];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t9 > t12))) {
         const double t13 = t3 * t3;
         const double t14 = t5 * t7;
         const double t15 = t14 * t14;
@@ -1913,10 +1863,8 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix(const double q[
     const double t28 = t27 / t9;
     const double t29 = t3 / t8;
     const double t30 = Theta_2 * t29;
-    double rest = t28 - t28;
-    rest += t30 - t30;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t28 - t28) * t30 * Theta_2;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_bar[0] = t28;
@@ -1931,10 +1879,10 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -1957,10 +1905,10 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (!(t13 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t13 > t17))) {
         if (!(t14 > t17)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
@@ -2026,9 +1974,8 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     const double t69 = t4 * t68;
     const double t70 = t22 + t69;
     const double t71 = t61 * t70;
-    double rest = t57 - t57;
-    rest += t71 - t71;
-    if (isnan(rest) != 0) {
+    double rest = (t57 - t57) * t71;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     C_bar[0] = t57;
@@ -2060,10 +2007,10 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix(const double
     const double t1 = fabs(theta);
     const double phi = q[3];
     const double t2 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {theta, phi};
@@ -2081,7 +2028,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix(const double
     const double t12 = t11 * 1.262177448353619e-29;
     const double t5 = sine[1];
     const double t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t9 > t12))) {
         const double t13 = t5 * t5;
         const double t14 = t3 * t7;
         const double t15 = t14 * t14;
@@ -2095,7 +2042,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix(const double
     const double t18 = t4 * t6;
     const double t19 = 1.0 / t18;
     double rest = t19 - t19;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     M_bar[0] = t19;
@@ -2110,10 +2057,10 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2136,7 +2083,7 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double t18 = L / t14;
@@ -2159,11 +2106,9 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
     const double t32 = t3 * t25;
     const double t33 = t32 / t14;
     const double phi_dot = qd[3];
-    double rest = t28 - t28;
-    rest += t31 - t31;
-    rest += t33 - t33;
+    double rest = (t28 - t28) * t31 * t33;
     rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     qd_admissible[0] = t28;
@@ -2178,10 +2123,10 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2204,7 +2149,7 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double y_ddot = qdd[1];
@@ -2298,11 +2243,9 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t99 = t95 + t98;
     const double t100 = t99 / t56;
     const double phi_ddot = qdd[3];
-    double rest = t59 - t59;
-    rest += t88 - t88;
-    rest += t100 - t100;
+    double rest = (t59 - t59) * t88 * t100;
     rest += phi_ddot - phi_ddot;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
@@ -2318,11 +2261,9 @@ front_car_wheelset_status front_car_wheelset_projected_configuration(const doubl
     const double y = q[1];
     const double theta = q[2];
     const double phi = q[3];
-    double rest = x - x;
-    rest += y - y;
-    rest += theta - theta;
+    double rest = (x - x) * y * theta;
     rest += phi - phi;
-    if (isnan(rest) != 0) {
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2337,10 +2278,10 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics(const double q[4],
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2387,9 +2328,8 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics(const double q[4],
     const double t30 = t16 + t29;
     const double t31 = theta_ddot + phi_ddot;
     const double t32 = Theta_2 * t31;
-    double rest = t30 - t30;
-    rest += t32 - t32;
-    if (isnan(rest) != 0) {
+    double rest = (t30 - t30) * t32;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     u[0] = t30;
@@ -2415,10 +2355,10 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity(const double q[4]
     const double t1 = theta + phi;
     const double t2 = fabs(t1);
     const double t3 = fabs(phi);
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t3)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t3))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {t1, phi};
@@ -2439,9 +2379,8 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity(const double q[4]
     const double t12 = theta_dot * t11;
     const double t13 = t10 + t12;
     const double phi_dot = qd[3];
-    double rest = t13 - t13;
-    rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    double rest = (t13 - t13) * phi_dot;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     nu[0] = t13;
@@ -2452,7 +2391,7 @@ front_car_wheelset_status front_car_wheelset_actuator_velocity(const double q[4]
 front_car_wheelset_status front_car_wheelset_actuator_mass_matrix(const double q[4], const front_car_wheelset_params *p, double G_nu[4]) {
     const double phi = q[3];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t2;
@@ -2461,7 +2400,7 @@ front_car_wheelset_status front_car_wheelset_actuator_mass_matrix(const double q
     const double L = p->L;
     const double t4 = fabs(L);
     const double theta = q[2];
-    if (!(t4 > 0.0)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t4 > 0.0))) {
         const double t5 = t2 * t2;
         double t6;
         double t7;
@@ -2501,10 +2440,8 @@ front_car_wheelset_status front_car_wheelset_actuator_mass_matrix(const double q
     const double t28 = t22 * t27;
     const double t29 = t21 + t28;
     const double t30 = Theta_2 * t22;
-    double rest = t29 - t29;
-    rest += t30 - t30;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    double rest = (t29 - t29) * t30 * Theta_2;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     G_nu[0] = t29;
@@ -2519,10 +2456,10 @@ front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], co
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2545,11 +2482,11 @@ front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], co
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double t18 = fabs(L);
-    if (!(t18 > 0.0)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t18 > 0.0))) {
         if (!(t14 > t17)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
@@ -2595,9 +2532,8 @@ front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], co
     const double t48 = t19 / L;
     const double t49 = t48 * t39;
     const double t50 = Theta_2 * t49;
-    double rest = t47 - t47;
-    rest += t50 - t50;
-    if (isnan(rest) != 0) {
+    double rest = (t47 - t47) * t50;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     bias_nu[0] = t47;
@@ -2610,10 +2546,10 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2636,7 +2572,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -2652,152 +2588,144 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
-    const double t27 = fabs(m_1);
-    const double t28 = fabs(m_2);
-    const double t29 = t27 + t28;
-    const double t30 = fabs(Theta_2);
-    const double t31 = t29 * t30;
-    const double t32 = t13 * t31;
-    const double t33 = t10 * t31;
-    const double t34 = fabs(Theta_1);
-    const double t35 = fabs(L);
-    const double t36 = t35 * t35;
-    const double t37 = t28 * t36;
-    const double t38 = t34 + t37;
-    const double t39 = t30 * t38;
-    const double t40 = t7 * t39;
-    const double t41 = t33 + t40;
-    const double t42 = t32 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t27 = fabs(Theta_2);
+    const double t28 = fabs(Theta_1);
+    const double t29 = fabs(m_2);
+    const double t30 = fabs(L);
+    const double t31 = t30 * t30;
+    const double t32 = t29 * t31;
+    const double t33 = t28 + t32;
+    const double t34 = t27 * t33;
+    const double t35 = t7 * t34;
+    const double t36 = fabs(m_1);
+    const double t37 = t36 + t29;
+    const double t38 = t37 * t27;
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_WHEELSET_RARELY(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double theta_dot = qd[2];
-    const double t45 = theta_dot * t5;
-    const double y_dot = qd[1];
-    const double t46 = y_dot * t45;
-    const double t47 = theta_dot * t6;
-    const double x_dot = qd[0];
-    const double t48 = x_dot * t47;
-    const double t49 = t46 + t48;
-    const double t50 = t8 * t49;
-    const double t51 = L * Theta_2;
-    const double t52 = t5 * t4;
-    const double t53 = m_1 * t52;
-    const double t54 = t6 * t3;
-    const double t55 = t52 + t54;
-    const double t56 = m_2 * t55;
-    const double t57 = t53 + t56;
-    const double t58 = t51 * t57;
-    const double t59 = t50 * t58;
-    const double phi_dot = qd[3];
-    const double t60 = phi_dot * t3;
-    const double t61 = L * t60;
-    const double t62 = theta_dot * t61;
-    const double t63 = theta_dot + phi_dot;
-    const double t64 = t6 * t4;
-    const double t65 = t5 * t3;
-    const double t66 = t64 - t65;
-    const double t67 = t63 * t66;
-    const double t68 = x_dot * t67;
-    const double t69 = t63 * t55;
-    const double t70 = y_dot * t69;
-    const double t71 = t68 + t70;
-    const double t72 = t62 + t71;
-    const double t73 = t6 * t72;
-    const double t74 = t49 * t66;
-    const double t75 = t73 - t74;
-    const double t76 = L * m_2;
-    const double t77 = L * t76;
-    const double t78 = Theta_1 + t77;
-    const double t79 = t3 * t78;
-    const double t80 = Theta_2 * t79;
-    const double t81 = t75 * t80;
-    const double t82 = t59 + t81;
-    const double t83 = t44 * t82;
+    const double t43 = 1.0 / t25;
     const double T = u[1];
-    const double t84 = T * t3;
-    const double t85 = Theta_2 * t84;
-    const double t86 = L * t3;
+    const double t44 = T * t3;
+    const double t45 = Theta_2 * t44;
+    const double t46 = L * t3;
     const double K_f = u[0];
-    const double t87 = K_f * t86;
-    const double t88 = t3 * t87;
-    const double t89 = theta_dot * t76;
-    const double t90 = t89 * t47;
-    const double t91 = K_f * t66;
+    const double t47 = K_f * t46;
+    const double t48 = t3 * t47;
+    const double t49 = L * m_2;
+    const double theta_dot = qd[2];
+    const double t50 = theta_dot * t49;
+    const double t51 = theta_dot * t6;
+    const double t52 = t50 * t51;
+    const double t53 = t6 * t4;
+    const double t54 = t5 * t3;
+    const double t55 = t53 - t54;
+    const double t56 = K_f * t55;
+    const double t57 = t52 + t56;
+    const double t58 = t12 * t57;
+    const double t59 = theta_dot * t5;
+    const double t60 = t50 * t59;
+    const double t61 = t5 * t4;
+    const double t62 = t6 * t3;
+    const double t63 = t61 + t62;
+    const double t64 = K_f * t63;
+    const double t65 = t60 + t64;
+    const double t66 = t9 * t65;
+    const double t67 = t58 + t66;
+    const double t68 = t48 + t67;
+    const double t69 = Theta_2 * t68;
+    const double t70 = t45 - t69;
+    const double t71 = t12 * t70;
+    const double y_dot = qd[1];
+    const double t72 = y_dot * t59;
+    const double x_dot = qd[0];
+    const double t73 = x_dot * t51;
+    const double t74 = t72 + t73;
+    const double t75 = t8 * t74;
+    const double t76 = L * Theta_2;
+    const double t77 = m_1 * t61;
+    const double t78 = m_2 * t63;
+    const double t79 = t77 + t78;
+    const double t80 = t76 * t79;
+    const double t81 = t75 * t80;
+    const double t82 = L * t49;
+    const double t83 = Theta_1 + t82;
+    const double t84 = t3 * t83;
+    const double t85 = Theta_2 * t84;
+    const double phi_dot = qd[3];
+    const double t86 = phi_dot * t3;
+    const double t87 = L * t86;
+    const double t88 = theta_dot * t87;
+    const double t89 = theta_dot + phi_dot;
+    const double t90 = x_dot * t55;
+    const double t91 = y_dot * t63;
     const double t92 = t90 + t91;
-    const double t93 = t12 * t92;
-    const double t94 = t89 * t45;
-    const double t95 = K_f * t55;
-    const double t96 = t94 + t95;
-    const double t97 = t9 * t96;
-    const double t98 = t93 + t97;
-    const double t99 = t88 + t98;
-    const double t100 = Theta_2 * t99;
-    const double t101 = t85 - t100;
-    const double t102 = t12 * t101;
-    const double t103 = t102 * t44;
-    const double t104 = t83 + t103;
-    const double t105 = -t104;
-    const double t106 = t5 * t72;
-    const double t107 = t49 * t55;
-    const double t108 = t106 - t107;
-    const double t109 = t108 * t80;
-    const double t110 = m_1 * t64;
-    const double t111 = m_2 * t66;
-    const double t112 = t110 + t111;
-    const double t113 = t51 * t112;
-    const double t114 = t50 * t113;
-    const double t115 = t109 - t114;
-    const double t116 = t44 * t115;
-    const double t117 = t9 * t101;
-    const double t118 = t117 * t44;
-    const double t119 = t116 + t118;
-    const double t120 = -t119;
-    const double t121 = t74 - t73;
-    const double t122 = t113 * t121;
-    const double t123 = t58 * t108;
-    const double t124 = t122 - t123;
-    const double t125 = t124 * t44;
-    const double t126 = t3 * t101;
-    const double t127 = t126 * t44;
-    const double t128 = t125 + t127;
-    const double t129 = -t128;
-    const double t130 = m_1 + m_2;
-    const double t131 = T * t12;
-    const double t132 = t130 * t131;
-    const double t133 = t5 * t76;
-    const double t134 = t133 * t84;
-    const double t135 = t132 - t134;
-    const double t136 = t12 * t135;
-    const double t137 = T * t9;
-    const double t138 = t130 * t137;
-    const double t139 = t6 * t76;
-    const double t140 = t139 * t84;
-    const double t141 = t138 + t140;
-    const double t142 = t9 * t141;
-    const double t143 = t136 + t142;
-    const double t144 = Theta_2 + t78;
-    const double t145 = t84 * t144;
-    const double t146 = t145 - t100;
-    const double t147 = t3 * t146;
-    const double t148 = t143 + t147;
-    const double t149 = t44 * t148;
-    const double t150 = t123 - t122;
-    const double t151 = t150 * t44;
-    const double t152 = t149 - t151;
-    double rest = t105 - t105;
-    rest += t120 - t120;
-    rest += t129 - t129;
-    rest += t152 - t152;
-    if (isnan(rest) != 0) {
+    const double t93 = t89 * t92;
+    const double t94 = t88 + t93;
+    const double t95 = t6 * t94;
+    const double t96 = t74 * t55;
+    const double t97 = t95 - t96;
+    const double t98 = t85 * t97;
+    const double t99 = t81 + t98;
+    const double t100 = t71 + t99;
+    const double t101 = t43 * t100;
+    const double t102 = -t101;
+    const double t103 = t9 * t70;
+    const double t104 = t5 * t94;
+    const double t105 = t74 * t63;
+    const double t106 = t104 - t105;
+    const double t107 = t85 * t106;
+    const double t108 = m_1 * t53;
+    const double t109 = m_2 * t55;
+    const double t110 = t108 + t109;
+    const double t111 = t76 * t110;
+    const double t112 = t75 * t111;
+    const double t113 = t107 - t112;
+    const double t114 = t103 + t113;
+    const double t115 = t43 * t114;
+    const double t116 = -t115;
+    const double t117 = t3 * t70;
+    const double t118 = t96 - t95;
+    const double t119 = t111 * t118;
+    const double t120 = t80 * t106;
+    const double t121 = t119 - t120;
+    const double t122 = t117 + t121;
+    const double t123 = t43 * t122;
+    const double t124 = -t123;
+    const double t125 = m_1 + m_2;
+    const double t126 = T * t12;
+    const double t127 = t125 * t126;
+    const double t128 = t5 * t49;
+    const double t129 = t128 * t44;
+    const double t130 = t127 - t129;
+    const double t131 = t12 * t130;
+    const double t132 = T * t9;
+    const double t133 = t125 * t132;
+    const double t134 = t6 * t49;
+    const double t135 = t134 * t44;
+    const double t136 = t133 + t135;
+    const double t137 = t9 * t136;
+    const double t138 = t131 + t137;
+    const double t139 = Theta_2 + t83;
+    const double t140 = t44 * t139;
+    const double t141 = t140 - t69;
+    const double t142 = t3 * t141;
+    const double t143 = t138 + t142;
+    const double t144 = t120 - t119;
+    const double t145 = t143 - t144;
+    const double t146 = t43 * t145;
+    double rest = (t102 - t102) * t116 * t124;
+    rest += t146 - t146;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    qdd[0] = t105;
-    qdd[1] = t120;
-    qdd[2] = t129;
-    qdd[3] = t152;
+    qdd[0] = t102;
+    qdd[1] = t116;
+    qdd[2] = t124;
+    qdd[3] = t146;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -2806,10 +2734,10 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -2832,7 +2760,7 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
     const double t17 = t16 * 1.262177448353619e-29;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const double Theta_1 = p->Theta_1;
@@ -2848,154 +2776,148 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double Theta_2 = p->Theta_2;
     const double t25 = Theta_2 * t24;
     const double t26 = fabs(t25);
-    const double t27 = fabs(m_1);
-    const double t28 = fabs(m_2);
-    const double t29 = t27 + t28;
-    const double t30 = fabs(Theta_2);
-    const double t31 = t29 * t30;
-    const double t32 = t13 * t31;
-    const double t33 = t10 * t31;
-    const double t34 = fabs(Theta_1);
-    const double t35 = fabs(L);
-    const double t36 = t35 * t35;
-    const double t37 = t28 * t36;
-    const double t38 = t34 + t37;
-    const double t39 = t30 * t38;
-    const double t40 = t7 * t39;
-    const double t41 = t33 + t40;
-    const double t42 = t32 + t41;
-    const double t43 = t42 * 3.552713678800501e-15;
-    if (!(t26 > t43)) {
+    const double t27 = fabs(Theta_2);
+    const double t28 = fabs(Theta_1);
+    const double t29 = fabs(m_2);
+    const double t30 = fabs(L);
+    const double t31 = t30 * t30;
+    const double t32 = t29 * t31;
+    const double t33 = t28 + t32;
+    const double t34 = t27 * t33;
+    const double t35 = t7 * t34;
+    const double t36 = fabs(m_1);
+    const double t37 = t36 + t29;
+    const double t38 = t37 * t27;
+    const double t39 = t10 + t13;
+    const double t40 = t38 * t39;
+    const double t41 = t35 + t40;
+    const double t42 = t41 * 3.552713678800501e-15;
+    if (FRONT_CAR_WHEELSET_RARELY(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const double t44 = 1.0 / t25;
-    const double t45 = L * Theta_2;
-    const double t46 = t5 * t4;
-    const double t47 = m_1 * t46;
-    const double t48 = t6 * t3;
-    const double t49 = t46 + t48;
-    const double t50 = m_2 * t49;
-    const double t51 = t47 + t50;
-    const double t52 = t45 * t51;
-    const double t53 = L * m_2;
+    const double t43 = 1.0 / t25;
+    const double t44 = L * Theta_2;
+    const double t45 = t5 * t4;
+    const double t46 = m_1 * t45;
+    const double t47 = t6 * t3;
+    const double t48 = t45 + t47;
+    const double t49 = m_2 * t48;
+    const double t50 = t46 + t49;
+    const double t51 = t44 * t50;
+    const double t52 = L * m_2;
     const double theta_dot = qd[2];
-    const double t54 = theta_dot * t53;
-    const double t55 = theta_dot * t6;
-    const double t56 = t54 * t55;
-    const double t57 = t6 * t4;
-    const double t58 = t5 * t3;
-    const double t59 = t57 - t58;
+    const double t53 = theta_dot * t52;
+    const double t54 = theta_dot * t6;
+    const double t55 = t53 * t54;
+    const double t56 = t6 * t4;
+    const double t57 = t5 * t3;
+    const double t58 = t56 - t57;
     const double K_f = u[0];
-    const double t60 = K_f * t59;
-    const double t61 = t56 + t60;
-    const double t62 = m_1 + m_2;
-    const double t63 = theta_dot * t5;
+    const double t59 = K_f * t58;
+    const double t60 = t55 + t59;
+    const double t61 = m_1 + m_2;
+    const double t62 = theta_dot * t5;
     const double y_dot = qd[1];
-    const double t64 = y_dot * t63;
+    const double t63 = y_dot * t62;
     const double x_dot = qd[0];
-    const double t65 = x_dot * t55;
-    const double t66 = t64 + t65;
-    const double t67 = t8 * t66;
-    const double t68 = t67 * t52;
+    const double t64 = x_dot * t54;
+    const double t65 = t63 + t64;
+    const double t66 = t8 * t65;
+    const double t67 = t66 * t51;
+    const double t68 = L * t52;
+    const double t69 = Theta_1 + t68;
+    const double t70 = t3 * t69;
+    const double t71 = Theta_2 * t70;
     const double phi_dot = qd[3];
-    const double t69 = phi_dot * t3;
-    const double t70 = L * t69;
-    const double t71 = theta_dot * t70;
-    const double t72 = theta_dot + phi_dot;
-    const double t73 = t72 * t59;
-    const double t74 = x_dot * t73;
-    const double t75 = t72 * t49;
-    const double t76 = y_dot * t75;
-    const double t77 = t74 + t76;
-    const double t78 = t71 + t77;
-    const double t79 = t6 * t78;
-    const double t80 = t66 * t59;
-    const double t81 = t79 - t80;
-    const double t82 = L * t53;
-    const double t83 = Theta_1 + t82;
-    const double t84 = t3 * t83;
-    const double t85 = Theta_2 * t84;
-    const double t86 = t81 * t85;
-    const double t87 = t68 + t86;
-    const double t88 = t44 * t87;
-    const double t89 = t62 * t88;
-    const double t90 = t5 * t53;
-    const double t91 = m_1 * t57;
-    const double t92 = m_2 * t59;
-    const double t93 = t91 + t92;
-    const double t94 = t45 * t93;
-    const double t95 = t80 - t79;
-    const double t96 = t94 * t95;
-    const double t97 = t5 * t78;
-    const double t98 = t66 * t49;
-    const double t99 = t97 - t98;
-    const double t100 = t52 * t99;
-    const double t101 = t96 - t100;
-    const double t102 = t101 * t44;
-    const double t103 = t90 * t102;
-    const double t104 = t89 - t103;
-    const double t105 = t61 + t104;
-    const double t106 = t52 * t105;
-    const double t107 = t54 * t63;
-    const double t108 = K_f * t49;
-    const double t109 = t107 + t108;
-    const double t110 = t99 * t85;
-    const double t111 = t67 * t94;
-    const double t112 = t110 - t111;
-    const double t113 = t44 * t112;
-    const double t114 = t62 * t113;
-    const double t115 = t6 * t53;
-    const double t116 = t115 * t102;
-    const double t117 = t114 + t116;
-    const double t118 = t109 + t117;
-    const double t119 = t94 * t118;
-    const double t120 = t106 - t119;
-    const double t121 = t8 * t120;
+    const double t72 = phi_dot * t3;
+    const double t73 = L * t72;
+    const double t74 = theta_dot * t73;
+    const double t75 = theta_dot + phi_dot;
+    const double t76 = x_dot * t58;
+    const double t77 = y_dot * t48;
+    const double t78 = t76 + t77;
+    const double t79 = t75 * t78;
+    const double t80 = t74 + t79;
+    const double t81 = t6 * t80;
+    const double t82 = t65 * t58;
+    const double t83 = t81 - t82;
+    const double t84 = t71 * t83;
+    const double t85 = t67 + t84;
+    const double t86 = t43 * t85;
+    const double t87 = t61 * t86;
+    const double t88 = t5 * t52;
+    const double t89 = m_1 * t56;
+    const double t90 = m_2 * t58;
+    const double t91 = t89 + t90;
+    const double t92 = t44 * t91;
+    const double t93 = t82 - t81;
+    const double t94 = t92 * t93;
+    const double t95 = t5 * t80;
+    const double t96 = t65 * t48;
+    const double t97 = t95 - t96;
+    const double t98 = t51 * t97;
+    const double t99 = t94 - t98;
+    const double t100 = t43 * t99;
+    const double t101 = t88 * t100;
+    const double t102 = t87 - t101;
+    const double t103 = t60 + t102;
+    const double t104 = t51 * t103;
+    const double t105 = t53 * t62;
+    const double t106 = K_f * t48;
+    const double t107 = t105 + t106;
+    const double t108 = t71 * t97;
+    const double t109 = t66 * t92;
+    const double t110 = t108 - t109;
+    const double t111 = t43 * t110;
+    const double t112 = t61 * t111;
+    const double t113 = t6 * t52;
+    const double t114 = t113 * t100;
+    const double t115 = t112 + t114;
+    const double t116 = t107 + t115;
+    const double t117 = t92 * t116;
+    const double t118 = t104 - t117;
+    const double t119 = t8 * t118;
+    const double t120 = t71 * t103;
+    const double t121 = L * t3;
+    const double t122 = K_f * t121;
+    const double t123 = Theta_2 + t69;
+    const double t124 = t123 * t100;
+    const double t125 = t52 * t65;
+    const double t126 = t124 - t125;
+    const double t127 = t98 - t94;
+    const double t128 = t43 * t127;
+    const double t129 = Theta_2 * t128;
+    const double t130 = t126 + t129;
+    const double t131 = t122 + t130;
     const double T = u[1];
-    const double t122 = T * t94;
-    const double t123 = L * t3;
-    const double t124 = K_f * t123;
-    const double t125 = Theta_2 + t83;
-    const double t126 = t125 * t102;
-    const double t127 = t53 * t66;
-    const double t128 = t126 - t127;
-    const double t129 = t100 - t96;
-    const double t130 = t129 * t44;
-    const double t131 = Theta_2 * t130;
-    const double t132 = t128 + t131;
-    const double t133 = t124 + t132;
-    const double t134 = t94 * t133;
-    const double t135 = t122 - t134;
-    const double t136 = t85 * t105;
-    const double t137 = t135 + t136;
-    const double t138 = t59 * t137;
-    const double t139 = t121 - t138;
-    const double t140 = T * t52;
-    const double t141 = t52 * t133;
-    const double t142 = t140 - t141;
-    const double t143 = t85 * t118;
-    const double t144 = t142 + t143;
-    const double t145 = t49 * t144;
-    const double t146 = t139 - t145;
-    const double t147 = t44 * t146;
-    const double t148 = t6 * t137;
-    const double t149 = t5 * t144;
-    const double t150 = t148 + t149;
-    const double t151 = t44 * t150;
-    double rest = t147 - t147;
-    rest += t151 - t151;
-    if (isnan(rest) != 0) {
+    const double t132 = T - t131;
+    const double t133 = t92 * t132;
+    const double t134 = t120 + t133;
+    const double t135 = t58 * t134;
+    const double t136 = t119 - t135;
+    const double t137 = t71 * t116;
+    const double t138 = t51 * t132;
+    const double t139 = t137 + t138;
+    const double t140 = t48 * t139;
+    const double t141 = t136 - t140;
+    const double t142 = t43 * t141;
+    const double t143 = t6 * t134;
+    const double t144 = t5 * t139;
+    const double t145 = t143 + t144;
+    const double t146 = t43 * t145;
+    double rest = (t142 - t142) * t146;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t147;
-    lambda_B[1] = t151;
+    lambda_B[0] = t142;
+    lambda_B[1] = t146;
     return FRONT_CAR_WHEELSET_OK;
 }
 
 front_car_wheelset_status front_car_wheelset_energy(const double q[4], const double qd[4], const front_car_wheelset_params *p, double T_U[2]) {
     const double theta = q[2];
     const double t1 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     double t2;
@@ -3020,25 +2942,24 @@ front_car_wheelset_status front_car_wheelset_energy(const double q[4], const dou
     const double t13 = 0.5 * t12;
     const double L = p->L;
     const double t14 = L * m_2;
-    const double t15 = theta_dot * t14;
-    const double t16 = y_dot * t3;
-    const double t17 = x_dot * t2;
-    const double t18 = t16 - t17;
-    const double t19 = t15 * t18;
-    const double t20 = t13 + t19;
-    const double t21 = theta_dot * theta_dot;
-    const double t22 = L * t14;
+    const double t15 = y_dot * t3;
+    const double t16 = x_dot * t2;
+    const double t17 = t15 - t16;
+    const double t18 = t14 * t17;
+    const double t19 = L * t14;
     const double Theta_1 = p->Theta_1;
-    const double t23 = Theta_1 + t22;
-    const double t24 = t21 * t23;
-    const double t25 = 0.5 * t24;
-    const double t26 = t20 + t25;
-    const double t27 = t7 + t26;
-    double rest = t27 - t27;
-    if (isnan(rest) != 0) {
+    const double t20 = Theta_1 + t19;
+    const double t21 = theta_dot * t20;
+    const double t22 = 0.5 * t21;
+    const double t23 = t18 + t22;
+    const double t24 = theta_dot * t23;
+    const double t25 = t13 + t24;
+    const double t26 = t7 + t25;
+    double rest = t26 - t26;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    T_U[0] = t27;
+    T_U[0] = t26;
     T_U[1] = 0.0;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -3048,10 +2969,10 @@ front_car_wheelset_status front_car_wheelset_singularity(const double q[4], cons
     const double t1 = fabs(phi);
     const double theta = q[2];
     const double t2 = fabs(theta);
-    if (!(100000.0 >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(100000.0 >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const double angle[2] = {phi, theta};
@@ -3109,9 +3030,8 @@ front_car_wheelset_status front_car_wheelset_singularity(const double q[4], cons
     const double t50 = t34 * t34;
     const double t51 = 1.0 + t50;
     const double t52 = ((t51 != 0.0) ? t49 : 0.0) / ((t51 != 0.0) ? t51 : 1.0);
-    double rest = t33 - t33;
-    rest += t52 - t52;
-    if (isnan(rest) != 0) {
+    double rest = (t33 - t33) * t52;
+    if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     measure[0] = t33;

@@ -22,10 +22,10 @@ front_car_wheelset_prepared_f front_car_wheelset_prepare_f(const front_car_wheel
 /* u: the smallest inputs that produce the motion, (27); 25 operations instead of 30 */
 front_car_wheelset_status front_car_wheelset_inverse_dynamics_prepared_f(const float q[4], const float qd[4], const float qdd[4], const front_car_wheelset_prepared_f *p, float u[2]);
 
-/* q̈: accelerations under the inputs, (15); 132 operations instead of 150 */
+/* q̈: accelerations under the inputs, (15); 126 operations instead of 144 */
 front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_wheelset_prepared_f *p, float qdd[4]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 131 operations instead of 149 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 126 operations instead of 144 */
 front_car_wheelset_status front_car_wheelset_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_wheelset_prepared_f *p, float lambda_B[2]);
 
 #ifdef __cplusplus
@@ -53,6 +53,15 @@ front_car_wheelset_status front_car_wheelset_multipliers_prepared_f(const float 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
+#endif
+
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define FRONT_CAR_WHEELSET_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define FRONT_CAR_WHEELSET_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define FRONT_CAR_WHEELSET_RARELY_F(condition) (condition)
 #endif
 
 #ifdef __GNUC__
@@ -158,17 +167,17 @@ front_car_wheelset_prepared_f front_car_wheelset_prepare_f(const front_car_wheel
     const float v4 = Theta_1 + v3;
     const float v5 = Theta_2 + v4;
     const float v6 = L * L;
-    const float v7 = fabsf(m_1);
-    const float v8 = fabsf(m_2);
-    const float v9 = v7 + v8;
-    const float v10 = fabsf(Theta_2);
-    const float v11 = v9 * v10;
-    const float v12 = fabsf(Theta_1);
-    const float v13 = fabsf(L);
-    const float v14 = v13 * v13;
-    const float v15 = v8 * v14;
-    const float v16 = v12 + v15;
-    const float v17 = v10 * v16;
+    const float v7 = fabsf(Theta_2);
+    const float v8 = fabsf(Theta_1);
+    const float v9 = fabsf(m_2);
+    const float v10 = fabsf(L);
+    const float v11 = v10 * v10;
+    const float v12 = v9 * v11;
+    const float v13 = v8 + v12;
+    const float v14 = v7 * v13;
+    const float v15 = fabsf(m_1);
+    const float v16 = v15 + v9;
+    const float v17 = v16 * v7;
     const float v18 = L * Theta_2;
     front_car_wheelset_prepared_f prepared;
     prepared.value[0] = L;
@@ -180,7 +189,7 @@ front_car_wheelset_prepared_f front_car_wheelset_prepare_f(const front_car_wheel
     prepared.value[6] = m_2;
     prepared.value[7] = Theta_1;
     prepared.value[8] = v6;
-    prepared.value[9] = v11;
+    prepared.value[9] = v14;
     prepared.value[10] = v17;
     prepared.value[11] = v18;
     prepared.value[12] = v4;
@@ -192,10 +201,10 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_prepared_f(const f
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -237,9 +246,8 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_prepared_f(const f
     const float t30 = t16 + t29;
     const float t31 = theta_ddot + phi_ddot;
     const float t32 = Theta_2 * t31;
-    float rest = t30 - t30;
-    rest += t32 - t32;
-    if (isnan(rest) != 0) {
+    float rest = (t30 - t30) * t32;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
     u[0] = t30;
@@ -252,10 +260,10 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared_f(const f
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -278,7 +286,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared_f(const f
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->value[7];
@@ -294,142 +302,134 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared_f(const f
     const float Theta_2 = p->value[1];
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
-    const float t31 = p->value[9];
-    const float t32 = t13 * t31;
-    const float t33 = t10 * t31;
-    const float t39 = p->value[10];
-    const float t40 = t7 * t39;
-    const float t41 = t33 + t40;
-    const float t42 = t32 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t34 = p->value[9];
+    const float t35 = t7 * t34;
+    const float t39 = t10 + t13;
+    const float t38 = p->value[10];
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float theta_dot = qd[2];
-    const float t45 = theta_dot * t5;
-    const float y_dot = qd[1];
-    const float t46 = y_dot * t45;
-    const float t47 = theta_dot * t6;
-    const float x_dot = qd[0];
-    const float t48 = x_dot * t47;
-    const float t49 = t46 + t48;
-    const float t50 = t8 * t49;
-    const float t52 = t5 * t4;
-    const float t53 = m_1 * t52;
-    const float t54 = t6 * t3;
-    const float t55 = t52 + t54;
-    const float t56 = m_2 * t55;
-    const float t57 = t53 + t56;
-    const float t51 = p->value[11];
-    const float t58 = t51 * t57;
-    const float t59 = t50 * t58;
-    const float phi_dot = qd[3];
-    const float t60 = phi_dot * t3;
-    const float t61 = L * t60;
-    const float t62 = theta_dot * t61;
-    const float t63 = theta_dot + phi_dot;
-    const float t64 = t6 * t4;
-    const float t65 = t5 * t3;
-    const float t66 = t64 - t65;
-    const float t67 = t63 * t66;
-    const float t68 = x_dot * t67;
-    const float t69 = t63 * t55;
-    const float t70 = y_dot * t69;
-    const float t71 = t68 + t70;
-    const float t72 = t62 + t71;
-    const float t73 = t6 * t72;
-    const float t74 = t49 * t66;
-    const float t75 = t73 - t74;
-    const float t78 = p->value[12];
-    const float t79 = t3 * t78;
-    const float t80 = Theta_2 * t79;
-    const float t81 = t75 * t80;
-    const float t82 = t59 + t81;
-    const float t83 = t44 * t82;
+    const float t43 = 1.0f / t25;
     const float T = u[1];
-    const float t84 = T * t3;
-    const float t85 = Theta_2 * t84;
-    const float t86 = L * t3;
+    const float t44 = T * t3;
+    const float t45 = Theta_2 * t44;
+    const float t46 = L * t3;
     const float K_f = u[0];
-    const float t87 = K_f * t86;
-    const float t88 = t3 * t87;
-    const float t76 = p->value[3];
-    const float t89 = theta_dot * t76;
-    const float t90 = t89 * t47;
-    const float t91 = K_f * t66;
+    const float t47 = K_f * t46;
+    const float t48 = t3 * t47;
+    const float theta_dot = qd[2];
+    const float t49 = p->value[3];
+    const float t50 = theta_dot * t49;
+    const float t51 = theta_dot * t6;
+    const float t52 = t50 * t51;
+    const float t53 = t6 * t4;
+    const float t54 = t5 * t3;
+    const float t55 = t53 - t54;
+    const float t56 = K_f * t55;
+    const float t57 = t52 + t56;
+    const float t58 = t12 * t57;
+    const float t59 = theta_dot * t5;
+    const float t60 = t50 * t59;
+    const float t61 = t5 * t4;
+    const float t62 = t6 * t3;
+    const float t63 = t61 + t62;
+    const float t64 = K_f * t63;
+    const float t65 = t60 + t64;
+    const float t66 = t9 * t65;
+    const float t67 = t58 + t66;
+    const float t68 = t48 + t67;
+    const float t69 = Theta_2 * t68;
+    const float t70 = t45 - t69;
+    const float t71 = t12 * t70;
+    const float y_dot = qd[1];
+    const float t72 = y_dot * t59;
+    const float x_dot = qd[0];
+    const float t73 = x_dot * t51;
+    const float t74 = t72 + t73;
+    const float t75 = t8 * t74;
+    const float t77 = m_1 * t61;
+    const float t78 = m_2 * t63;
+    const float t79 = t77 + t78;
+    const float t76 = p->value[11];
+    const float t80 = t76 * t79;
+    const float t81 = t75 * t80;
+    const float t83 = p->value[12];
+    const float t84 = t3 * t83;
+    const float t85 = Theta_2 * t84;
+    const float phi_dot = qd[3];
+    const float t86 = phi_dot * t3;
+    const float t87 = L * t86;
+    const float t88 = theta_dot * t87;
+    const float t89 = theta_dot + phi_dot;
+    const float t90 = x_dot * t55;
+    const float t91 = y_dot * t63;
     const float t92 = t90 + t91;
-    const float t93 = t12 * t92;
-    const float t94 = t89 * t45;
-    const float t95 = K_f * t55;
-    const float t96 = t94 + t95;
-    const float t97 = t9 * t96;
-    const float t98 = t93 + t97;
-    const float t99 = t88 + t98;
-    const float t100 = Theta_2 * t99;
-    const float t101 = t85 - t100;
-    const float t102 = t12 * t101;
-    const float t103 = t102 * t44;
-    const float t104 = t83 + t103;
-    const float t105 = -t104;
-    const float t106 = t5 * t72;
-    const float t107 = t49 * t55;
-    const float t108 = t106 - t107;
-    const float t109 = t108 * t80;
-    const float t110 = m_1 * t64;
-    const float t111 = m_2 * t66;
-    const float t112 = t110 + t111;
-    const float t113 = t51 * t112;
-    const float t114 = t50 * t113;
-    const float t115 = t109 - t114;
-    const float t116 = t44 * t115;
-    const float t117 = t9 * t101;
-    const float t118 = t117 * t44;
-    const float t119 = t116 + t118;
-    const float t120 = -t119;
-    const float t121 = t74 - t73;
-    const float t122 = t113 * t121;
-    const float t123 = t58 * t108;
-    const float t124 = t122 - t123;
-    const float t125 = t124 * t44;
-    const float t126 = t3 * t101;
-    const float t127 = t126 * t44;
-    const float t128 = t125 + t127;
-    const float t129 = -t128;
-    const float t131 = T * t12;
-    const float t130 = p->value[2];
-    const float t132 = t130 * t131;
-    const float t133 = t5 * t76;
-    const float t134 = t133 * t84;
-    const float t135 = t132 - t134;
-    const float t136 = t12 * t135;
-    const float t137 = T * t9;
-    const float t138 = t130 * t137;
-    const float t139 = t6 * t76;
-    const float t140 = t139 * t84;
-    const float t141 = t138 + t140;
-    const float t142 = t9 * t141;
-    const float t143 = t136 + t142;
-    const float t144 = p->value[4];
-    const float t145 = t84 * t144;
-    const float t146 = t145 - t100;
-    const float t147 = t3 * t146;
-    const float t148 = t143 + t147;
-    const float t149 = t44 * t148;
-    const float t150 = t123 - t122;
-    const float t151 = t150 * t44;
-    const float t152 = t149 - t151;
-    float rest = t105 - t105;
-    rest += t120 - t120;
-    rest += t129 - t129;
-    rest += t152 - t152;
-    if (isnan(rest) != 0) {
+    const float t93 = t89 * t92;
+    const float t94 = t88 + t93;
+    const float t95 = t6 * t94;
+    const float t96 = t74 * t55;
+    const float t97 = t95 - t96;
+    const float t98 = t85 * t97;
+    const float t99 = t81 + t98;
+    const float t100 = t71 + t99;
+    const float t101 = t43 * t100;
+    const float t102 = -t101;
+    const float t103 = t9 * t70;
+    const float t104 = t5 * t94;
+    const float t105 = t74 * t63;
+    const float t106 = t104 - t105;
+    const float t107 = t85 * t106;
+    const float t108 = m_1 * t53;
+    const float t109 = m_2 * t55;
+    const float t110 = t108 + t109;
+    const float t111 = t76 * t110;
+    const float t112 = t75 * t111;
+    const float t113 = t107 - t112;
+    const float t114 = t103 + t113;
+    const float t115 = t43 * t114;
+    const float t116 = -t115;
+    const float t117 = t3 * t70;
+    const float t118 = t96 - t95;
+    const float t119 = t111 * t118;
+    const float t120 = t80 * t106;
+    const float t121 = t119 - t120;
+    const float t122 = t117 + t121;
+    const float t123 = t43 * t122;
+    const float t124 = -t123;
+    const float t126 = T * t12;
+    const float t125 = p->value[2];
+    const float t127 = t125 * t126;
+    const float t128 = t5 * t49;
+    const float t129 = t128 * t44;
+    const float t130 = t127 - t129;
+    const float t131 = t12 * t130;
+    const float t132 = T * t9;
+    const float t133 = t125 * t132;
+    const float t134 = t6 * t49;
+    const float t135 = t134 * t44;
+    const float t136 = t133 + t135;
+    const float t137 = t9 * t136;
+    const float t138 = t131 + t137;
+    const float t139 = p->value[4];
+    const float t140 = t44 * t139;
+    const float t141 = t140 - t69;
+    const float t142 = t3 * t141;
+    const float t143 = t138 + t142;
+    const float t144 = t120 - t119;
+    const float t145 = t143 - t144;
+    const float t146 = t43 * t145;
+    float rest = (t102 - t102) * t116 * t124;
+    rest += t146 - t146;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    qdd[0] = t105;
-    qdd[1] = t120;
-    qdd[2] = t129;
-    qdd[3] = t152;
+    qdd[0] = t102;
+    qdd[1] = t116;
+    qdd[2] = t124;
+    qdd[3] = t146;
     return FRONT_CAR_WHEELSET_OK;
 }
 
@@ -438,10 +438,10 @@ front_car_wheelset_status front_car_wheelset_multipliers_prepared_f(const float 
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_WHEELSET_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -464,7 +464,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_prepared_f(const float 
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->value[7];
@@ -480,137 +480,131 @@ front_car_wheelset_status front_car_wheelset_multipliers_prepared_f(const float 
     const float Theta_2 = p->value[1];
     const float t25 = Theta_2 * t24;
     const float t26 = fabsf(t25);
-    const float t31 = p->value[9];
-    const float t32 = t13 * t31;
-    const float t33 = t10 * t31;
-    const float t39 = p->value[10];
-    const float t40 = t7 * t39;
-    const float t41 = t33 + t40;
-    const float t42 = t32 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t34 = p->value[9];
+    const float t35 = t7 * t34;
+    const float t39 = t10 + t13;
+    const float t38 = p->value[10];
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t26 > t42))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t45 = p->value[11];
-    const float t52 = t45 * t51;
+    const float t43 = 1.0f / t25;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t44 = p->value[11];
+    const float t51 = t44 * t50;
     const float theta_dot = qd[2];
-    const float t53 = p->value[3];
-    const float t54 = theta_dot * t53;
-    const float t55 = theta_dot * t6;
-    const float t56 = t54 * t55;
-    const float t57 = t6 * t4;
-    const float t58 = t5 * t3;
-    const float t59 = t57 - t58;
+    const float t52 = p->value[3];
+    const float t53 = theta_dot * t52;
+    const float t54 = theta_dot * t6;
+    const float t55 = t53 * t54;
+    const float t56 = t6 * t4;
+    const float t57 = t5 * t3;
+    const float t58 = t56 - t57;
     const float K_f = u[0];
-    const float t60 = K_f * t59;
-    const float t61 = t56 + t60;
-    const float t63 = theta_dot * t5;
+    const float t59 = K_f * t58;
+    const float t60 = t55 + t59;
+    const float t62 = theta_dot * t5;
     const float y_dot = qd[1];
-    const float t64 = y_dot * t63;
+    const float t63 = y_dot * t62;
     const float x_dot = qd[0];
-    const float t65 = x_dot * t55;
-    const float t66 = t64 + t65;
-    const float t67 = t8 * t66;
-    const float t68 = t67 * t52;
+    const float t64 = x_dot * t54;
+    const float t65 = t63 + t64;
+    const float t66 = t8 * t65;
+    const float t67 = t66 * t51;
+    const float t69 = p->value[12];
+    const float t70 = t3 * t69;
+    const float t71 = Theta_2 * t70;
     const float phi_dot = qd[3];
-    const float t69 = phi_dot * t3;
-    const float t70 = L * t69;
-    const float t71 = theta_dot * t70;
-    const float t72 = theta_dot + phi_dot;
-    const float t73 = t72 * t59;
-    const float t74 = x_dot * t73;
-    const float t75 = t72 * t49;
-    const float t76 = y_dot * t75;
-    const float t77 = t74 + t76;
-    const float t78 = t71 + t77;
-    const float t79 = t6 * t78;
-    const float t80 = t66 * t59;
-    const float t81 = t79 - t80;
-    const float t83 = p->value[12];
-    const float t84 = t3 * t83;
-    const float t85 = Theta_2 * t84;
-    const float t86 = t81 * t85;
-    const float t87 = t68 + t86;
-    const float t88 = t44 * t87;
-    const float t62 = p->value[2];
-    const float t89 = t62 * t88;
-    const float t90 = t5 * t53;
-    const float t91 = m_1 * t57;
-    const float t92 = m_2 * t59;
-    const float t93 = t91 + t92;
-    const float t94 = t45 * t93;
-    const float t95 = t80 - t79;
-    const float t96 = t94 * t95;
-    const float t97 = t5 * t78;
-    const float t98 = t66 * t49;
-    const float t99 = t97 - t98;
-    const float t100 = t52 * t99;
-    const float t101 = t96 - t100;
-    const float t102 = t101 * t44;
-    const float t103 = t90 * t102;
-    const float t104 = t89 - t103;
-    const float t105 = t61 + t104;
-    const float t106 = t52 * t105;
-    const float t107 = t54 * t63;
-    const float t108 = K_f * t49;
-    const float t109 = t107 + t108;
-    const float t110 = t99 * t85;
-    const float t111 = t67 * t94;
-    const float t112 = t110 - t111;
-    const float t113 = t44 * t112;
-    const float t114 = t62 * t113;
-    const float t115 = t6 * t53;
-    const float t116 = t115 * t102;
-    const float t117 = t114 + t116;
-    const float t118 = t109 + t117;
-    const float t119 = t94 * t118;
-    const float t120 = t106 - t119;
-    const float t121 = t8 * t120;
+    const float t72 = phi_dot * t3;
+    const float t73 = L * t72;
+    const float t74 = theta_dot * t73;
+    const float t75 = theta_dot + phi_dot;
+    const float t76 = x_dot * t58;
+    const float t77 = y_dot * t48;
+    const float t78 = t76 + t77;
+    const float t79 = t75 * t78;
+    const float t80 = t74 + t79;
+    const float t81 = t6 * t80;
+    const float t82 = t65 * t58;
+    const float t83 = t81 - t82;
+    const float t84 = t71 * t83;
+    const float t85 = t67 + t84;
+    const float t86 = t43 * t85;
+    const float t61 = p->value[2];
+    const float t87 = t61 * t86;
+    const float t88 = t5 * t52;
+    const float t89 = m_1 * t56;
+    const float t90 = m_2 * t58;
+    const float t91 = t89 + t90;
+    const float t92 = t44 * t91;
+    const float t93 = t82 - t81;
+    const float t94 = t92 * t93;
+    const float t95 = t5 * t80;
+    const float t96 = t65 * t48;
+    const float t97 = t95 - t96;
+    const float t98 = t51 * t97;
+    const float t99 = t94 - t98;
+    const float t100 = t43 * t99;
+    const float t101 = t88 * t100;
+    const float t102 = t87 - t101;
+    const float t103 = t60 + t102;
+    const float t104 = t51 * t103;
+    const float t105 = t53 * t62;
+    const float t106 = K_f * t48;
+    const float t107 = t105 + t106;
+    const float t108 = t71 * t97;
+    const float t109 = t66 * t92;
+    const float t110 = t108 - t109;
+    const float t111 = t43 * t110;
+    const float t112 = t61 * t111;
+    const float t113 = t6 * t52;
+    const float t114 = t113 * t100;
+    const float t115 = t112 + t114;
+    const float t116 = t107 + t115;
+    const float t117 = t92 * t116;
+    const float t118 = t104 - t117;
+    const float t119 = t8 * t118;
+    const float t120 = t71 * t103;
+    const float t121 = L * t3;
+    const float t122 = K_f * t121;
+    const float t123 = p->value[4];
+    const float t124 = t123 * t100;
+    const float t125 = t52 * t65;
+    const float t126 = t124 - t125;
+    const float t127 = t98 - t94;
+    const float t128 = t43 * t127;
+    const float t129 = Theta_2 * t128;
+    const float t130 = t126 + t129;
+    const float t131 = t122 + t130;
     const float T = u[1];
-    const float t122 = T * t94;
-    const float t123 = L * t3;
-    const float t124 = K_f * t123;
-    const float t125 = p->value[4];
-    const float t126 = t125 * t102;
-    const float t127 = t53 * t66;
-    const float t128 = t126 - t127;
-    const float t129 = t100 - t96;
-    const float t130 = t129 * t44;
-    const float t131 = Theta_2 * t130;
-    const float t132 = t128 + t131;
-    const float t133 = t124 + t132;
-    const float t134 = t94 * t133;
-    const float t135 = t122 - t134;
-    const float t136 = t85 * t105;
-    const float t137 = t135 + t136;
-    const float t138 = t59 * t137;
-    const float t139 = t121 - t138;
-    const float t140 = T * t52;
-    const float t141 = t52 * t133;
-    const float t142 = t140 - t141;
-    const float t143 = t85 * t118;
-    const float t144 = t142 + t143;
-    const float t145 = t49 * t144;
-    const float t146 = t139 - t145;
-    const float t147 = t44 * t146;
-    const float t148 = t6 * t137;
-    const float t149 = t5 * t144;
-    const float t150 = t148 + t149;
-    const float t151 = t44 * t150;
-    float rest = t147 - t147;
-    rest += t151 - t151;
-    if (isnan(rest) != 0) {
+    const float t132 = T - t131;
+    const float t133 = t92 * t132;
+    const float t134 = t120 + t133;
+    const float t135 = t58 * t134;
+    const float t136 = t119 - t135;
+    const float t137 = t71 * t116;
+    const float t138 = t51 * t132;
+    const float t139 = t137 + t138;
+    const float t140 = t48 * t139;
+    const float t141 = t136 - t140;
+    const float t142 = t43 * t141;
+    const float t143 = t6 * t134;
+    const float t144 = t5 * t139;
+    const float t145 = t143 + t144;
+    const float t146 = t43 * t145;
+    float rest = (t142 - t142) * t146;
+    if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t147;
-    lambda_B[1] = t151;
+    lambda_B[0] = t142;
+    lambda_B[1] = t146;
     return FRONT_CAR_WHEELSET_OK;
 }
 

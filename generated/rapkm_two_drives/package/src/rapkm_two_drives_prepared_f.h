@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[13];
+    float value[14];
 } rapkm_two_drives_prepared_f;
 
 rapkm_two_drives_prepared_f rapkm_two_drives_prepare_f(const rapkm_two_drives_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 114 operations instead of 138 */
+/* u: the smallest inputs that produce the motion, (27); 107 operations instead of 129 */
 rapkm_two_drives_status rapkm_two_drives_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_two_drives_prepared_f *p, float u[2]);
 
 #ifdef __cplusplus
@@ -47,6 +47,15 @@ rapkm_two_drives_status rapkm_two_drives_inverse_dynamics_prepared_f(const float
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
+#endif
+
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define RAPKM_TWO_DRIVES_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define RAPKM_TWO_DRIVES_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define RAPKM_TWO_DRIVES_RARELY_F(condition) (condition)
 #endif
 
 #ifdef __GNUC__
@@ -141,27 +150,27 @@ RAPKM_TWO_DRIVES_GROUP_F void rapkm_two_drives_sincos_group_f(const int count, c
 }
 
 rapkm_two_drives_prepared_f rapkm_two_drives_prepare_f(const rapkm_two_drives_params_f *p) {
+    const float l_1 = p->l_1;
+    const float m_payload = p->m_payload;
     const float J_1 = p->J_1;
     const float J_motor = p->J_motor;
-    const float l_1 = p->l_1;
     const float m_1 = p->m_1;
     const float m_2 = p->m_2;
-    const float m_payload = p->m_payload;
     const float l_2 = p->l_2;
     const float J_2 = p->J_2;
-    const float v1 = J_1 + J_motor;
-    const float v2 = l_1 * l_1;
-    const float v3 = m_1 * v2;
-    const float v4 = 0.25f * v3;
-    const float v5 = v1 + v4;
-    const float v6 = m_2 * v2;
-    const float v7 = v5 + v6;
-    const float v8 = m_payload * v2;
-    const float v9 = v7 + v8;
-    const float v10 = l_1 * l_2;
-    const float v11 = 0.5f * m_2;
-    const float v12 = m_payload + v11;
-    const float v13 = v10 * v12;
+    const float v1 = l_1 * l_1;
+    const float v2 = m_payload * v1;
+    const float v3 = J_1 + J_motor;
+    const float v4 = 0.25f * m_1;
+    const float v5 = m_2 + v4;
+    const float v6 = v1 * v5;
+    const float v7 = v3 + v6;
+    const float v8 = v2 + v7;
+    const float v9 = l_1 * l_2;
+    const float v10 = m_2 * v9;
+    const float v11 = 0.5f * v10;
+    const float v12 = m_payload * v9;
+    const float v13 = v11 + v12;
     const float v14 = 1.0f / l_2;
     const float v15 = l_2 * l_2;
     const float v16 = m_2 * v15;
@@ -169,24 +178,23 @@ rapkm_two_drives_prepared_f rapkm_two_drives_prepare_f(const rapkm_two_drives_pa
     const float v18 = J_2 + v17;
     const float v19 = m_payload * v15;
     const float v20 = v18 + v19;
-    const float v21 = m_2 * v10;
-    const float v22 = 0.5f * v21;
-    const float v23 = 0.5f * l_1;
-    const float v24 = l_2 * v7;
+    const float v21 = 0.5f * l_1;
+    const float v22 = l_2 * v7;
     rapkm_two_drives_prepared_f prepared;
     prepared.value[0] = l_1;
     prepared.value[1] = l_2;
     prepared.value[2] = m_2;
     prepared.value[3] = v7;
-    prepared.value[4] = v9;
-    prepared.value[5] = v10;
-    prepared.value[6] = v13;
-    prepared.value[7] = v14;
-    prepared.value[8] = v18;
-    prepared.value[9] = v20;
-    prepared.value[10] = v22;
-    prepared.value[11] = v23;
-    prepared.value[12] = v24;
+    prepared.value[4] = v8;
+    prepared.value[5] = v9;
+    prepared.value[6] = v10;
+    prepared.value[7] = v11;
+    prepared.value[8] = v13;
+    prepared.value[9] = v14;
+    prepared.value[10] = v18;
+    prepared.value[11] = v20;
+    prepared.value[12] = v21;
+    prepared.value[13] = v22;
     return prepared;
 }
 
@@ -203,53 +211,53 @@ rapkm_two_drives_status rapkm_two_drives_inverse_dynamics_prepared_f(const float
     const float t5 = b_1 + t4;
     const float t6 = fabsf(b_1);
     const float t7 = fabsf(t3);
-    const float t8 = fabsf(b_2);
-    const float t9 = fabsf(t5);
     const float b_3 = q[5];
-    const float t10 = fabsf(b_3);
-    if (!(100.0f >= t6)) {
+    const float t8 = fabsf(b_3);
+    const float t9 = fabsf(t5);
+    const float t10 = fabsf(b_2);
+    if (RAPKM_TWO_DRIVES_RARELY_F(!(100.0f >= t6))) {
         return RAPKM_TWO_DRIVES_ANGLE_RANGE;
     }
-    if (!(100.0f >= t7)) {
+    if (RAPKM_TWO_DRIVES_RARELY_F(!(100.0f >= t7))) {
         return RAPKM_TWO_DRIVES_ANGLE_RANGE;
     }
-    if (!(100.0f >= t8)) {
+    if (RAPKM_TWO_DRIVES_RARELY_F(!(100.0f >= t8))) {
         return RAPKM_TWO_DRIVES_ANGLE_RANGE;
     }
-    if (!(100.0f >= t9)) {
+    if (RAPKM_TWO_DRIVES_RARELY_F(!(100.0f >= t9))) {
         return RAPKM_TWO_DRIVES_ANGLE_RANGE;
     }
-    if (!(100.0f >= t10)) {
+    if (RAPKM_TWO_DRIVES_RARELY_F(!(100.0f >= t10))) {
         return RAPKM_TWO_DRIVES_ANGLE_RANGE;
     }
-    const float angle[8] = {b_1, t3, b_2, t5, b_3, b_3, b_3, b_3};
+    const float angle[8] = {b_1, t3, b_3, t5, b_2, b_2, b_2, b_2};
     float sine[8];
     float cosine[8];
     rapkm_two_drives_sincos_group_f(5, angle, sine, cosine);
     const float t13 = sine[1];
-    const float t19 = sine[4];
-    const float t21 = t13 * t19;
+    const float t15 = sine[2];
+    const float t21 = t13 * t15;
     const float t22 = fabsf(t21);
     const float l_1 = p->value[0];
-    const float t15 = sine[2];
+    const float t19 = sine[4];
     const float t11 = sine[0];
     const float t18 = cosine[3];
     const float t17 = sine[3];
     const float t14 = cosine[1];
-    if (!(t22 > 2.861023e-06f)) {
-        const float t23 = l_1 * t15;
+    if (RAPKM_TWO_DRIVES_RARELY_F(!(t22 > 2.861023e-06f))) {
+        const float t23 = l_1 * t19;
         const float t24 = t11 * t18;
         const float t25 = l_1 * t24;
         const float t26 = t23 * t25;
         const float t27 = t26 * t26;
         const float t28 = t17 * t23;
         const float t29 = t28 * t28;
-        const float t30 = t19 * t23;
+        const float t30 = t15 * t23;
         const float t31 = t30 * t30;
         const float t32 = t21 * t21;
         const float t33 = t14 * t11;
         const float t34 = l_1 * t33;
-        const float t35 = t19 * t34;
+        const float t35 = t15 * t34;
         const float t36 = t35 * t35;
         const float t37 = t32 + t36;
         const float t38 = l_1 * t11;
@@ -274,136 +282,129 @@ rapkm_two_drives_status rapkm_two_drives_inverse_dynamics_prepared_f(const float
         return RAPKM_TWO_DRIVES_ACTUATION_RANK;
     }
     const float a_1_ddot = qdd[0];
-    const float J_base_1 = p->value[4];
-    const float t61 = a_1_ddot * J_base_1;
+    const float t61 = p->value[4];
+    const float t62 = a_1_ddot * t61;
     const float b_1_ddot = qdd[3];
-    const float t62 = a_1_ddot + b_1_ddot;
+    const float t63 = a_1_ddot + b_1_ddot;
     const float t12 = cosine[0];
-    const float t66 = p->value[6];
-    const float t67 = t12 * t66;
-    const float t68 = t62 * t67;
-    const float t69 = t61 + t68;
+    const float t68 = p->value[8];
+    const float t69 = t12 * t68;
+    const float t70 = t63 * t69;
+    const float t71 = t62 + t70;
     const float a_1_dot = qd[0];
     const float b_1_dot = qd[3];
-    const float t70 = a_1_dot + b_1_dot;
-    const float t71 = t70 * t70;
-    const float t72 = t11 * t66;
-    const float t73 = t71 * t72;
-    const float t74 = t69 - t73;
-    const float t75 = l_1 * t12;
-    const float t77 = a_1_dot * a_1_dot;
-    const float t78 = t77 * t72;
-    const float J_elbow_1 = p->value[9];
-    const float t83 = J_elbow_1 * t62;
-    const float t84 = a_1_ddot * t67;
-    const float t85 = t83 + t84;
-    const float t86 = t78 + t85;
-    const float t76 = p->value[7];
-    const float t87 = t76 * t86;
-    const float t88 = t75 * t87;
-    const float t89 = t74 - t88;
-    const float a_2_dot = qd[1];
-    const float t90 = a_2_dot * a_2_dot;
-    const float t92 = p->value[10];
-    const float t93 = t15 * t92;
-    const float t94 = t90 * t93;
-    const float a_2_ddot = qdd[1];
-    const float b_2_ddot = qdd[4];
-    const float t95 = a_2_ddot + b_2_ddot;
-    const float J_elbow = p->value[8];
-    const float t96 = J_elbow * t95;
-    const float t16 = cosine[2];
-    const float t97 = t16 * t92;
-    const float t98 = a_2_ddot * t97;
-    const float t99 = t96 + t98;
-    const float t100 = t94 + t99;
-    const float t101 = t76 * t100;
-    const float t102 = t13 * t101;
+    const float t72 = a_1_dot + b_1_dot;
+    const float t73 = t72 * t72;
+    const float t74 = t11 * t68;
+    const float t75 = t73 * t74;
+    const float t76 = t71 - t75;
+    const float t78 = a_1_dot * a_1_dot;
+    const float t79 = t78 * t74;
+    const float J_elbow_1 = p->value[11];
+    const float t84 = J_elbow_1 * t63;
+    const float t85 = a_1_ddot * t69;
+    const float t86 = t84 + t85;
+    const float t87 = t79 + t86;
+    const float t77 = p->value[9];
+    const float t88 = t77 * t87;
+    const float t89 = t12 * t88;
+    const float t90 = 1.0f / t21;
     const float a_3_ddot = qdd[2];
-    const float J_base = p->value[3];
-    const float t103 = a_3_ddot * J_base;
     const float b_3_ddot = qdd[5];
-    const float t104 = a_3_ddot + b_3_ddot;
-    const float t20 = cosine[4];
-    const float t105 = t20 * t92;
-    const float t106 = t104 * t105;
-    const float t107 = t103 + t106;
+    const float t91 = a_3_ddot + b_3_ddot;
+    const float J_elbow = p->value[10];
+    const float t92 = J_elbow * t91;
+    const float t93 = p->value[12];
+    const float t94 = a_3_ddot * t93;
+    const float t16 = cosine[2];
+    const float t95 = t16 * t91;
+    const float t96 = 0.5f * t95;
     const float a_3_dot = qd[2];
     const float b_3_dot = qd[5];
-    const float t108 = a_3_dot + b_3_dot;
-    const float t109 = t108 * t108;
-    const float t110 = t19 * t92;
-    const float t111 = t109 * t110;
-    const float t112 = t107 - t111;
-    const float t113 = t112 / l_1;
-    const float t114 = t17 * t113;
-    const float t115 = t102 + t114;
-    const float t116 = 1.0f / t21;
-    const float t117 = J_elbow * t104;
-    const float t118 = p->value[11];
-    const float t119 = a_3_ddot * t118;
-    const float t120 = t20 * t104;
-    const float t121 = 0.5f * t120;
-    const float t122 = t109 * t19;
-    const float t123 = 0.5f * t122;
-    const float t124 = t121 - t123;
+    const float t97 = a_3_dot + b_3_dot;
+    const float t98 = t97 * t97;
+    const float t99 = t98 * t15;
+    const float t100 = 0.5f * t99;
+    const float t101 = t96 - t100;
     const float l_2 = p->value[1];
-    const float t125 = l_2 * t124;
-    const float t126 = t119 - t125;
-    const float t127 = t20 * t126;
-    const float t128 = a_3_dot * a_3_dot;
-    const float t129 = t128 * t19;
-    const float t130 = t129 * t118;
-    const float t131 = t127 + t130;
+    const float t102 = l_2 * t101;
+    const float t103 = t94 - t102;
+    const float t104 = t16 * t103;
+    const float t105 = a_3_dot * a_3_dot;
+    const float t106 = t105 * t15;
+    const float t107 = t106 * t93;
+    const float t108 = t104 + t107;
     const float m_2 = p->value[2];
-    const float t132 = m_2 * t131;
-    const float t133 = l_2 * t132;
-    const float t134 = t117 + t133;
-    const float t135 = l_1 * t134;
-    const float t137 = a_3_ddot * t20;
-    const float t136 = p->value[12];
-    const float t138 = t136 * t137;
-    const float t139 = t135 - t138;
-    const float t63 = p->value[5];
-    const float t140 = t139 / t63;
-    const float t141 = t17 * t140;
-    const float t142 = t14 * t101;
-    const float t143 = t18 * t113;
-    const float t144 = t87 + t143;
-    const float t145 = t142 + t144;
-    const float t146 = t19 * t145;
-    const float t147 = t141 + t146;
-    const float t148 = t116 * t147;
-    const float t149 = t14 * t148;
-    const float t150 = t13 * t140;
-    const float t151 = t116 * t150;
-    const float t152 = t18 * t151;
-    const float t153 = t149 - t152;
-    const float t154 = t115 + t153;
-    const float t155 = t11 * t154;
-    const float t156 = l_1 * t155;
-    const float t157 = t89 + t156;
-    const float t158 = a_2_ddot * J_base;
-    const float t159 = t95 * t97;
-    const float t160 = t158 + t159;
+    const float t109 = m_2 * t108;
+    const float t110 = l_2 * t109;
+    const float t111 = t92 + t110;
+    const float t112 = l_1 * t111;
+    const float t113 = a_3_ddot * t16;
+    const float t114 = p->value[13];
+    const float t115 = t113 * t114;
+    const float t116 = t112 - t115;
+    const float t64 = p->value[5];
+    const float t117 = t116 / t64;
+    const float t118 = t17 * t117;
+    const float a_2_dot = qd[1];
+    const float t119 = a_2_dot * a_2_dot;
+    const float t66 = p->value[7];
+    const float t120 = t19 * t66;
+    const float t121 = t119 * t120;
+    const float a_2_ddot = qdd[1];
+    const float b_2_ddot = qdd[4];
+    const float t122 = a_2_ddot + b_2_ddot;
+    const float t123 = J_elbow * t122;
+    const float t20 = cosine[4];
+    const float t124 = t20 * t66;
+    const float t125 = a_2_ddot * t124;
+    const float t126 = t123 + t125;
+    const float t127 = t121 + t126;
+    const float t128 = t77 * t127;
+    const float t129 = t14 * t128;
+    const float t60 = p->value[3];
+    const float t130 = a_3_ddot * t60;
+    const float t65 = p->value[6];
+    const float t131 = t101 * t65;
+    const float t132 = t130 + t131;
+    const float t133 = t132 / l_1;
+    const float t134 = t18 * t133;
+    const float t135 = t88 + t134;
+    const float t136 = t129 + t135;
+    const float t137 = t15 * t136;
+    const float t138 = t118 + t137;
+    const float t139 = t90 * t138;
+    const float t140 = t14 * t139;
+    const float t141 = t17 * t133;
+    const float t142 = t90 * t117;
+    const float t143 = t18 * t142;
+    const float t144 = t128 - t143;
+    const float t145 = t13 * t144;
+    const float t146 = t141 + t145;
+    const float t147 = t140 + t146;
+    const float t148 = t11 * t147;
+    const float t149 = t89 - t148;
+    const float t150 = l_1 * t149;
+    const float t151 = t76 - t150;
+    const float t152 = a_2_ddot * t60;
+    const float t153 = t122 * t124;
+    const float t154 = t152 + t153;
     const float b_2_dot = qd[4];
-    const float t161 = a_2_dot + b_2_dot;
-    const float t162 = t161 * t161;
-    const float t163 = t162 * t93;
-    const float t164 = t160 - t163;
-    const float t165 = l_1 * t16;
-    const float t166 = t165 * t101;
-    const float t167 = t164 - t166;
-    const float t168 = t15 * t148;
-    const float t169 = l_1 * t168;
-    const float t170 = t167 - t169;
-    float rest = t157 - t157;
-    rest += t170 - t170;
-    if (isnan(rest) != 0) {
+    const float t155 = a_2_dot + b_2_dot;
+    const float t156 = t155 * t155;
+    const float t157 = t156 * t120;
+    const float t158 = t154 - t157;
+    const float t159 = t20 * t128;
+    const float t160 = t19 * t139;
+    const float t161 = t159 + t160;
+    const float t162 = l_1 * t161;
+    const float t163 = t158 - t162;
+    float rest = (t151 - t151) * t163;
+    if (RAPKM_TWO_DRIVES_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_TWO_DRIVES_NOT_FINITE;
     }
-    u[0] = t157;
-    u[1] = t170;
+    u[0] = t151;
+    u[1] = t163;
     return RAPKM_TWO_DRIVES_OK;
 }
 

@@ -24,8 +24,8 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     17      1      0      2      0
  * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     47      3      0      2      0
- * weighted_nullspace_projector         14     52      4      0      2      0
+ * weighted_pseudoinverse               17     46      3      0      2      0
+ * weighted_nullspace_projector         14     51      4      0      2      0
  * control_matrix                        0      0      0      0      1      0
  * projected_control_matrix              3     11      3      0      2      0
  * projected_control_pseudoinverse       1      3      1      0      2      0
@@ -47,8 +47,8 @@
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                         5     16      1      0      2      0
- * forward_dynamics                     35     90      1      0      2      0
- * multipliers                          38     88      1      0      2      0
+ * forward_dynamics                     35     85      1      0      2      0
+ * multipliers                          38     86      1      0      2      0
  * energy                                7     15      0      0      1      0
  * singularity                           9     20      4      1      2      0
  * (changes of sign are not counted)
@@ -223,6 +223,15 @@ rear_car_status rear_car_singularity_f(const float q[4], const rear_car_params_f
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define REAR_CAR_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define REAR_CAR_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define REAR_CAR_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define REAR_CAR_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -331,7 +340,7 @@ rear_car_params_f rear_car_default_params_f(void) {
 rear_car_status rear_car_mass_matrix_f(const float q[4], const rear_car_params_f *p, float G[16]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -349,12 +358,9 @@ rear_car_status rear_car_mass_matrix_f(const float q[4], const rear_car_params_f
     const float Theta_1 = p->Theta_1;
     const float t10 = Theta_1 + t9;
     const float Theta_2 = p->Theta_2;
-    float rest = t4 - t4;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    rest += t10 - t10;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t4 - t4) * t7 * t8;
+    rest += (t10 - t10) * Theta_2;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     G[0] = t4;
@@ -379,7 +385,7 @@ rear_car_status rear_car_mass_matrix_f(const float q[4], const rear_car_params_f
 rear_car_status rear_car_coriolis_matrix_f(const float q[4], const float qd[4], const rear_car_params_f *p, float C[16]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -394,9 +400,8 @@ rear_car_status rear_car_coriolis_matrix_f(const float q[4], const float qd[4], 
     const float t7 = -t6;
     const float t8 = t2 * t5;
     const float t9 = -t8;
-    float rest = t7 - t7;
-    rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    float rest = (t7 - t7) * t9;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     C[0] = 0.0f;
@@ -421,7 +426,7 @@ rear_car_status rear_car_coriolis_matrix_f(const float q[4], const float qd[4], 
 rear_car_status rear_car_coriolis_force_f(const float q[4], const float qd[4], const rear_car_params_f *p, float C_qd[4]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -438,9 +443,8 @@ rear_car_status rear_car_coriolis_force_f(const float q[4], const float qd[4], c
     const float t9 = theta_dot * t2;
     const float t10 = t5 * t9;
     const float t11 = -t10;
-    float rest = t8 - t8;
-    rest += t11 - t11;
-    if (isnan(rest) != 0) {
+    float rest = (t8 - t8) * t11;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     C_qd[0] = t8;
@@ -476,10 +480,10 @@ rear_car_status rear_car_constraint_jacobian_f(const float q[4], const rear_car_
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -501,12 +505,9 @@ rear_car_status rear_car_constraint_jacobian_f(const float q[4], const rear_car_
     const float L = p->L;
     const float t15 = L * t6;
     const float t16 = -t15;
-    float rest = t3 - t3;
-    rest += t7 - t7;
-    rest += t10 - t10;
-    rest += t14 - t14;
-    rest += t16 - t16;
-    if (isnan(rest) != 0) {
+    float rest = (t3 - t3) * t7 * t10;
+    rest += (t14 - t14) * t16;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     B[0] = t3;
@@ -525,10 +526,10 @@ rear_car_status rear_car_constraint_jacobian_dot_f(const float q[4], const float
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -555,12 +556,9 @@ rear_car_status rear_car_constraint_jacobian_dot_f(const float q[4], const float
     const float t18 = phi_dot * t5;
     const float L = p->L;
     const float t19 = L * t18;
-    float rest = t7 - t7;
-    rest += t8 - t8;
-    rest += t13 - t13;
-    rest += t17 - t17;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    float rest = (t7 - t7) * t8 * t13;
+    rest += (t17 - t17) * t19;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     B_dot[0] = t7;
@@ -579,10 +577,10 @@ rear_car_status rear_car_constraint_pseudoinverse_f(const float q[4], const rear
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -605,7 +603,7 @@ rear_car_status rear_car_constraint_pseudoinverse_f(const float q[4], const rear
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float t18 = 1.0f / t14;
@@ -631,13 +629,9 @@ rear_car_status rear_car_constraint_pseudoinverse_f(const float q[4], const rear
     const float t38 = t36 * t37;
     const float t39 = t4 * t36;
     const float t40 = -t39;
-    float rest = t25 - t25;
-    rest += t27 - t27;
-    rest += t34 - t34;
-    rest += t35 - t35;
-    rest += t38 - t38;
-    rest += t40 - t40;
-    if (isnan(rest) != 0) {
+    float rest = (t25 - t25) * t27 * t34;
+    rest += (t35 - t35) * t38 * t40;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     B_pinv[0] = t25;
@@ -656,10 +650,10 @@ rear_car_status rear_car_nullspace_projector_f(const float q[4], const rear_car_
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -682,7 +676,7 @@ rear_car_status rear_car_nullspace_projector_f(const float q[4], const rear_car_
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float t18 = 1.0f / t14;
@@ -695,13 +689,9 @@ rear_car_status rear_car_nullspace_projector_f(const float q[4], const rear_car_
     const float t25 = t9 * t5;
     const float t26 = t18 * t25;
     const float t27 = t7 * t18;
-    float rest = t19 - t19;
-    rest += t21 - t21;
-    rest += t23 - t23;
-    rest += t24 - t24;
-    rest += t26 - t26;
-    rest += t27 - t27;
-    if (isnan(rest) != 0) {
+    float rest = (t19 - t19) * t21 * t23;
+    rest += (t24 - t24) * t26 * t27;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     N_B[0] = t19;
@@ -728,10 +718,10 @@ rear_car_status rear_car_nullspace_projector_dot_f(const float q[4], const float
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -754,7 +744,7 @@ rear_car_status rear_car_nullspace_projector_dot_f(const float q[4], const float
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -826,13 +816,9 @@ rear_car_status rear_car_nullspace_projector_dot_f(const float q[4], const float
     const float t82 = t3 * t81;
     const float t83 = t20 * t82;
     const float t84 = 2.0f * t83;
-    float rest = t34 - t34;
-    rest += t52 - t52;
-    rest += t63 - t63;
-    rest += t70 - t70;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    float rest = (t34 - t34) * t52 * t63;
+    rest += (t70 - t70) * t80 * t84;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     N_B_dot[0] = t34;
@@ -859,10 +845,10 @@ rear_car_status rear_car_weighted_pseudoinverse_f(const float q[4], const rear_c
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -885,7 +871,7 @@ rear_car_status rear_car_weighted_pseudoinverse_f(const float q[4], const rear_c
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -913,67 +899,62 @@ rear_car_status rear_car_weighted_pseudoinverse_f(const float q[4], const rear_c
     const float t36 = fabsf(m_1);
     const float t37 = t36 + t28;
     const float t38 = t37 * t33;
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (REAR_CAR_RARELY_F(!(t26 > t42))) {
         return REAR_CAR_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * Theta_2;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t45 * t51;
-    const float t53 = t8 * t52;
-    const float t54 = t6 * t4;
-    const float t55 = t5 * t3;
-    const float t56 = t54 - t55;
-    const float t57 = m_2 * t19;
-    const float t58 = Theta_1 + t57;
-    const float t59 = Theta_2 * t58;
-    const float t60 = t3 * t59;
-    const float t61 = t56 * t60;
-    const float t62 = t53 - t61;
-    const float t63 = t44 * t62;
-    const float t64 = t59 / t25;
-    const float t65 = t48 * t64;
-    const float t66 = m_1 * t54;
-    const float t67 = m_2 * t56;
-    const float t68 = t66 + t67;
-    const float t69 = t45 * t68;
-    const float t70 = t8 * t69;
-    const float t71 = t49 * t60;
-    const float t72 = t70 + t71;
-    const float t73 = t44 * t72;
-    const float t74 = -t73;
-    const float t75 = t55 * t64;
-    const float t76 = t45 / t25;
-    const float t77 = t22 * t76;
-    const float t78 = m_1 + m_2;
-    const float t79 = t4 * t78;
-    const float t80 = t79 * t76;
-    const float t81 = -t80;
-    float rest = t63 - t63;
-    rest += t65 - t65;
-    rest += t74 - t74;
-    rest += t75 - t75;
-    rest += t77 - t77;
-    rest += t81 - t81;
-    if (isnan(rest) != 0) {
+    const float t43 = 1.0f / t25;
+    const float t44 = L * Theta_2;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t44 * t50;
+    const float t52 = t8 * t51;
+    const float t53 = t6 * t4;
+    const float t54 = t5 * t3;
+    const float t55 = t53 - t54;
+    const float t56 = m_2 * t19;
+    const float t57 = Theta_1 + t56;
+    const float t58 = Theta_2 * t57;
+    const float t59 = t3 * t58;
+    const float t60 = t55 * t59;
+    const float t61 = t52 - t60;
+    const float t62 = t43 * t61;
+    const float t63 = t58 / t25;
+    const float t64 = t47 * t63;
+    const float t65 = m_1 * t53;
+    const float t66 = m_2 * t55;
+    const float t67 = t65 + t66;
+    const float t68 = t44 * t67;
+    const float t69 = t8 * t68;
+    const float t70 = t48 * t59;
+    const float t71 = t69 + t70;
+    const float t72 = t43 * t71;
+    const float t73 = -t72;
+    const float t74 = t54 * t63;
+    const float t75 = t44 / t25;
+    const float t76 = t22 * t75;
+    const float t77 = m_1 + m_2;
+    const float t78 = t4 * t77;
+    const float t79 = t78 * t75;
+    const float t80 = -t79;
+    float rest = (t62 - t62) * t64 * t73;
+    rest += (t74 - t74) * t76 * t80;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    B_G_pinv[0] = t63;
-    B_G_pinv[1] = t65;
-    B_G_pinv[2] = t74;
-    B_G_pinv[3] = t75;
-    B_G_pinv[4] = t77;
-    B_G_pinv[5] = t81;
+    B_G_pinv[0] = t62;
+    B_G_pinv[1] = t64;
+    B_G_pinv[2] = t73;
+    B_G_pinv[3] = t74;
+    B_G_pinv[4] = t76;
+    B_G_pinv[5] = t80;
     B_G_pinv[6] = 0.0f;
     B_G_pinv[7] = 0.0f;
     return REAR_CAR_OK;
@@ -984,10 +965,10 @@ rear_car_status rear_car_weighted_nullspace_projector_f(const float q[4], const 
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1010,7 +991,7 @@ rear_car_status rear_car_weighted_nullspace_projector_f(const float q[4], const 
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -1038,76 +1019,69 @@ rear_car_status rear_car_weighted_nullspace_projector_f(const float q[4], const 
     const float t36 = fabsf(m_1);
     const float t37 = t36 + t28;
     const float t38 = t37 * t33;
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (REAR_CAR_RARELY_F(!(t26 > t42))) {
         return REAR_CAR_MASS_RANK;
     }
-    const float t44 = Theta_2 * t19;
-    const float t45 = t44 / t25;
-    const float t46 = t6 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t5 * t3;
-    const float t49 = t46 - t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t46 * t51;
-    const float t53 = t45 * t52;
-    const float t54 = t5 * t4;
-    const float t55 = m_1 * t54;
-    const float t56 = t6 * t3;
-    const float t57 = t54 + t56;
-    const float t58 = m_2 * t57;
-    const float t59 = t55 + t58;
-    const float t60 = t46 * t59;
-    const float t61 = t45 * t60;
-    const float t62 = t3 * t46;
-    const float t63 = m_2 * t19;
-    const float t64 = Theta_1 + t63;
-    const float t65 = L * Theta_2;
-    const float t66 = t64 * t65;
-    const float t67 = t66 / t25;
-    const float t68 = t62 * t67;
-    const float t69 = t54 * t51;
-    const float t70 = t45 * t69;
-    const float t71 = t54 * t59;
-    const float t72 = t45 * t71;
-    const float t73 = t3 * t54;
-    const float t74 = t73 * t67;
-    const float t75 = t65 / t25;
-    const float t76 = t3 * t51;
-    const float t77 = t75 * t76;
-    const float t78 = t3 * t59;
-    const float t79 = t75 * t78;
-    const float t80 = Theta_2 * t64;
-    const float t81 = t80 / t25;
-    const float t82 = t7 * t81;
-    float rest = t53 - t53;
-    rest += t61 - t61;
-    rest += t68 - t68;
-    rest += t70 - t70;
-    rest += t72 - t72;
-    rest += t74 - t74;
-    rest += t77 - t77;
-    rest += t79 - t79;
-    rest += t82 - t82;
-    if (isnan(rest) != 0) {
+    const float t43 = Theta_2 * t19;
+    const float t44 = t43 / t25;
+    const float t45 = t6 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t5 * t3;
+    const float t48 = t45 - t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t45 * t50;
+    const float t52 = t44 * t51;
+    const float t53 = t5 * t4;
+    const float t54 = m_1 * t53;
+    const float t55 = t6 * t3;
+    const float t56 = t53 + t55;
+    const float t57 = m_2 * t56;
+    const float t58 = t54 + t57;
+    const float t59 = t45 * t58;
+    const float t60 = t44 * t59;
+    const float t61 = t3 * t45;
+    const float t62 = m_2 * t19;
+    const float t63 = Theta_1 + t62;
+    const float t64 = L * Theta_2;
+    const float t65 = t63 * t64;
+    const float t66 = t65 / t25;
+    const float t67 = t61 * t66;
+    const float t68 = t53 * t50;
+    const float t69 = t44 * t68;
+    const float t70 = t53 * t58;
+    const float t71 = t44 * t70;
+    const float t72 = t3 * t53;
+    const float t73 = t72 * t66;
+    const float t74 = t64 / t25;
+    const float t75 = t3 * t50;
+    const float t76 = t74 * t75;
+    const float t77 = t3 * t58;
+    const float t78 = t74 * t77;
+    const float t79 = Theta_2 * t63;
+    const float t80 = t79 / t25;
+    const float t81 = t7 * t80;
+    float rest = (t52 - t52) * t60 * t67;
+    rest += (t69 - t69) * t71 * t73;
+    rest += (t76 - t76) * t78 * t81;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    N_BG[0] = t53;
-    N_BG[1] = t61;
-    N_BG[2] = t68;
+    N_BG[0] = t52;
+    N_BG[1] = t60;
+    N_BG[2] = t67;
     N_BG[3] = 0.0f;
-    N_BG[4] = t70;
-    N_BG[5] = t72;
-    N_BG[6] = t74;
+    N_BG[4] = t69;
+    N_BG[5] = t71;
+    N_BG[6] = t73;
     N_BG[7] = 0.0f;
-    N_BG[8] = t77;
-    N_BG[9] = t79;
-    N_BG[10] = t82;
+    N_BG[8] = t76;
+    N_BG[9] = t78;
+    N_BG[10] = t81;
     N_BG[11] = 0.0f;
     N_BG[12] = 0.0f;
     N_BG[13] = 0.0f;
@@ -1120,15 +1094,14 @@ rear_car_status rear_car_control_matrix_f(const float q[4], const rear_car_param
     (void)p;
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     float t2;
     float t3;
     rear_car_sincos_f(theta, &t2, &t3);
-    float rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    float rest = (t3 - t3) * t2;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     M[0] = t3;
@@ -1147,10 +1120,10 @@ rear_car_status rear_car_projected_control_matrix_f(const float q[4], const rear
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1173,7 +1146,7 @@ rear_car_status rear_car_projected_control_matrix_f(const float q[4], const rear
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float t18 = t8 * t12;
@@ -1182,10 +1155,8 @@ rear_car_status rear_car_projected_control_matrix_f(const float q[4], const rear
     const float t21 = t20 / t14;
     const float t22 = t8 * t3;
     const float t23 = t22 / t14;
-    float rest = t19 - t19;
-    rest += t21 - t21;
-    rest += t23 - t23;
-    if (isnan(rest) != 0) {
+    float rest = (t19 - t19) * t21 * t23;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     M_tilde[0] = t19;
@@ -1204,10 +1175,10 @@ rear_car_status rear_car_projected_control_pseudoinverse_f(const float q[4], con
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1223,7 +1194,7 @@ rear_car_status rear_car_projected_control_pseudoinverse_f(const float q[4], con
     const float t5 = sine[1];
     const float t3 = sine[0];
     const float t4 = cosine[0];
-    if (!(t8 > t10)) {
+    if (REAR_CAR_RARELY_F(!(t8 > t10))) {
         const float t11 = t5 * t5;
         const float t12 = t3 * t7;
         const float t13 = t12 * t12;
@@ -1237,10 +1208,8 @@ rear_car_status rear_car_projected_control_pseudoinverse_f(const float q[4], con
         return REAR_CAR_ACTUATION_RANK;
     }
     const float t18 = t5 / t7;
-    float rest = t4 - t4;
-    rest += t3 - t3;
-    rest += t18 - t18;
-    if (isnan(rest) != 0) {
+    float rest = (t4 - t4) * t3 * t18;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     M_tilde_pinv[0] = t4;
@@ -1259,10 +1228,10 @@ rear_car_status rear_car_orthogonal_complement_f(const float q[4], const rear_ca
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1280,7 +1249,7 @@ rear_car_status rear_car_orthogonal_complement_f(const float q[4], const rear_ca
     const float t12 = t11 * 3.637979e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (REAR_CAR_RARELY_F(!(t9 > t12))) {
         const float t13 = t5 * t5;
         const float t14 = t3 * t7;
         const float t15 = t14 * t14;
@@ -1293,9 +1262,8 @@ rear_car_status rear_car_orthogonal_complement_f(const float q[4], const rear_ca
     }
     const float t18 = t3 / t4;
     const float t19 = t5 / t8;
-    float rest = t18 - t18;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    float rest = (t18 - t18) * t19;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0f;
@@ -1314,10 +1282,10 @@ rear_car_status rear_car_projected_mass_matrix_f(const float q[4], const rear_ca
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1340,7 +1308,7 @@ rear_car_status rear_car_projected_mass_matrix_f(const float q[4], const rear_ca
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -1392,14 +1360,10 @@ rear_car_status rear_car_projected_mass_matrix_f(const float q[4], const rear_ca
     const float t61 = t52 + t60;
     const float t62 = t61 / t19;
     const float Theta_2 = p->Theta_2;
-    float rest = t31 - t31;
-    rest += t36 - t36;
-    rest += t41 - t41;
-    rest += t46 - t46;
-    rest += t50 - t50;
-    rest += t62 - t62;
+    float rest = (t31 - t31) * t36 * t41;
+    rest += (t46 - t46) * t50 * t62;
     rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     G_tilde[0] = t31;
@@ -1426,10 +1390,10 @@ rear_car_status rear_car_projected_coriolis_matrix_f(const float q[4], const flo
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1452,7 +1416,7 @@ rear_car_status rear_car_projected_coriolis_matrix_f(const float q[4], const flo
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
@@ -1722,16 +1686,10 @@ rear_car_status rear_car_projected_coriolis_matrix_f(const float q[4], const flo
     const float t275 = t274 * t140;
     const float t276 = t4 * t275;
     const float t277 = t22 * t276;
-    float rest = t85 - t85;
-    rest += t131 - t131;
-    rest += t144 - t144;
-    rest += t179 - t179;
-    rest += t181 - t181;
-    rest += t184 - t184;
-    rest += t231 - t231;
-    rest += t272 - t272;
-    rest += t277 - t277;
-    if (isnan(rest) != 0) {
+    float rest = (t85 - t85) * t131 * t144;
+    rest += (t179 - t179) * t181 * t184;
+    rest += (t231 - t231) * t272 * t277;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     C_tilde[0] = t85;
@@ -1779,10 +1737,10 @@ rear_car_status rear_car_minimal_mass_matrix_f(const float q[4], const rear_car_
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1800,7 +1758,7 @@ rear_car_status rear_car_minimal_mass_matrix_f(const float q[4], const rear_car_
     const float t12 = t11 * 3.637979e-12f;
     const float t3 = sine[0];
     const float t5 = sine[1];
-    if (!(t9 > t12)) {
+    if (REAR_CAR_RARELY_F(!(t9 > t12))) {
         const float t13 = t3 * t3;
         const float t14 = t5 * t7;
         const float t15 = t14 * t14;
@@ -1824,9 +1782,8 @@ rear_car_status rear_car_minimal_mass_matrix_f(const float q[4], const rear_car_
     const float t25 = t22 + t24;
     const float t26 = t25 / t9;
     const float Theta_2 = p->Theta_2;
-    float rest = t26 - t26;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t26 - t26) * Theta_2;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     G_bar[0] = t26;
@@ -1841,10 +1798,10 @@ rear_car_status rear_car_minimal_coriolis_matrix_f(const float q[4], const float
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -1867,10 +1824,10 @@ rear_car_status rear_car_minimal_coriolis_matrix_f(const float q[4], const float
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    if (!(t13 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t13 > t17))) {
         if (!(t14 > t17)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
@@ -1921,7 +1878,7 @@ rear_car_status rear_car_minimal_coriolis_matrix_f(const float q[4], const float
     const float t55 = t14 * t54;
     const float t56 = t48 / t55;
     float rest = t56 - t56;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     C_bar[0] = t56;
@@ -1953,10 +1910,10 @@ rear_car_status rear_car_minimal_control_matrix_f(const float q[4], const rear_c
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -1974,7 +1931,7 @@ rear_car_status rear_car_minimal_control_matrix_f(const float q[4], const rear_c
     const float t12 = t11 * 3.637979e-12f;
     const float t5 = sine[1];
     const float t3 = sine[0];
-    if (!(t9 > t12)) {
+    if (REAR_CAR_RARELY_F(!(t9 > t12))) {
         const float t13 = t5 * t5;
         const float t14 = t3 * t7;
         const float t15 = t14 * t14;
@@ -1987,7 +1944,7 @@ rear_car_status rear_car_minimal_control_matrix_f(const float q[4], const rear_c
     }
     const float t18 = 1.0f / t4;
     float rest = t18 - t18;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     M_bar[0] = t18;
@@ -2002,10 +1959,10 @@ rear_car_status rear_car_admissible_velocity_f(const float q[4], const float qd[
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2028,7 +1985,7 @@ rear_car_status rear_car_admissible_velocity_f(const float q[4], const float qd[
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L / t14;
@@ -2051,11 +2008,9 @@ rear_car_status rear_car_admissible_velocity_f(const float q[4], const float qd[
     const float t32 = t3 * t25;
     const float t33 = t32 / t14;
     const float phi_dot = qd[3];
-    float rest = t28 - t28;
-    rest += t31 - t31;
-    rest += t33 - t33;
+    float rest = (t28 - t28) * t31 * t33;
     rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     qd_admissible[0] = t28;
@@ -2070,10 +2025,10 @@ rear_car_status rear_car_admissible_acceleration_f(const float q[4], const float
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2096,7 +2051,7 @@ rear_car_status rear_car_admissible_acceleration_f(const float q[4], const float
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float y_ddot = qdd[1];
@@ -2190,11 +2145,9 @@ rear_car_status rear_car_admissible_acceleration_f(const float q[4], const float
     const float t99 = t95 + t98;
     const float t100 = t99 / t56;
     const float phi_ddot = qdd[3];
-    float rest = t59 - t59;
-    rest += t88 - t88;
-    rest += t100 - t100;
+    float rest = (t59 - t59) * t88 * t100;
     rest += phi_ddot - phi_ddot;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     qdd_admissible[0] = t59;
@@ -2210,11 +2163,9 @@ rear_car_status rear_car_projected_configuration_f(const float q[4], const rear_
     const float y = q[1];
     const float theta = q[2];
     const float phi = q[3];
-    float rest = x - x;
-    rest += y - y;
-    rest += theta - theta;
+    float rest = (x - x) * y * theta;
     rest += phi - phi;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     q_projected[0] = x;
@@ -2229,10 +2180,10 @@ rear_car_status rear_car_inverse_dynamics_f(const float q[4], const float qd[4],
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -2245,7 +2196,7 @@ rear_car_status rear_car_inverse_dynamics_f(const float q[4], const float qd[4],
     const float t8 = fabsf(t7);
     const float t9 = L * 1.9073486e-06f;
     const float t5 = sine[1];
-    if (!(t8 > t9)) {
+    if (REAR_CAR_RARELY_F(!(t8 > t9))) {
         const float t10 = t5 * t5;
         const float t11 = t7 * t7;
         const float t12 = t10 + t11;
@@ -2289,9 +2240,8 @@ rear_car_status rear_car_inverse_dynamics_f(const float q[4], const float qd[4],
     const float phi_ddot = qdd[3];
     const float Theta_2 = p->Theta_2;
     const float t36 = phi_ddot * Theta_2;
-    float rest = t35 - t35;
-    rest += t36 - t36;
-    if (isnan(rest) != 0) {
+    float rest = (t35 - t35) * t36;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     u[0] = t35;
@@ -2315,7 +2265,7 @@ rear_car_status rear_car_actuator_velocity_f(const float q[4], const float qd[4]
     (void)p;
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -2327,9 +2277,8 @@ rear_car_status rear_car_actuator_velocity_f(const float q[4], const float qd[4]
     const float t5 = y_dot * t2;
     const float t6 = t4 + t5;
     const float phi_dot = qd[3];
-    float rest = t6 - t6;
-    rest += phi_dot - phi_dot;
-    if (isnan(rest) != 0) {
+    float rest = (t6 - t6) * phi_dot;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     nu[0] = t6;
@@ -2340,7 +2289,7 @@ rear_car_status rear_car_actuator_velocity_f(const float q[4], const float qd[4]
 rear_car_status rear_car_actuator_mass_matrix_f(const float q[4], const rear_car_params_f *p, float G_nu[4]) {
     const float phi = q[3];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -2352,7 +2301,7 @@ rear_car_status rear_car_actuator_mass_matrix_f(const float q[4], const rear_car
     const float t6 = 1.0f + t5;
     const float t7 = t6 * 3.637979e-12f;
     const float theta = q[2];
-    if (!(t5 > t7)) {
+    if (REAR_CAR_RARELY_F(!(t5 > t7))) {
         const float t8 = t2 * t2;
         float t9;
         float t10;
@@ -2384,9 +2333,8 @@ rear_car_status rear_car_actuator_mass_matrix_f(const float q[4], const rear_car
     const float t24 = t19 * t23;
     const float t25 = t18 + t24;
     const float Theta_2 = p->Theta_2;
-    float rest = t25 - t25;
-    rest += Theta_2 - Theta_2;
-    if (isnan(rest) != 0) {
+    float rest = (t25 - t25) * Theta_2;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     G_nu[0] = t25;
@@ -2401,10 +2349,10 @@ rear_car_status rear_car_actuator_bias_f(const float q[4], const float qd[4], co
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2427,10 +2375,10 @@ rear_car_status rear_car_actuator_bias_f(const float q[4], const float qd[4], co
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    if (!(t15 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t15 > t17))) {
         if (!(t14 > t17)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
@@ -2453,7 +2401,7 @@ rear_car_status rear_car_actuator_bias_f(const float q[4], const float qd[4], co
     const float t27 = t25 * t26;
     const float t28 = t22 * t27;
     float rest = t28 - t28;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     bias_nu[0] = t28;
@@ -2462,196 +2410,14 @@ rear_car_status rear_car_actuator_bias_f(const float q[4], const float qd[4], co
 }
 
 rear_car_status rear_car_forward_dynamics_f(const float q[4], const float qd[4], const float u[2], const rear_car_params_f *p, float qdd[4]) {
-    const float theta = q[2];
-    const float t1 = fabsf(theta);
-    const float phi = q[3];
-    const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    if (!(100.0f >= t2)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    const float angle[4] = {theta, phi, phi, phi};
-    float sine[4];
-    float cosine[4];
-    rear_car_sincos_group_f(2, angle, sine, cosine);
-    const float t5 = sine[1];
-    const float t7 = t5 * t5;
-    const float L = p->L;
-    const float t6 = cosine[1];
-    const float t8 = L * t6;
-    const float t3 = sine[0];
-    const float t9 = t3 * t8;
-    const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
-    const float t4 = cosine[0];
-    const float t12 = t4 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
-        return REAR_CAR_CONSTRAINT_RANK;
-    }
-    const float Theta_1 = p->Theta_1;
-    const float t18 = Theta_1 * t7;
-    const float t19 = L * L;
-    const float t20 = t6 * t6;
-    const float m_1 = p->m_1;
-    const float t21 = m_1 * t20;
-    const float m_2 = p->m_2;
-    const float t22 = m_2 + t21;
-    const float t23 = t19 * t22;
-    const float t24 = t18 + t23;
-    const float Theta_2 = p->Theta_2;
-    const float t25 = Theta_2 * t24;
-    const float t26 = fabsf(t25);
-    const float t27 = fabsf(Theta_1);
-    const float t28 = fabsf(m_2);
-    const float t29 = fabsf(L);
-    const float t30 = t29 * t29;
-    const float t31 = t28 * t30;
-    const float t32 = t27 + t31;
-    const float t33 = fabsf(Theta_2);
-    const float t34 = t32 * t33;
-    const float t35 = t7 * t34;
-    const float t36 = fabsf(m_1);
-    const float t37 = t36 + t28;
-    const float t38 = t37 * t33;
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
-        return REAR_CAR_MASS_RANK;
-    }
-    const float t44 = L * m_2;
-    const float theta_dot = qd[2];
-    const float t45 = theta_dot * t44;
-    const float t46 = theta_dot * t4;
-    const float t47 = t45 * t46;
-    const float K_r = u[0];
-    const float t48 = K_r * t4;
-    const float t49 = t47 + t48;
-    const float t50 = t12 * t49;
-    const float t51 = theta_dot * t3;
-    const float t52 = t45 * t51;
-    const float t53 = K_r * t3;
-    const float t54 = t52 + t53;
-    const float t55 = t9 * t54;
-    const float t56 = t50 + t55;
-    const float t57 = Theta_2 * t56;
-    const float t58 = t12 * t57;
-    const float t59 = 1.0f / t25;
-    const float t60 = t58 * t59;
-    const float y_dot = qd[1];
-    const float t61 = y_dot * t51;
-    const float x_dot = qd[0];
-    const float t62 = x_dot * t46;
-    const float t63 = t61 + t62;
-    const float t64 = t8 * t63;
-    const float t65 = L * Theta_2;
-    const float t66 = t3 * t6;
-    const float t67 = m_1 * t66;
-    const float t68 = t4 * t5;
-    const float t69 = t66 + t68;
-    const float t70 = m_2 * t69;
-    const float t71 = t67 + t70;
-    const float t72 = t65 * t71;
-    const float t73 = t64 * t72;
-    const float phi_dot = qd[3];
-    const float t74 = phi_dot * t5;
-    const float t75 = L * t74;
-    const float t76 = theta_dot * t75;
-    const float t77 = theta_dot + phi_dot;
-    const float t78 = t4 * t6;
-    const float t79 = t3 * t5;
-    const float t80 = t78 - t79;
-    const float t81 = t77 * t80;
-    const float t82 = x_dot * t81;
-    const float t83 = t77 * t69;
-    const float t84 = y_dot * t83;
-    const float t85 = t82 + t84;
-    const float t86 = t76 + t85;
-    const float t87 = t4 * t86;
-    const float t88 = t63 * t80;
-    const float t89 = t87 - t88;
-    const float t90 = L * t44;
-    const float t91 = Theta_1 + t90;
-    const float t92 = t5 * t91;
-    const float t93 = Theta_2 * t92;
-    const float t94 = t89 * t93;
-    const float t95 = t73 + t94;
-    const float t96 = t59 * t95;
-    const float t97 = t60 - t96;
-    const float t98 = t9 * t57;
-    const float t99 = t98 * t59;
-    const float t100 = t3 * t86;
-    const float t101 = t63 * t69;
-    const float t102 = t100 - t101;
-    const float t103 = t102 * t93;
-    const float t104 = m_1 * t78;
-    const float t105 = m_2 * t80;
-    const float t106 = t104 + t105;
-    const float t107 = t65 * t106;
-    const float t108 = t64 * t107;
-    const float t109 = t103 - t108;
-    const float t110 = t59 * t109;
-    const float t111 = t99 - t110;
-    const float t112 = t5 * t57;
-    const float t113 = t112 * t59;
-    const float t114 = t88 - t87;
-    const float t115 = t107 * t114;
-    const float t116 = t72 * t102;
-    const float t117 = t115 - t116;
-    const float t118 = t117 * t59;
-    const float t119 = t113 - t118;
-    const float t120 = m_1 + m_2;
-    const float T = u[1];
-    const float t121 = T * t12;
-    const float t122 = t120 * t121;
-    const float t123 = t3 * t44;
-    const float t124 = T * t5;
-    const float t125 = t123 * t124;
-    const float t126 = t122 - t125;
-    const float t127 = t12 * t126;
-    const float t128 = T * t9;
-    const float t129 = t120 * t128;
-    const float t130 = t4 * t44;
-    const float t131 = t130 * t124;
-    const float t132 = t129 + t131;
-    const float t133 = t9 * t132;
-    const float t134 = t127 + t133;
-    const float t135 = t124 * t91;
-    const float t136 = t5 * t135;
-    const float t137 = t134 + t136;
-    const float t138 = t59 * t137;
-    float rest = t97 - t97;
-    rest += t111 - t111;
-    rest += t119 - t119;
-    rest += t138 - t138;
-    if (isnan(rest) != 0) {
-        return REAR_CAR_NOT_FINITE;
-    }
-    qdd[0] = t97;
-    qdd[1] = t111;
-    qdd[2] = t119;
-    qdd[3] = t138;
-    return REAR_CAR_OK;
-}
-
-rear_car_status rear_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const rear_car_params_f *p, float lambda_B[2]) {
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2674,7 +2440,7 @@ rear_car_status rear_car_multipliers_f(const float q[4], const float qd[4], cons
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->Theta_1;
@@ -2702,129 +2468,301 @@ rear_car_status rear_car_multipliers_f(const float q[4], const float qd[4], cons
     const float t36 = fabsf(m_1);
     const float t37 = t36 + t28;
     const float t38 = t37 * t33;
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (REAR_CAR_RARELY_F(!(t26 > t42))) {
         return REAR_CAR_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t45 = L * Theta_2;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t52 = t45 * t51;
-    const float t53 = L * m_2;
+    const float t43 = 1.0f / t25;
+    const float t44 = L * m_2;
     const float theta_dot = qd[2];
-    const float t54 = theta_dot * t53;
-    const float t55 = theta_dot * t6;
-    const float t56 = t54 * t55;
+    const float t45 = theta_dot * t44;
+    const float t46 = theta_dot * t6;
+    const float t47 = t45 * t46;
     const float K_r = u[0];
-    const float t57 = K_r * t6;
-    const float t58 = t56 + t57;
-    const float t59 = m_1 + m_2;
-    const float t60 = theta_dot * t5;
+    const float t48 = K_r * t6;
+    const float t49 = t47 + t48;
+    const float t50 = t12 * t49;
+    const float t51 = theta_dot * t5;
+    const float t52 = t45 * t51;
+    const float t53 = K_r * t5;
+    const float t54 = t52 + t53;
+    const float t55 = t9 * t54;
+    const float t56 = t50 + t55;
+    const float t57 = Theta_2 * t56;
+    const float t58 = t12 * t57;
     const float y_dot = qd[1];
-    const float t61 = y_dot * t60;
+    const float t59 = y_dot * t51;
     const float x_dot = qd[0];
-    const float t62 = x_dot * t55;
-    const float t63 = t61 + t62;
-    const float t64 = t8 * t63;
-    const float t65 = t64 * t52;
+    const float t60 = x_dot * t46;
+    const float t61 = t59 + t60;
+    const float t62 = t8 * t61;
+    const float t63 = L * Theta_2;
+    const float t64 = t5 * t4;
+    const float t65 = m_1 * t64;
+    const float t66 = t6 * t3;
+    const float t67 = t64 + t66;
+    const float t68 = m_2 * t67;
+    const float t69 = t65 + t68;
+    const float t70 = t63 * t69;
+    const float t71 = t62 * t70;
+    const float t72 = L * t44;
+    const float t73 = Theta_1 + t72;
+    const float t74 = t3 * t73;
+    const float t75 = Theta_2 * t74;
     const float phi_dot = qd[3];
-    const float t66 = phi_dot * t3;
-    const float t67 = L * t66;
-    const float t68 = theta_dot * t67;
-    const float t69 = theta_dot + phi_dot;
-    const float t70 = t6 * t4;
-    const float t71 = t5 * t3;
-    const float t72 = t70 - t71;
-    const float t73 = t69 * t72;
-    const float t74 = x_dot * t73;
-    const float t75 = t69 * t49;
-    const float t76 = y_dot * t75;
-    const float t77 = t74 + t76;
-    const float t78 = t68 + t77;
-    const float t79 = t6 * t78;
-    const float t80 = t63 * t72;
-    const float t81 = t79 - t80;
-    const float t82 = L * t53;
-    const float t83 = Theta_1 + t82;
-    const float t84 = t3 * t83;
-    const float t85 = Theta_2 * t84;
-    const float t86 = t81 * t85;
-    const float t87 = t65 + t86;
-    const float t88 = t44 * t87;
-    const float t89 = t59 * t88;
-    const float t90 = t5 * t53;
-    const float t91 = m_1 * t70;
-    const float t92 = m_2 * t72;
-    const float t93 = t91 + t92;
-    const float t94 = t45 * t93;
-    const float t95 = t80 - t79;
-    const float t96 = t94 * t95;
-    const float t97 = t5 * t78;
-    const float t98 = t63 * t49;
-    const float t99 = t97 - t98;
-    const float t100 = t52 * t99;
-    const float t101 = t96 - t100;
-    const float t102 = t101 * t44;
-    const float t103 = t90 * t102;
-    const float t104 = t89 - t103;
-    const float t105 = t58 + t104;
-    const float t106 = t52 * t105;
-    const float t107 = t54 * t60;
-    const float t108 = K_r * t5;
-    const float t109 = t107 + t108;
-    const float t110 = t99 * t85;
-    const float t111 = t64 * t94;
+    const float t76 = phi_dot * t3;
+    const float t77 = L * t76;
+    const float t78 = theta_dot * t77;
+    const float t79 = theta_dot + phi_dot;
+    const float t80 = t6 * t4;
+    const float t81 = t5 * t3;
+    const float t82 = t80 - t81;
+    const float t83 = x_dot * t82;
+    const float t84 = y_dot * t67;
+    const float t85 = t83 + t84;
+    const float t86 = t79 * t85;
+    const float t87 = t78 + t86;
+    const float t88 = t6 * t87;
+    const float t89 = t61 * t82;
+    const float t90 = t88 - t89;
+    const float t91 = t75 * t90;
+    const float t92 = t71 + t91;
+    const float t93 = t58 - t92;
+    const float t94 = t43 * t93;
+    const float t95 = t9 * t57;
+    const float t96 = t5 * t87;
+    const float t97 = t61 * t67;
+    const float t98 = t96 - t97;
+    const float t99 = t75 * t98;
+    const float t100 = m_1 * t80;
+    const float t101 = m_2 * t82;
+    const float t102 = t100 + t101;
+    const float t103 = t63 * t102;
+    const float t104 = t62 * t103;
+    const float t105 = t99 - t104;
+    const float t106 = t95 - t105;
+    const float t107 = t43 * t106;
+    const float t108 = t3 * t57;
+    const float t109 = t89 - t88;
+    const float t110 = t103 * t109;
+    const float t111 = t70 * t98;
     const float t112 = t110 - t111;
-    const float t113 = t44 * t112;
-    const float t114 = t59 * t113;
-    const float t115 = t6 * t53;
-    const float t116 = t115 * t102;
-    const float t117 = t114 + t116;
-    const float t118 = t109 + t117;
-    const float t119 = t94 * t118;
-    const float t120 = t106 - t119;
-    const float t121 = t8 * t120;
-    const float t122 = t85 * t105;
-    const float t123 = t83 * t102;
-    const float t124 = t53 * t63;
-    const float t125 = t123 - t124;
-    const float t126 = t94 * t125;
-    const float t127 = t122 - t126;
-    const float t128 = t72 * t127;
-    const float t129 = t121 - t128;
-    const float t130 = t85 * t118;
-    const float t131 = t52 * t125;
-    const float t132 = t130 - t131;
-    const float t133 = t49 * t132;
-    const float t134 = t129 - t133;
-    const float t135 = t44 * t134;
-    const float t136 = t6 * t127;
-    const float t137 = t5 * t132;
-    const float t138 = t136 + t137;
-    const float t139 = t44 * t138;
-    float rest = t135 - t135;
-    rest += t139 - t139;
-    if (isnan(rest) != 0) {
+    const float t113 = t108 - t112;
+    const float t114 = t43 * t113;
+    const float t115 = m_1 + m_2;
+    const float T = u[1];
+    const float t116 = T * t12;
+    const float t117 = t115 * t116;
+    const float t118 = t5 * t44;
+    const float t119 = T * t3;
+    const float t120 = t118 * t119;
+    const float t121 = t117 - t120;
+    const float t122 = t12 * t121;
+    const float t123 = T * t9;
+    const float t124 = t115 * t123;
+    const float t125 = t6 * t44;
+    const float t126 = t125 * t119;
+    const float t127 = t124 + t126;
+    const float t128 = t9 * t127;
+    const float t129 = t122 + t128;
+    const float t130 = t119 * t73;
+    const float t131 = t3 * t130;
+    const float t132 = t129 + t131;
+    const float t133 = t43 * t132;
+    float rest = (t94 - t94) * t107 * t114;
+    rest += t133 - t133;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t135;
-    lambda_B[1] = t139;
+    qdd[0] = t94;
+    qdd[1] = t107;
+    qdd[2] = t114;
+    qdd[3] = t133;
+    return REAR_CAR_OK;
+}
+
+rear_car_status rear_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const rear_car_params_f *p, float lambda_B[2]) {
+    const float phi = q[3];
+    const float t1 = fabsf(phi);
+    const float theta = q[2];
+    const float t2 = fabsf(theta);
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    const float angle[4] = {phi, theta, theta, theta};
+    float sine[4];
+    float cosine[4];
+    rear_car_sincos_group_f(2, angle, sine, cosine);
+    const float t3 = sine[0];
+    const float t7 = t3 * t3;
+    const float L = p->L;
+    const float t4 = cosine[0];
+    const float t8 = L * t4;
+    const float t5 = sine[1];
+    const float t9 = t5 * t8;
+    const float t10 = t9 * t9;
+    const float t11 = t7 + t10;
+    const float t6 = cosine[1];
+    const float t12 = t6 * t8;
+    const float t13 = t12 * t12;
+    const float t14 = t11 + t13;
+    const float t15 = t8 * t8;
+    const float t16 = 1.0f + t15;
+    const float t17 = t16 * 3.637979e-12f;
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
+        return REAR_CAR_CONSTRAINT_RANK;
+    }
+    const float Theta_1 = p->Theta_1;
+    const float t18 = Theta_1 * t7;
+    const float t19 = L * L;
+    const float t20 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float t21 = m_1 * t20;
+    const float m_2 = p->m_2;
+    const float t22 = m_2 + t21;
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
+    const float Theta_2 = p->Theta_2;
+    const float t25 = Theta_2 * t24;
+    const float t26 = fabsf(t25);
+    const float t27 = fabsf(Theta_1);
+    const float t28 = fabsf(m_2);
+    const float t29 = fabsf(L);
+    const float t30 = t29 * t29;
+    const float t31 = t28 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = fabsf(Theta_2);
+    const float t34 = t32 * t33;
+    const float t35 = t7 * t34;
+    const float t36 = fabsf(m_1);
+    const float t37 = t36 + t28;
+    const float t38 = t37 * t33;
+    const float t39 = t10 + t13;
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (REAR_CAR_RARELY_F(!(t26 > t42))) {
+        return REAR_CAR_MASS_RANK;
+    }
+    const float t43 = 1.0f / t25;
+    const float t44 = L * Theta_2;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t51 = t44 * t50;
+    const float t52 = L * m_2;
+    const float theta_dot = qd[2];
+    const float t53 = theta_dot * t52;
+    const float t54 = theta_dot * t6;
+    const float t55 = t53 * t54;
+    const float K_r = u[0];
+    const float t56 = K_r * t6;
+    const float t57 = t55 + t56;
+    const float t58 = m_1 + m_2;
+    const float t59 = theta_dot * t5;
+    const float y_dot = qd[1];
+    const float t60 = y_dot * t59;
+    const float x_dot = qd[0];
+    const float t61 = x_dot * t54;
+    const float t62 = t60 + t61;
+    const float t63 = t8 * t62;
+    const float t64 = t63 * t51;
+    const float t65 = L * t52;
+    const float t66 = Theta_1 + t65;
+    const float t67 = t3 * t66;
+    const float t68 = Theta_2 * t67;
+    const float phi_dot = qd[3];
+    const float t69 = phi_dot * t3;
+    const float t70 = L * t69;
+    const float t71 = theta_dot * t70;
+    const float t72 = theta_dot + phi_dot;
+    const float t73 = t6 * t4;
+    const float t74 = t5 * t3;
+    const float t75 = t73 - t74;
+    const float t76 = x_dot * t75;
+    const float t77 = y_dot * t48;
+    const float t78 = t76 + t77;
+    const float t79 = t72 * t78;
+    const float t80 = t71 + t79;
+    const float t81 = t6 * t80;
+    const float t82 = t62 * t75;
+    const float t83 = t81 - t82;
+    const float t84 = t68 * t83;
+    const float t85 = t64 + t84;
+    const float t86 = t43 * t85;
+    const float t87 = t58 * t86;
+    const float t88 = t5 * t52;
+    const float t89 = m_1 * t73;
+    const float t90 = m_2 * t75;
+    const float t91 = t89 + t90;
+    const float t92 = t44 * t91;
+    const float t93 = t82 - t81;
+    const float t94 = t92 * t93;
+    const float t95 = t5 * t80;
+    const float t96 = t62 * t48;
+    const float t97 = t95 - t96;
+    const float t98 = t51 * t97;
+    const float t99 = t94 - t98;
+    const float t100 = t43 * t99;
+    const float t101 = t88 * t100;
+    const float t102 = t87 - t101;
+    const float t103 = t57 + t102;
+    const float t104 = t51 * t103;
+    const float t105 = t53 * t59;
+    const float t106 = K_r * t5;
+    const float t107 = t105 + t106;
+    const float t108 = t68 * t97;
+    const float t109 = t63 * t92;
+    const float t110 = t108 - t109;
+    const float t111 = t43 * t110;
+    const float t112 = t58 * t111;
+    const float t113 = t6 * t52;
+    const float t114 = t113 * t100;
+    const float t115 = t112 + t114;
+    const float t116 = t107 + t115;
+    const float t117 = t92 * t116;
+    const float t118 = t104 - t117;
+    const float t119 = t8 * t118;
+    const float t120 = t68 * t103;
+    const float t121 = t66 * t100;
+    const float t122 = t52 * t62;
+    const float t123 = t121 - t122;
+    const float t124 = t92 * t123;
+    const float t125 = t120 - t124;
+    const float t126 = t75 * t125;
+    const float t127 = t119 - t126;
+    const float t128 = t68 * t116;
+    const float t129 = t51 * t123;
+    const float t130 = t128 - t129;
+    const float t131 = t48 * t130;
+    const float t132 = t127 - t131;
+    const float t133 = t43 * t132;
+    const float t134 = t6 * t125;
+    const float t135 = t5 * t130;
+    const float t136 = t134 + t135;
+    const float t137 = t43 * t136;
+    float rest = (t133 - t133) * t137;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
+        return REAR_CAR_NOT_FINITE;
+    }
+    lambda_B[0] = t133;
+    lambda_B[1] = t137;
     return REAR_CAR_OK;
 }
 
 rear_car_status rear_car_energy_f(const float q[4], const float qd[4], const rear_car_params_f *p, float T_U[2]) {
     const float theta = q[2];
     const float t1 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     float t2;
@@ -2862,7 +2800,7 @@ rear_car_status rear_car_energy_f(const float q[4], const float qd[4], const rea
     const float t24 = theta_dot * t23;
     const float t25 = t13 + t24;
     float rest = t25 - t25;
-    if (isnan(rest) != 0) {
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     T_U[0] = t25;
@@ -2875,10 +2813,10 @@ rear_car_status rear_car_singularity_f(const float q[4], const rear_car_params_f
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -2926,9 +2864,8 @@ rear_car_status rear_car_singularity_f(const float q[4], const rear_car_params_f
     const float t40 = t37 + t39;
     const float t41 = t35 + t40;
     const float t42 = ((t41 != 0.0f) ? t13 : 0.0f) / ((t41 != 0.0f) ? t41 : 1.0f);
-    float rest = t33 - t33;
-    rest += t42 - t42;
-    if (isnan(rest) != 0) {
+    float rest = (t33 - t33) * t42;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     measure[0] = t33;

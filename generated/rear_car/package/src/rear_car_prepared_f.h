@@ -22,10 +22,10 @@ rear_car_prepared_f rear_car_prepare_f(const rear_car_params_f *p);
 /* u: the smallest inputs that produce the motion, (27); 23 operations instead of 28 */
 rear_car_status rear_car_inverse_dynamics_prepared_f(const float q[4], const float qd[4], const float qdd[4], const rear_car_prepared_f *p, float u[2]);
 
-/* q̈: accelerations under the inputs, (15); 119 operations instead of 136 */
+/* q̈: accelerations under the inputs, (15); 114 operations instead of 131 */
 rear_car_status rear_car_forward_dynamics_prepared_f(const float q[4], const float qd[4], const float u[2], const rear_car_prepared_f *p, float qdd[4]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 120 operations instead of 137 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 118 operations instead of 135 */
 rear_car_status rear_car_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const rear_car_prepared_f *p, float lambda_B[2]);
 
 #ifdef __cplusplus
@@ -53,6 +53,15 @@ rear_car_status rear_car_multipliers_prepared_f(const float q[4], const float qd
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
+#endif
+
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define REAR_CAR_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define REAR_CAR_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define REAR_CAR_RARELY_F(condition) (condition)
 #endif
 
 #ifdef __GNUC__
@@ -192,10 +201,10 @@ rear_car_status rear_car_inverse_dynamics_prepared_f(const float q[4], const flo
     const float t1 = fabsf(theta);
     const float phi = q[3];
     const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {theta, phi, phi, phi};
@@ -208,7 +217,7 @@ rear_car_status rear_car_inverse_dynamics_prepared_f(const float q[4], const flo
     const float t8 = fabsf(t7);
     const float t9 = p->value[2];
     const float t5 = sine[1];
-    if (!(t8 > t9)) {
+    if (REAR_CAR_RARELY_F(!(t8 > t9))) {
         const float t10 = t5 * t5;
         const float t11 = t7 * t7;
         const float t12 = t10 + t11;
@@ -248,9 +257,8 @@ rear_car_status rear_car_inverse_dynamics_prepared_f(const float q[4], const flo
     const float phi_ddot = qdd[3];
     const float Theta_2 = p->value[1];
     const float t36 = phi_ddot * Theta_2;
-    float rest = t35 - t35;
-    rest += t36 - t36;
-    if (isnan(rest) != 0) {
+    float rest = (t35 - t35) * t36;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
     u[0] = t35;
@@ -259,186 +267,14 @@ rear_car_status rear_car_inverse_dynamics_prepared_f(const float q[4], const flo
 }
 
 rear_car_status rear_car_forward_dynamics_prepared_f(const float q[4], const float qd[4], const float u[2], const rear_car_prepared_f *p, float qdd[4]) {
-    const float theta = q[2];
-    const float t1 = fabsf(theta);
-    const float phi = q[3];
-    const float t2 = fabsf(phi);
-    if (!(100.0f >= t1)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    if (!(100.0f >= t2)) {
-        return REAR_CAR_ANGLE_RANGE;
-    }
-    const float angle[4] = {theta, phi, phi, phi};
-    float sine[4];
-    float cosine[4];
-    rear_car_sincos_group_f(2, angle, sine, cosine);
-    const float t5 = sine[1];
-    const float t7 = t5 * t5;
-    const float L = p->value[0];
-    const float t6 = cosine[1];
-    const float t8 = L * t6;
-    const float t3 = sine[0];
-    const float t9 = t3 * t8;
-    const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
-    const float t4 = cosine[0];
-    const float t12 = t4 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
-        return REAR_CAR_CONSTRAINT_RANK;
-    }
-    const float Theta_1 = p->value[8];
-    const float t18 = Theta_1 * t7;
-    const float t20 = t6 * t6;
-    const float m_1 = p->value[6];
-    const float t21 = m_1 * t20;
-    const float m_2 = p->value[7];
-    const float t22 = m_2 + t21;
-    const float t19 = p->value[9];
-    const float t23 = t19 * t22;
-    const float t24 = t18 + t23;
-    const float Theta_2 = p->value[1];
-    const float t25 = Theta_2 * t24;
-    const float t26 = fabsf(t25);
-    const float t34 = p->value[10];
-    const float t35 = t7 * t34;
-    const float t38 = p->value[11];
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
-        return REAR_CAR_MASS_RANK;
-    }
-    const float theta_dot = qd[2];
-    const float t44 = p->value[4];
-    const float t45 = theta_dot * t44;
-    const float t46 = theta_dot * t4;
-    const float t47 = t45 * t46;
-    const float K_r = u[0];
-    const float t48 = K_r * t4;
-    const float t49 = t47 + t48;
-    const float t50 = t12 * t49;
-    const float t51 = theta_dot * t3;
-    const float t52 = t45 * t51;
-    const float t53 = K_r * t3;
-    const float t54 = t52 + t53;
-    const float t55 = t9 * t54;
-    const float t56 = t50 + t55;
-    const float t57 = Theta_2 * t56;
-    const float t58 = t12 * t57;
-    const float t59 = 1.0f / t25;
-    const float t60 = t58 * t59;
-    const float y_dot = qd[1];
-    const float t61 = y_dot * t51;
-    const float x_dot = qd[0];
-    const float t62 = x_dot * t46;
-    const float t63 = t61 + t62;
-    const float t64 = t8 * t63;
-    const float t66 = t3 * t6;
-    const float t67 = m_1 * t66;
-    const float t68 = t4 * t5;
-    const float t69 = t66 + t68;
-    const float t70 = m_2 * t69;
-    const float t71 = t67 + t70;
-    const float t65 = p->value[12];
-    const float t72 = t65 * t71;
-    const float t73 = t64 * t72;
-    const float phi_dot = qd[3];
-    const float t74 = phi_dot * t5;
-    const float t75 = L * t74;
-    const float t76 = theta_dot * t75;
-    const float t77 = theta_dot + phi_dot;
-    const float t78 = t4 * t6;
-    const float t79 = t3 * t5;
-    const float t80 = t78 - t79;
-    const float t81 = t77 * t80;
-    const float t82 = x_dot * t81;
-    const float t83 = t77 * t69;
-    const float t84 = y_dot * t83;
-    const float t85 = t82 + t84;
-    const float t86 = t76 + t85;
-    const float t87 = t4 * t86;
-    const float t88 = t63 * t80;
-    const float t89 = t87 - t88;
-    const float t91 = p->value[5];
-    const float t92 = t5 * t91;
-    const float t93 = Theta_2 * t92;
-    const float t94 = t89 * t93;
-    const float t95 = t73 + t94;
-    const float t96 = t59 * t95;
-    const float t97 = t60 - t96;
-    const float t98 = t9 * t57;
-    const float t99 = t98 * t59;
-    const float t100 = t3 * t86;
-    const float t101 = t63 * t69;
-    const float t102 = t100 - t101;
-    const float t103 = t102 * t93;
-    const float t104 = m_1 * t78;
-    const float t105 = m_2 * t80;
-    const float t106 = t104 + t105;
-    const float t107 = t65 * t106;
-    const float t108 = t64 * t107;
-    const float t109 = t103 - t108;
-    const float t110 = t59 * t109;
-    const float t111 = t99 - t110;
-    const float t112 = t5 * t57;
-    const float t113 = t112 * t59;
-    const float t114 = t88 - t87;
-    const float t115 = t107 * t114;
-    const float t116 = t72 * t102;
-    const float t117 = t115 - t116;
-    const float t118 = t117 * t59;
-    const float t119 = t113 - t118;
-    const float T = u[1];
-    const float t121 = T * t12;
-    const float t120 = p->value[3];
-    const float t122 = t120 * t121;
-    const float t123 = t3 * t44;
-    const float t124 = T * t5;
-    const float t125 = t123 * t124;
-    const float t126 = t122 - t125;
-    const float t127 = t12 * t126;
-    const float t128 = T * t9;
-    const float t129 = t120 * t128;
-    const float t130 = t4 * t44;
-    const float t131 = t130 * t124;
-    const float t132 = t129 + t131;
-    const float t133 = t9 * t132;
-    const float t134 = t127 + t133;
-    const float t135 = t124 * t91;
-    const float t136 = t5 * t135;
-    const float t137 = t134 + t136;
-    const float t138 = t59 * t137;
-    float rest = t97 - t97;
-    rest += t111 - t111;
-    rest += t119 - t119;
-    rest += t138 - t138;
-    if (isnan(rest) != 0) {
-        return REAR_CAR_NOT_FINITE;
-    }
-    qdd[0] = t97;
-    qdd[1] = t111;
-    qdd[2] = t119;
-    qdd[3] = t138;
-    return REAR_CAR_OK;
-}
-
-rear_car_status rear_car_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const rear_car_prepared_f *p, float lambda_B[2]) {
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
     const float t2 = fabsf(theta);
-    if (!(100.0f >= t1)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
         return REAR_CAR_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
         return REAR_CAR_ANGLE_RANGE;
     }
     const float angle[4] = {phi, theta, theta, theta};
@@ -461,7 +297,7 @@ rear_car_status rear_car_multipliers_prepared_f(const float q[4], const float qd
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
     const float t17 = t16 * 3.637979e-12f;
-    if (!(t14 > t17)) {
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
     const float Theta_1 = p->value[8];
@@ -479,122 +315,284 @@ rear_car_status rear_car_multipliers_prepared_f(const float q[4], const float qd
     const float t26 = fabsf(t25);
     const float t34 = p->value[10];
     const float t35 = t7 * t34;
+    const float t39 = t10 + t13;
     const float t38 = p->value[11];
-    const float t39 = t10 * t38;
-    const float t40 = t35 + t39;
-    const float t41 = t13 * t38;
-    const float t42 = t40 + t41;
-    const float t43 = t42 * 1.9073486e-06f;
-    if (!(t26 > t43)) {
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (REAR_CAR_RARELY_F(!(t26 > t42))) {
         return REAR_CAR_MASS_RANK;
     }
-    const float t44 = 1.0f / t25;
-    const float t46 = t5 * t4;
-    const float t47 = m_1 * t46;
-    const float t48 = t6 * t3;
-    const float t49 = t46 + t48;
-    const float t50 = m_2 * t49;
-    const float t51 = t47 + t50;
-    const float t45 = p->value[12];
-    const float t52 = t45 * t51;
+    const float t43 = 1.0f / t25;
     const float theta_dot = qd[2];
-    const float t53 = p->value[4];
-    const float t54 = theta_dot * t53;
-    const float t55 = theta_dot * t6;
-    const float t56 = t54 * t55;
+    const float t44 = p->value[4];
+    const float t45 = theta_dot * t44;
+    const float t46 = theta_dot * t6;
+    const float t47 = t45 * t46;
     const float K_r = u[0];
-    const float t57 = K_r * t6;
-    const float t58 = t56 + t57;
-    const float t60 = theta_dot * t5;
+    const float t48 = K_r * t6;
+    const float t49 = t47 + t48;
+    const float t50 = t12 * t49;
+    const float t51 = theta_dot * t5;
+    const float t52 = t45 * t51;
+    const float t53 = K_r * t5;
+    const float t54 = t52 + t53;
+    const float t55 = t9 * t54;
+    const float t56 = t50 + t55;
+    const float t57 = Theta_2 * t56;
+    const float t58 = t12 * t57;
     const float y_dot = qd[1];
-    const float t61 = y_dot * t60;
+    const float t59 = y_dot * t51;
     const float x_dot = qd[0];
-    const float t62 = x_dot * t55;
-    const float t63 = t61 + t62;
-    const float t64 = t8 * t63;
-    const float t65 = t64 * t52;
+    const float t60 = x_dot * t46;
+    const float t61 = t59 + t60;
+    const float t62 = t8 * t61;
+    const float t64 = t5 * t4;
+    const float t65 = m_1 * t64;
+    const float t66 = t6 * t3;
+    const float t67 = t64 + t66;
+    const float t68 = m_2 * t67;
+    const float t69 = t65 + t68;
+    const float t63 = p->value[12];
+    const float t70 = t63 * t69;
+    const float t71 = t62 * t70;
+    const float t73 = p->value[5];
+    const float t74 = t3 * t73;
+    const float t75 = Theta_2 * t74;
     const float phi_dot = qd[3];
-    const float t66 = phi_dot * t3;
-    const float t67 = L * t66;
-    const float t68 = theta_dot * t67;
-    const float t69 = theta_dot + phi_dot;
-    const float t70 = t6 * t4;
-    const float t71 = t5 * t3;
-    const float t72 = t70 - t71;
-    const float t73 = t69 * t72;
-    const float t74 = x_dot * t73;
-    const float t75 = t69 * t49;
-    const float t76 = y_dot * t75;
-    const float t77 = t74 + t76;
-    const float t78 = t68 + t77;
-    const float t79 = t6 * t78;
-    const float t80 = t63 * t72;
-    const float t81 = t79 - t80;
-    const float t83 = p->value[5];
-    const float t84 = t3 * t83;
-    const float t85 = Theta_2 * t84;
-    const float t86 = t81 * t85;
-    const float t87 = t65 + t86;
-    const float t88 = t44 * t87;
-    const float t59 = p->value[3];
-    const float t89 = t59 * t88;
-    const float t90 = t5 * t53;
-    const float t91 = m_1 * t70;
-    const float t92 = m_2 * t72;
-    const float t93 = t91 + t92;
-    const float t94 = t45 * t93;
-    const float t95 = t80 - t79;
-    const float t96 = t94 * t95;
-    const float t97 = t5 * t78;
-    const float t98 = t63 * t49;
-    const float t99 = t97 - t98;
-    const float t100 = t52 * t99;
-    const float t101 = t96 - t100;
-    const float t102 = t101 * t44;
-    const float t103 = t90 * t102;
-    const float t104 = t89 - t103;
-    const float t105 = t58 + t104;
-    const float t106 = t52 * t105;
-    const float t107 = t54 * t60;
-    const float t108 = K_r * t5;
-    const float t109 = t107 + t108;
-    const float t110 = t99 * t85;
-    const float t111 = t64 * t94;
+    const float t76 = phi_dot * t3;
+    const float t77 = L * t76;
+    const float t78 = theta_dot * t77;
+    const float t79 = theta_dot + phi_dot;
+    const float t80 = t6 * t4;
+    const float t81 = t5 * t3;
+    const float t82 = t80 - t81;
+    const float t83 = x_dot * t82;
+    const float t84 = y_dot * t67;
+    const float t85 = t83 + t84;
+    const float t86 = t79 * t85;
+    const float t87 = t78 + t86;
+    const float t88 = t6 * t87;
+    const float t89 = t61 * t82;
+    const float t90 = t88 - t89;
+    const float t91 = t75 * t90;
+    const float t92 = t71 + t91;
+    const float t93 = t58 - t92;
+    const float t94 = t43 * t93;
+    const float t95 = t9 * t57;
+    const float t96 = t5 * t87;
+    const float t97 = t61 * t67;
+    const float t98 = t96 - t97;
+    const float t99 = t75 * t98;
+    const float t100 = m_1 * t80;
+    const float t101 = m_2 * t82;
+    const float t102 = t100 + t101;
+    const float t103 = t63 * t102;
+    const float t104 = t62 * t103;
+    const float t105 = t99 - t104;
+    const float t106 = t95 - t105;
+    const float t107 = t43 * t106;
+    const float t108 = t3 * t57;
+    const float t109 = t89 - t88;
+    const float t110 = t103 * t109;
+    const float t111 = t70 * t98;
     const float t112 = t110 - t111;
-    const float t113 = t44 * t112;
-    const float t114 = t59 * t113;
-    const float t115 = t6 * t53;
-    const float t116 = t115 * t102;
-    const float t117 = t114 + t116;
-    const float t118 = t109 + t117;
-    const float t119 = t94 * t118;
-    const float t120 = t106 - t119;
-    const float t121 = t8 * t120;
-    const float t122 = t85 * t105;
-    const float t123 = t83 * t102;
-    const float t124 = t53 * t63;
-    const float t125 = t123 - t124;
-    const float t126 = t94 * t125;
-    const float t127 = t122 - t126;
-    const float t128 = t72 * t127;
-    const float t129 = t121 - t128;
-    const float t130 = t85 * t118;
-    const float t131 = t52 * t125;
-    const float t132 = t130 - t131;
-    const float t133 = t49 * t132;
-    const float t134 = t129 - t133;
-    const float t135 = t44 * t134;
-    const float t136 = t6 * t127;
-    const float t137 = t5 * t132;
-    const float t138 = t136 + t137;
-    const float t139 = t44 * t138;
-    float rest = t135 - t135;
-    rest += t139 - t139;
-    if (isnan(rest) != 0) {
+    const float t113 = t108 - t112;
+    const float t114 = t43 * t113;
+    const float T = u[1];
+    const float t116 = T * t12;
+    const float t115 = p->value[3];
+    const float t117 = t115 * t116;
+    const float t118 = t5 * t44;
+    const float t119 = T * t3;
+    const float t120 = t118 * t119;
+    const float t121 = t117 - t120;
+    const float t122 = t12 * t121;
+    const float t123 = T * t9;
+    const float t124 = t115 * t123;
+    const float t125 = t6 * t44;
+    const float t126 = t125 * t119;
+    const float t127 = t124 + t126;
+    const float t128 = t9 * t127;
+    const float t129 = t122 + t128;
+    const float t130 = t119 * t73;
+    const float t131 = t3 * t130;
+    const float t132 = t129 + t131;
+    const float t133 = t43 * t132;
+    float rest = (t94 - t94) * t107 * t114;
+    rest += t133 - t133;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    lambda_B[0] = t135;
-    lambda_B[1] = t139;
+    qdd[0] = t94;
+    qdd[1] = t107;
+    qdd[2] = t114;
+    qdd[3] = t133;
+    return REAR_CAR_OK;
+}
+
+rear_car_status rear_car_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const rear_car_prepared_f *p, float lambda_B[2]) {
+    const float phi = q[3];
+    const float t1 = fabsf(phi);
+    const float theta = q[2];
+    const float t2 = fabsf(theta);
+    if (REAR_CAR_RARELY_F(!(100.0f >= t1))) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    if (REAR_CAR_RARELY_F(!(100.0f >= t2))) {
+        return REAR_CAR_ANGLE_RANGE;
+    }
+    const float angle[4] = {phi, theta, theta, theta};
+    float sine[4];
+    float cosine[4];
+    rear_car_sincos_group_f(2, angle, sine, cosine);
+    const float t3 = sine[0];
+    const float t7 = t3 * t3;
+    const float L = p->value[0];
+    const float t4 = cosine[0];
+    const float t8 = L * t4;
+    const float t5 = sine[1];
+    const float t9 = t5 * t8;
+    const float t10 = t9 * t9;
+    const float t11 = t7 + t10;
+    const float t6 = cosine[1];
+    const float t12 = t6 * t8;
+    const float t13 = t12 * t12;
+    const float t14 = t11 + t13;
+    const float t15 = t8 * t8;
+    const float t16 = 1.0f + t15;
+    const float t17 = t16 * 3.637979e-12f;
+    if (REAR_CAR_RARELY_F(!(t14 > t17))) {
+        return REAR_CAR_CONSTRAINT_RANK;
+    }
+    const float Theta_1 = p->value[8];
+    const float t18 = Theta_1 * t7;
+    const float t20 = t4 * t4;
+    const float m_1 = p->value[6];
+    const float t21 = m_1 * t20;
+    const float m_2 = p->value[7];
+    const float t22 = m_2 + t21;
+    const float t19 = p->value[9];
+    const float t23 = t19 * t22;
+    const float t24 = t18 + t23;
+    const float Theta_2 = p->value[1];
+    const float t25 = Theta_2 * t24;
+    const float t26 = fabsf(t25);
+    const float t34 = p->value[10];
+    const float t35 = t7 * t34;
+    const float t39 = t10 + t13;
+    const float t38 = p->value[11];
+    const float t40 = t38 * t39;
+    const float t41 = t35 + t40;
+    const float t42 = t41 * 1.9073486e-06f;
+    if (REAR_CAR_RARELY_F(!(t26 > t42))) {
+        return REAR_CAR_MASS_RANK;
+    }
+    const float t43 = 1.0f / t25;
+    const float t45 = t5 * t4;
+    const float t46 = m_1 * t45;
+    const float t47 = t6 * t3;
+    const float t48 = t45 + t47;
+    const float t49 = m_2 * t48;
+    const float t50 = t46 + t49;
+    const float t44 = p->value[12];
+    const float t51 = t44 * t50;
+    const float theta_dot = qd[2];
+    const float t52 = p->value[4];
+    const float t53 = theta_dot * t52;
+    const float t54 = theta_dot * t6;
+    const float t55 = t53 * t54;
+    const float K_r = u[0];
+    const float t56 = K_r * t6;
+    const float t57 = t55 + t56;
+    const float t59 = theta_dot * t5;
+    const float y_dot = qd[1];
+    const float t60 = y_dot * t59;
+    const float x_dot = qd[0];
+    const float t61 = x_dot * t54;
+    const float t62 = t60 + t61;
+    const float t63 = t8 * t62;
+    const float t64 = t63 * t51;
+    const float t66 = p->value[5];
+    const float t67 = t3 * t66;
+    const float t68 = Theta_2 * t67;
+    const float phi_dot = qd[3];
+    const float t69 = phi_dot * t3;
+    const float t70 = L * t69;
+    const float t71 = theta_dot * t70;
+    const float t72 = theta_dot + phi_dot;
+    const float t73 = t6 * t4;
+    const float t74 = t5 * t3;
+    const float t75 = t73 - t74;
+    const float t76 = x_dot * t75;
+    const float t77 = y_dot * t48;
+    const float t78 = t76 + t77;
+    const float t79 = t72 * t78;
+    const float t80 = t71 + t79;
+    const float t81 = t6 * t80;
+    const float t82 = t62 * t75;
+    const float t83 = t81 - t82;
+    const float t84 = t68 * t83;
+    const float t85 = t64 + t84;
+    const float t86 = t43 * t85;
+    const float t58 = p->value[3];
+    const float t87 = t58 * t86;
+    const float t88 = t5 * t52;
+    const float t89 = m_1 * t73;
+    const float t90 = m_2 * t75;
+    const float t91 = t89 + t90;
+    const float t92 = t44 * t91;
+    const float t93 = t82 - t81;
+    const float t94 = t92 * t93;
+    const float t95 = t5 * t80;
+    const float t96 = t62 * t48;
+    const float t97 = t95 - t96;
+    const float t98 = t51 * t97;
+    const float t99 = t94 - t98;
+    const float t100 = t43 * t99;
+    const float t101 = t88 * t100;
+    const float t102 = t87 - t101;
+    const float t103 = t57 + t102;
+    const float t104 = t51 * t103;
+    const float t105 = t53 * t59;
+    const float t106 = K_r * t5;
+    const float t107 = t105 + t106;
+    const float t108 = t68 * t97;
+    const float t109 = t63 * t92;
+    const float t110 = t108 - t109;
+    const float t111 = t43 * t110;
+    const float t112 = t58 * t111;
+    const float t113 = t6 * t52;
+    const float t114 = t113 * t100;
+    const float t115 = t112 + t114;
+    const float t116 = t107 + t115;
+    const float t117 = t92 * t116;
+    const float t118 = t104 - t117;
+    const float t119 = t8 * t118;
+    const float t120 = t68 * t103;
+    const float t121 = t66 * t100;
+    const float t122 = t52 * t62;
+    const float t123 = t121 - t122;
+    const float t124 = t92 * t123;
+    const float t125 = t120 - t124;
+    const float t126 = t75 * t125;
+    const float t127 = t119 - t126;
+    const float t128 = t68 * t116;
+    const float t129 = t51 * t123;
+    const float t130 = t128 - t129;
+    const float t131 = t48 * t130;
+    const float t132 = t127 - t131;
+    const float t133 = t43 * t132;
+    const float t134 = t6 * t125;
+    const float t135 = t5 * t130;
+    const float t136 = t134 + t135;
+    const float t137 = t43 * t136;
+    float rest = (t133 - t133) * t137;
+    if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
+        return REAR_CAR_NOT_FINITE;
+    }
+    lambda_B[0] = t133;
+    lambda_B[1] = t137;
     return REAR_CAR_OK;
 }
 

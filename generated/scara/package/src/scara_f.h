@@ -15,8 +15,8 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      34     43      0      0      1      3
- * forward_dynamics      69     86      7      0      2      3
+ * inverse_dynamics      34     42      0      0      1      3
+ * forward_dynamics      57     70      6      0      2      3
  * singularity            0      0      0      0      0      0
  * (changes of sign are not counted)
  *
@@ -92,6 +92,15 @@ scara_status scara_singularity_f(const float q[4], const scara_params_f *p, floa
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
+#endif
+
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SCARA_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SCARA_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SCARA_RARELY_F(condition) (condition)
 #endif
 
 #ifdef __GNUC__
@@ -208,7 +217,7 @@ scara_params_f scara_default_params_f(void) {
 scara_status scara_inverse_dynamics_f(const float q[4], const float qd[4], const float qdd[4], const scara_params_f *p, float u[4]) {
     const float q_2 = q[2];
     const float t1 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (SCARA_RARELY_F(!(100.0f >= t1))) {
         return SCARA_ANGLE_RANGE;
     }
     float t2;
@@ -273,56 +282,53 @@ scara_status scara_inverse_dynamics_f(const float q[4], const float qd[4], const
     const float t46 = t38 + t45;
     const float t47 = t36 + t46;
     const float t48 = t26 + t47;
-    const float t49 = t3 * t8;
-    const float t50 = l_1 * t49;
-    const float t51 = l_2 * t20;
-    const float t52 = t50 + t51;
-    const float t53 = q_1_ddot * t52;
-    const float t54 = q_1_dot * t2;
-    const float t55 = t8 * t54;
-    const float t56 = l_1 * t55;
-    const float t57 = q_1_dot * t56;
-    const float t58 = l_2 * t22;
-    const float t59 = t57 + t58;
-    const float t60 = t53 + t59;
-    const float t61 = l_2 * t60;
-    const float t62 = J_r + t37;
-    const float t63 = q_2_ddot * t62;
-    const float t64 = q_1_ddot * t37;
-    const float t65 = 50.0f * q_2_dot;
-    const float t66 = tanhf(t65);
-    const float t67 = 0.5f * q_2_dot;
-    const float t68 = t67 - t43;
-    const float t69 = t66 + t68;
-    const float t70 = t64 + t69;
-    const float t71 = t63 + t70;
-    const float t72 = t61 + t71;
+    const float t49 = J_r + t37;
+    const float t50 = q_2_ddot * t49;
+    const float t51 = q_1_ddot * t37;
+    const float t52 = 50.0f * q_2_dot;
+    const float t53 = tanhf(t52);
+    const float t54 = 0.5f * q_2_dot;
+    const float t55 = t54 - t43;
+    const float t56 = t53 + t55;
+    const float t57 = t51 + t56;
+    const float t58 = t50 + t57;
+    const float t59 = l_2 * t20;
+    const float t60 = l_1 * t8;
+    const float t61 = t3 * t60;
+    const float t62 = t59 + t61;
+    const float t63 = q_1_ddot * t62;
+    const float t64 = l_2 * t22;
+    const float t65 = q_1_dot * t2;
+    const float t66 = t65 * t60;
+    const float t67 = q_1_dot * t66;
+    const float t68 = t64 + t67;
+    const float t69 = t63 + t68;
+    const float t70 = l_2 * t69;
+    const float t71 = t58 + t70;
     const float z_dot = qd[0];
-    const float t73 = 20.0f * z_dot;
-    const float t74 = 200.0f * z_dot;
-    const float t75 = tanhf(t74);
-    const float t76 = 5.0f * t75;
-    const float t77 = t73 + t76;
+    const float t72 = 20.0f * z_dot;
+    const float t73 = 200.0f * z_dot;
+    const float t74 = tanhf(t73);
+    const float t75 = 5.0f * t74;
+    const float t76 = t72 + t75;
     const float g = p->g;
     const float z_ddot = qdd[0];
-    const float t78 = g - z_ddot;
-    const float t79 = m_3 * t78;
-    const float t80 = t77 - t79;
-    const float t81 = q_1_ddot + q_2_ddot;
-    const float t82 = t81 - q_4_ddot;
-    const float t83 = J_3 * t82;
-    const float t84 = -t83;
-    float rest = t48 - t48;
-    rest += t72 - t72;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    const float t77 = g - z_ddot;
+    const float t78 = m_3 * t77;
+    const float t79 = t76 - t78;
+    const float t80 = q_1_ddot + q_2_ddot;
+    const float t81 = t80 - q_4_ddot;
+    const float t82 = J_3 * t81;
+    const float t83 = -t82;
+    float rest = (t48 - t48) * t71 * t79;
+    rest += t83 - t83;
+    if (SCARA_RARELY_F(isnan(rest) != 0)) {
         return SCARA_NOT_FINITE;
     }
     u[0] = t48;
-    u[1] = t72;
-    u[2] = t80;
-    u[3] = t84;
+    u[1] = t71;
+    u[2] = t79;
+    u[3] = t83;
     return SCARA_OK;
 }
 
@@ -331,10 +337,10 @@ scara_status scara_forward_dynamics_f(const float q[4], const float qd[4], const
     const float t1 = fabsf(q_4);
     const float q_2 = q[2];
     const float t2 = fabsf(q_2);
-    if (!(100.0f >= t1)) {
+    if (SCARA_RARELY_F(!(100.0f >= t1))) {
         return SCARA_ANGLE_RANGE;
     }
-    if (!(100.0f >= t2)) {
+    if (SCARA_RARELY_F(!(100.0f >= t2))) {
         return SCARA_ANGLE_RANGE;
     }
     const float angle[4] = {q_4, q_2, q_2, q_2};
@@ -343,225 +349,192 @@ scara_status scara_forward_dynamics_f(const float q[4], const float qd[4], const
     scara_sincos_group_f(2, angle, sine, cosine);
     const float m_3 = p->m_3;
     const float t7 = fabsf(m_3);
-    if (!(t7 > 0.0f)) {
+    const float t8 = m_3 * 1.9073486e-06f;
+    if (SCARA_RARELY_F(!(t7 > t8))) {
         return SCARA_MASS_RANK;
     }
-    const float l_1 = p->l_1;
-    const float t5 = sine[1];
-    const float t8 = l_1 * t5;
-    const float m_2 = p->m_2;
-    const float t9 = m_2 * t8;
-    const float t4 = cosine[0];
-    const float t10 = t4 * t8;
-    const float t6 = cosine[1];
-    const float t11 = l_1 * t6;
     const float l_2 = p->l_2;
-    const float t12 = l_2 + t11;
-    const float t3 = sine[0];
-    const float t13 = t3 * t12;
-    const float t14 = t10 - t13;
-    const float t15 = m_3 * t14;
-    const float t16 = t4 * t15;
-    const float t17 = t9 + t16;
-    const float t18 = t3 * t8;
-    const float t19 = t4 * t12;
-    const float t20 = t18 + t19;
-    const float t21 = m_3 * t20;
-    const float t22 = t3 * t21;
-    const float t23 = t17 + t22;
-    const float t24 = t5 * t23;
-    const float m_1 = p->m_1;
-    const float t25 = l_1 * m_1;
-    const float t26 = 0.25f * t25;
-    const float t27 = 0.5f * l_2;
-    const float t28 = t27 + t11;
-    const float t29 = m_2 * t28;
-    const float t30 = t4 * t20;
-    const float t31 = t3 * t14;
-    const float t32 = t30 - t31;
-    const float t33 = m_3 * t32;
-    const float t34 = t29 + t33;
-    const float t35 = t6 * t34;
-    const float t36 = t26 + t35;
-    const float t37 = t24 + t36;
-    const float t38 = l_1 * t37;
-    const float t39 = 0.5f * t29;
-    const float t40 = t39 + t33;
-    const float t41 = l_2 * t40;
-    const float J_3 = p->J_3;
-    const float t42 = J_3 + t41;
+    const float m_2 = p->m_2;
+    const float t9 = l_2 * m_2;
+    const float t10 = 0.25f * t9;
+    const float t11 = l_2 * m_3;
+    const float t12 = t10 + t11;
+    const float t13 = l_2 * t12;
     const float J_2 = p->J_2;
-    const float t43 = J_2 + t42;
-    const float t44 = t38 + t43;
+    const float t14 = J_2 + t13;
     const float J_r = p->J_r;
-    const float t45 = J_r + t44;
+    const float t15 = J_r + t14;
+    const float t16 = t14 / t15;
+    const float t17 = J_r * t16;
+    const float t18 = 0.5f * t9;
+    const float t19 = t18 + t11;
+    const float t20 = t19 / t15;
+    const float t21 = J_r * t20;
+    const float t6 = cosine[1];
+    const float t22 = t6 * t21;
+    const float l_1 = p->l_1;
+    const float m_1 = p->m_1;
+    const float t23 = l_1 * m_1;
+    const float t24 = 0.25f * t23;
+    const float t25 = m_2 + m_3;
+    const float t5 = sine[1];
+    const float t26 = t5 * t25;
+    const float t27 = t5 * t26;
+    const float t28 = t19 * t20;
+    const float t29 = t25 - t28;
+    const float t30 = t6 * t29;
+    const float t31 = t6 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = l_1 * t32;
+    const float t34 = t22 + t33;
+    const float t35 = t24 + t34;
+    const float t36 = t22 + t35;
+    const float t37 = l_1 * t36;
     const float J_1 = p->J_1;
-    const float t46 = J_1 + t45;
-    const float t47 = fabsf(t46);
-    const float t48 = fabsf(J_1);
-    const float t49 = fabsf(J_r);
-    const float t50 = fabsf(l_1);
-    const float t51 = fabsf(m_1);
-    const float t52 = t50 * t51;
-    const float t53 = 0.25f * t52;
-    const float t54 = fabsf(m_2);
-    const float t55 = fabsf(l_2);
-    const float t56 = 0.5f * t55;
-    const float t57 = t50 + t56;
-    const float t58 = t54 * t57;
-    const float t59 = t50 + t55;
-    const float t60 = t50 + t59;
-    const float t61 = t7 * t60;
-    const float t62 = 2.0f * t61;
-    const float t63 = t58 + t62;
-    const float t64 = t53 + t63;
-    const float t65 = t50 * t54;
-    const float t66 = t61 + t65;
-    const float t67 = t61 + t66;
-    const float t68 = t64 + t67;
-    const float t69 = t50 * t68;
-    const float t70 = fabsf(J_2);
-    const float t71 = fabsf(J_3);
-    const float t72 = 0.5f * t58;
-    const float t73 = t62 + t72;
-    const float t74 = t55 * t73;
-    const float t75 = t71 + t74;
-    const float t76 = t70 + t75;
-    const float t77 = t69 + t76;
-    const float t78 = t49 + t77;
-    const float t79 = t48 + t78;
-    const float t80 = t79 * 1.9073486e-06f;
-    if (!(t47 > t80)) {
+    const float t38 = J_1 + J_r;
+    const float t39 = t37 + t38;
+    const float t40 = t17 + t39;
+    const float t41 = fabsf(t40);
+    const float t42 = fabsf(J_2);
+    const float t43 = 0.06f + t42;
+    const float t44 = fabsf(l_2);
+    const float t45 = 0.5f * t44;
+    const float t46 = 0.05f + t45;
+    const float t47 = m_2 * t46;
+    const float t48 = t46 * t47;
+    const float t49 = t43 + t48;
+    const float J_3 = p->J_3;
+    const float t50 = fabsf(J_3);
+    const float t51 = 0.008f + t50;
+    const float t52 = t49 + t51;
+    const float z = q[0];
+    const float t53 = fabsf(z);
+    const float t54 = t44 + t53;
+    const float t55 = m_3 * t54;
+    const float t56 = t54 * t55;
+    const float t57 = t52 + t56;
+    const float t58 = fabsf(l_1);
+    const float t59 = t47 + t55;
+    const float t60 = 2.0f * t59;
+    const float t61 = t58 * t25;
+    const float t62 = t60 + t61;
+    const float t63 = m_1 * t58;
+    const float t64 = 0.25f * t63;
+    const float t65 = t62 + t64;
+    const float t66 = t58 * t65;
+    const float t67 = fabsf(J_1);
+    const float t68 = 0.09f + J_r;
+    const float t69 = t67 + t68;
+    const float t70 = t66 + t69;
+    const float t71 = t57 + t70;
+    const float t72 = t71 * 1.9073486e-06f;
+    if (SCARA_RARELY_F(!(t41 > t72))) {
         return SCARA_MASS_RANK;
     }
-    const float t81 = 0.25f * m_2;
-    const float t82 = m_3 + t81;
-    const float t83 = l_2 * t82;
-    const float t84 = l_2 * t83;
-    const float t85 = J_3 + t84;
-    const float t86 = J_2 + t85;
-    const float t87 = J_r + t86;
-    const float t88 = t43 / t46;
-    const float t89 = t43 * t88;
-    const float t90 = t87 - t89;
-    const float t91 = fabsf(t90);
-    const float t92 = t54 * t55;
-    const float t93 = 0.25f * t92;
-    const float t94 = t7 * t55;
-    const float t95 = t93 + t94;
-    const float t96 = t55 * t95;
-    const float t97 = t71 + t96;
-    const float t98 = t70 + t97;
-    const float t99 = t49 + t98;
-    const float t100 = t99 * 1.9073486e-06f;
-    if (!(t91 > t100)) {
+    const float t73 = fabsf(t15);
+    const float t74 = J_r + t57;
+    const float t75 = t74 * 1.9073486e-06f;
+    if (SCARA_RARELY_F(!(t73 > t75))) {
         return SCARA_MASS_RANK;
     }
-    const float t101 = J_3 / t46;
-    const float t102 = J_3 * t101;
-    const float t103 = J_3 * t88;
-    const float t104 = t103 - J_3;
-    const float t105 = t104 / t90;
-    const float t106 = t104 * t105;
-    const float t107 = t102 + t106;
-    const float t108 = J_3 - t107;
-    const float t109 = fabsf(t108);
-    const float t110 = t71 * 1.9073486e-06f;
-    if (!(t109 > t110)) {
+    const float t76 = t51 * 1.9073486e-06f;
+    if (SCARA_RARELY_F(!(t50 > t76))) {
         return SCARA_MASS_RANK;
     }
     const float z_dot = qd[0];
-    const float t111 = 20.0f * z_dot;
-    const float t112 = 200.0f * z_dot;
-    const float t113 = tanhf(t112);
-    const float t114 = 5.0f * t113;
-    const float t115 = t111 + t114;
+    const float t77 = 20.0f * z_dot;
+    const float t78 = 200.0f * z_dot;
+    const float t79 = tanhf(t78);
+    const float t80 = 5.0f * t79;
+    const float t81 = t77 + t80;
     const float g = p->g;
-    const float t116 = m_3 * g;
-    const float t117 = t115 - t116;
+    const float t82 = m_3 * g;
+    const float t83 = t81 - t82;
     const float u_3 = u[2];
-    const float t118 = u_3 - t117;
-    const float t119 = t118 / m_3;
+    const float t84 = u_3 - t83;
+    const float t85 = t84 / m_3;
     const float q_1_dot = qd[1];
-    const float t120 = 0.8f * q_1_dot;
-    const float t121 = 50.0f * q_1_dot;
-    const float t122 = tanhf(t121);
-    const float t123 = 1.5f * t122;
-    const float t124 = t120 + t123;
-    const float t125 = q_1_dot * l_1;
-    const float t126 = q_1_dot * t125;
-    const float t127 = t6 * t126;
+    const float t86 = q_1_dot * q_1_dot;
+    const float t87 = l_1 * t86;
+    const float t88 = t6 * t87;
     const float q_2_dot = qd[2];
-    const float t128 = q_1_dot + q_2_dot;
-    const float t129 = l_2 * t128;
-    const float t130 = t128 * t129;
-    const float t131 = t127 + t130;
-    const float t132 = t4 * t131;
-    const float t133 = t5 * t126;
-    const float t134 = t3 * t133;
-    const float t135 = t132 + t134;
-    const float t136 = t3 * t135;
-    const float t137 = t4 * t133;
-    const float t138 = t3 * t131;
-    const float t139 = t137 - t138;
-    const float t140 = t4 * t139;
-    const float t141 = t136 + t140;
-    const float t142 = m_3 * t141;
-    const float t143 = m_2 * t133;
-    const float t144 = 0.5f * t143;
-    const float t145 = t142 + t144;
-    const float t146 = l_2 * t145;
-    const float t147 = t3 * t139;
-    const float t148 = t4 * t135;
-    const float t149 = t147 - t148;
-    const float t150 = m_3 * t149;
-    const float t151 = 0.5f * t130;
-    const float t152 = t127 + t151;
-    const float t153 = m_2 * t152;
-    const float t154 = t150 - t153;
-    const float t155 = t5 * t154;
-    const float t156 = t143 + t142;
-    const float t157 = t6 * t156;
-    const float t158 = t155 + t157;
-    const float t159 = l_1 * t158;
-    const float t160 = t146 + t159;
-    const float t161 = t124 + t160;
+    const float t89 = q_1_dot + q_2_dot;
+    const float t90 = t89 * t89;
+    const float t91 = l_2 * t90;
+    const float t92 = t88 + t91;
+    const float t4 = cosine[0];
+    const float t93 = t4 * t92;
+    const float t94 = t5 * t87;
+    const float t3 = sine[0];
+    const float t95 = t3 * t94;
+    const float t96 = t93 + t95;
+    const float t97 = m_3 * t96;
+    const float t98 = t3 * t97;
+    const float t99 = t4 * t94;
+    const float t100 = t3 * t92;
+    const float t101 = t99 - t100;
+    const float t102 = m_3 * t101;
+    const float t103 = t4 * t102;
+    const float t104 = t98 + t103;
+    const float t105 = m_2 * t94;
+    const float t106 = 0.5f * t105;
+    const float t107 = t104 + t106;
+    const float t108 = l_2 * t107;
     const float u_1 = u[0];
-    const float t162 = u_1 - t161;
-    const float t163 = t162 / t46;
-    const float t164 = 0.5f * q_2_dot;
-    const float t165 = 50.0f * q_2_dot;
-    const float t166 = tanhf(t165);
-    const float t167 = t164 + t166;
-    const float t168 = t167 + t146;
+    const float t109 = u_1 - t108;
+    const float t110 = t3 * t102;
+    const float t111 = t4 * t97;
+    const float t112 = t110 - t111;
+    const float t113 = 0.5f * t91;
+    const float t114 = t88 + t113;
+    const float t115 = m_2 * t114;
+    const float t116 = t112 - t115;
+    const float t117 = t5 * t116;
+    const float t118 = t105 + t104;
+    const float t119 = t6 * t118;
+    const float t120 = t117 + t119;
+    const float t121 = 0.5f * q_2_dot;
+    const float t122 = 50.0f * q_2_dot;
+    const float t123 = tanhf(t122);
+    const float t124 = t121 + t123;
+    const float t125 = t124 + t108;
     const float u_2 = u[1];
-    const float t169 = u_2 - t168;
-    const float t170 = t162 * t88;
-    const float t171 = t169 - t170;
-    const float t172 = t171 / t90;
-    const float t173 = t171 * t105;
-    const float t174 = t162 * t101;
-    const float t175 = t173 - t174;
+    const float t126 = u_2 - t125;
     const float u_4 = u[3];
-    const float t176 = u_4 - t175;
-    const float t177 = t176 / t108;
-    const float t178 = t105 * t177;
-    const float t179 = t172 - t178;
-    const float t180 = t88 * t179;
-    const float t181 = t163 - t180;
-    const float t182 = t101 * t177;
-    const float t183 = t181 + t182;
-    float rest = t119 - t119;
-    rest += t183 - t183;
-    rest += t179 - t179;
-    rest += t177 - t177;
-    if (isnan(rest) != 0) {
+    const float t127 = u_4 + t126;
+    const float t128 = t20 * t127;
+    const float t129 = t6 * t128;
+    const float t130 = t120 + t129;
+    const float t131 = l_1 * t130;
+    const float t132 = t109 - t131;
+    const float t133 = 0.8f * q_1_dot;
+    const float t134 = t132 - t133;
+    const float t135 = 50.0f * q_1_dot;
+    const float t136 = tanhf(t135);
+    const float t137 = 1.5f * t136;
+    const float t138 = t134 - t137;
+    const float t139 = u_4 + t138;
+    const float t140 = t16 * t127;
+    const float t141 = t139 - t140;
+    const float t142 = t141 / t40;
+    const float t143 = t127 / t15;
+    const float t144 = l_1 * t6;
+    const float t145 = t144 * t20;
+    const float t146 = t16 + t145;
+    const float t147 = t146 * t142;
+    const float t148 = t143 - t147;
+    const float t149 = u_4 / J_3;
+    const float t150 = t142 + t148;
+    const float t151 = t149 + t150;
+    float rest = (t85 - t85) * t142 * t148;
+    rest += t151 - t151;
+    if (SCARA_RARELY_F(isnan(rest) != 0)) {
         return SCARA_NOT_FINITE;
     }
-    qdd[0] = t119;
-    qdd[1] = t183;
-    qdd[2] = t179;
-    qdd[3] = t177;
+    qdd[0] = t85;
+    qdd[1] = t142;
+    qdd[2] = t148;
+    qdd[3] = t151;
     return SCARA_OK;
 }
 

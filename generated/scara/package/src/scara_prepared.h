@@ -14,15 +14,15 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[24];
+    double value[37];
 } scara_prepared;
 
 scara_prepared scara_prepare(const scara_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 65 operations instead of 83 */
+/* u: the smallest inputs that produce the motion, (27); 63 operations instead of 82 */
 scara_status scara_inverse_dynamics_prepared(const double q[4], const double qd[4], const double qdd[4], const scara_prepared *p, double u[4]);
 
-/* q̈: accelerations under the inputs, (15); 126 operations instead of 181 */
+/* q̈: accelerations under the inputs, (15); 107 operations instead of 149 */
 scara_status scara_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[4], const scara_prepared *p, double qdd[4]);
 
 #ifdef __cplusplus
@@ -50,6 +50,15 @@ scara_status scara_forward_dynamics_prepared(const double q[4], const double qd[
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
+#endif
+
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SCARA_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SCARA_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SCARA_RARELY(condition) (condition)
 #endif
 
 #ifdef __GNUC__
@@ -182,60 +191,51 @@ scara_prepared scara_prepare(const scara_params *p) {
     const double v14 = J_r + v13;
     const double v15 = v11 + v14;
     const double v16 = J_2 + J_3;
-    const double v17 = l_2 * v6;
-    const double v18 = J_r + v16;
-    const double v19 = fabs(m_3);
-    const double v20 = l_1 * m_1;
-    const double v21 = 0.25 * v20;
-    const double v22 = 0.5 * l_2;
-    const double v23 = fabs(J_1);
-    const double v24 = fabs(J_r);
-    const double v25 = fabs(l_1);
-    const double v26 = fabs(m_1);
-    const double v27 = v25 * v26;
-    const double v28 = 0.25 * v27;
-    const double v29 = fabs(m_2);
-    const double v30 = fabs(l_2);
-    const double v31 = 0.5 * v30;
-    const double v32 = v25 + v31;
-    const double v33 = v29 * v32;
-    const double v34 = v25 + v30;
-    const double v35 = v25 + v34;
-    const double v36 = v19 * v35;
-    const double v37 = 2.0 * v36;
-    const double v38 = v33 + v37;
-    const double v39 = v28 + v38;
-    const double v40 = v25 * v29;
-    const double v41 = v36 + v40;
-    const double v42 = v36 + v41;
-    const double v43 = v39 + v42;
-    const double v44 = v25 * v43;
-    const double v45 = fabs(J_2);
-    const double v46 = fabs(J_3);
-    const double v47 = 0.5 * v33;
-    const double v48 = v37 + v47;
-    const double v49 = v30 * v48;
-    const double v50 = v46 + v49;
-    const double v51 = v45 + v50;
-    const double v52 = v44 + v51;
-    const double v53 = v24 + v52;
-    const double v54 = v23 + v53;
-    const double v55 = v54 * 3.552713678800501e-15;
-    const double v56 = l_2 * v17;
-    const double v57 = J_3 + v56;
-    const double v58 = J_2 + v57;
-    const double v59 = J_r + v58;
-    const double v60 = v29 * v30;
-    const double v61 = 0.25 * v60;
-    const double v62 = v19 * v30;
-    const double v63 = v61 + v62;
-    const double v64 = v30 * v63;
-    const double v65 = v46 + v64;
-    const double v66 = v45 + v65;
-    const double v67 = v24 + v66;
-    const double v68 = v67 * 3.552713678800501e-15;
-    const double v69 = v46 * 3.552713678800501e-15;
-    const double v70 = m_3 * g;
+    const double v17 = J_r + v16;
+    const double v18 = l_2 * v6;
+    const double v19 = l_1 * v4;
+    const double v20 = fabs(m_3);
+    const double v21 = m_3 * 3.552713678800501e-15;
+    const double v22 = l_2 * m_2;
+    const double v23 = 0.25 * v22;
+    const double v24 = l_2 * m_3;
+    const double v25 = v23 + v24;
+    const double v26 = l_2 * v25;
+    const double v27 = J_2 + v26;
+    const double v28 = J_r + v27;
+    const double v29 = v27 / v28;
+    const double v30 = J_r * v29;
+    const double v31 = 0.5 * v22;
+    const double v32 = v31 + v24;
+    const double v33 = v32 / v28;
+    const double v34 = J_r * v33;
+    const double v35 = l_1 * m_1;
+    const double v36 = 0.25 * v35;
+    const double v37 = m_2 + m_3;
+    const double v38 = v32 * v33;
+    const double v39 = v37 - v38;
+    const double v40 = J_1 + J_r;
+    const double v41 = fabs(J_2);
+    const double v42 = 0.06 + v41;
+    const double v43 = fabs(l_2);
+    const double v44 = 0.5 * v43;
+    const double v45 = 0.05 + v44;
+    const double v46 = m_2 * v45;
+    const double v47 = v45 * v46;
+    const double v48 = v42 + v47;
+    const double v49 = fabs(J_3);
+    const double v50 = 0.008 + v49;
+    const double v51 = v48 + v50;
+    const double v52 = fabs(l_1);
+    const double v53 = v52 * v37;
+    const double v54 = m_1 * v52;
+    const double v55 = 0.25 * v54;
+    const double v56 = fabs(J_1);
+    const double v57 = 0.09 + J_r;
+    const double v58 = v56 + v57;
+    const double v59 = fabs(v28);
+    const double v60 = v50 * 3.552713678800501e-15;
+    const double v61 = m_3 * g;
     scara_prepared prepared;
     prepared.value[0] = l_1;
     prepared.value[1] = l_2;
@@ -249,25 +249,38 @@ scara_prepared scara_prepare(const scara_params *p) {
     prepared.value[9] = v16;
     prepared.value[10] = v17;
     prepared.value[11] = v18;
-    prepared.value[12] = m_2;
-    prepared.value[13] = J_1;
-    prepared.value[14] = J_2;
-    prepared.value[15] = J_r;
-    prepared.value[16] = v19;
-    prepared.value[17] = v21;
-    prepared.value[18] = v22;
-    prepared.value[19] = v55;
-    prepared.value[20] = v59;
-    prepared.value[21] = v68;
-    prepared.value[22] = v69;
-    prepared.value[23] = v70;
+    prepared.value[12] = v19;
+    prepared.value[13] = m_2;
+    prepared.value[14] = J_r;
+    prepared.value[15] = v20;
+    prepared.value[16] = v21;
+    prepared.value[17] = v28;
+    prepared.value[18] = v29;
+    prepared.value[19] = v30;
+    prepared.value[20] = v33;
+    prepared.value[21] = v34;
+    prepared.value[22] = v36;
+    prepared.value[23] = v37;
+    prepared.value[24] = v39;
+    prepared.value[25] = v40;
+    prepared.value[26] = v43;
+    prepared.value[27] = v46;
+    prepared.value[28] = v49;
+    prepared.value[29] = v51;
+    prepared.value[30] = v52;
+    prepared.value[31] = v53;
+    prepared.value[32] = v55;
+    prepared.value[33] = v58;
+    prepared.value[34] = v59;
+    prepared.value[35] = v60;
+    prepared.value[36] = v61;
     return prepared;
 }
 
 scara_status scara_inverse_dynamics_prepared(const double q[4], const double qd[4], const double qdd[4], const scara_prepared *p, double u[4]) {
     const double q_2 = q[2];
     const double t1 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (SCARA_RARELY(!(100000.0 >= t1))) {
         return SCARA_ANGLE_RANGE;
     }
     double t2;
@@ -315,57 +328,54 @@ scara_status scara_inverse_dynamics_prepared(const double q[4], const double qd[
     const double t46 = t38 + t45;
     const double t47 = t36 + t46;
     const double t48 = t26 + t47;
-    const double t49 = t3 * t8;
-    const double t50 = l_1 * t49;
-    const double t51 = p->value[10];
-    const double t52 = t50 + t51;
-    const double t53 = q_1_ddot * t52;
-    const double t54 = q_1_dot * t2;
-    const double t55 = t8 * t54;
-    const double t56 = l_1 * t55;
-    const double t57 = q_1_dot * t56;
-    const double t58 = l_2 * t22;
-    const double t59 = t57 + t58;
-    const double t60 = t53 + t59;
-    const double t61 = l_2 * t60;
-    const double t62 = p->value[11];
-    const double t63 = q_2_ddot * t62;
-    const double t64 = q_1_ddot * t37;
-    const double t65 = 50.0 * q_2_dot;
-    const double t66 = tanh(t65);
-    const double t67 = 0.5 * q_2_dot;
-    const double t68 = t67 - t43;
-    const double t69 = t66 + t68;
-    const double t70 = t64 + t69;
-    const double t71 = t63 + t70;
-    const double t72 = t61 + t71;
+    const double t49 = p->value[10];
+    const double t50 = q_2_ddot * t49;
+    const double t51 = q_1_ddot * t37;
+    const double t52 = 50.0 * q_2_dot;
+    const double t53 = tanh(t52);
+    const double t54 = 0.5 * q_2_dot;
+    const double t55 = t54 - t43;
+    const double t56 = t53 + t55;
+    const double t57 = t51 + t56;
+    const double t58 = t50 + t57;
+    const double t60 = p->value[12];
+    const double t61 = t3 * t60;
+    const double t59 = p->value[11];
+    const double t62 = t59 + t61;
+    const double t63 = q_1_ddot * t62;
+    const double t64 = l_2 * t22;
+    const double t65 = q_1_dot * t2;
+    const double t66 = t65 * t60;
+    const double t67 = q_1_dot * t66;
+    const double t68 = t64 + t67;
+    const double t69 = t63 + t68;
+    const double t70 = l_2 * t69;
+    const double t71 = t58 + t70;
     const double z_dot = qd[0];
-    const double t73 = 20.0 * z_dot;
-    const double t74 = 200.0 * z_dot;
-    const double t75 = tanh(t74);
-    const double t76 = 5.0 * t75;
-    const double t77 = t73 + t76;
+    const double t72 = 20.0 * z_dot;
+    const double t73 = 200.0 * z_dot;
+    const double t74 = tanh(t73);
+    const double t75 = 5.0 * t74;
+    const double t76 = t72 + t75;
     const double g = p->value[4];
     const double z_ddot = qdd[0];
-    const double t78 = g - z_ddot;
+    const double t77 = g - z_ddot;
     const double m_3 = p->value[2];
-    const double t79 = m_3 * t78;
-    const double t80 = t77 - t79;
-    const double t81 = q_1_ddot + q_2_ddot;
-    const double t82 = t81 - q_4_ddot;
-    const double t83 = J_3 * t82;
-    const double t84 = -t83;
-    double rest = t48 - t48;
-    rest += t72 - t72;
-    rest += t80 - t80;
-    rest += t84 - t84;
-    if (isnan(rest) != 0) {
+    const double t78 = m_3 * t77;
+    const double t79 = t76 - t78;
+    const double t80 = q_1_ddot + q_2_ddot;
+    const double t81 = t80 - q_4_ddot;
+    const double t82 = J_3 * t81;
+    const double t83 = -t82;
+    double rest = (t48 - t48) * t71 * t79;
+    rest += t83 - t83;
+    if (SCARA_RARELY(isnan(rest) != 0)) {
         return SCARA_NOT_FINITE;
     }
     u[0] = t48;
-    u[1] = t72;
-    u[2] = t80;
-    u[3] = t84;
+    u[1] = t71;
+    u[2] = t79;
+    u[3] = t83;
     return SCARA_OK;
 }
 
@@ -374,188 +384,180 @@ scara_status scara_forward_dynamics_prepared(const double q[4], const double qd[
     const double t1 = fabs(q_4);
     const double q_2 = q[2];
     const double t2 = fabs(q_2);
-    if (!(100000.0 >= t1)) {
+    if (SCARA_RARELY(!(100000.0 >= t1))) {
         return SCARA_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SCARA_RARELY(!(100000.0 >= t2))) {
         return SCARA_ANGLE_RANGE;
     }
     const double angle[2] = {q_4, q_2};
     double sine[2];
     double cosine[2];
     scara_sincos_group(2, angle, sine, cosine);
-    const double t7 = p->value[16];
-    if (!(t7 > 0.0)) {
+    const double t7 = p->value[15];
+    const double t8 = p->value[16];
+    if (SCARA_RARELY(!(t7 > t8))) {
         return SCARA_MASS_RANK;
     }
-    const double l_1 = p->value[0];
-    const double t5 = sine[1];
-    const double t8 = l_1 * t5;
-    const double m_2 = p->value[12];
-    const double t9 = m_2 * t8;
-    const double t4 = cosine[0];
-    const double t10 = t4 * t8;
     const double t6 = cosine[1];
-    const double t11 = l_1 * t6;
-    const double l_2 = p->value[1];
-    const double t12 = l_2 + t11;
-    const double t3 = sine[0];
-    const double t13 = t3 * t12;
-    const double t14 = t10 - t13;
+    const double t21 = p->value[21];
+    const double t22 = t6 * t21;
+    const double t5 = sine[1];
+    const double t25 = p->value[23];
+    const double t26 = t5 * t25;
+    const double t27 = t5 * t26;
+    const double t29 = p->value[24];
+    const double t30 = t6 * t29;
+    const double t31 = t6 * t30;
+    const double t32 = t27 + t31;
+    const double l_1 = p->value[0];
+    const double t33 = l_1 * t32;
+    const double t34 = t22 + t33;
+    const double t24 = p->value[22];
+    const double t35 = t24 + t34;
+    const double t36 = t22 + t35;
+    const double t37 = l_1 * t36;
+    const double t38 = p->value[25];
+    const double t39 = t37 + t38;
+    const double t17 = p->value[19];
+    const double t40 = t17 + t39;
+    const double t41 = fabs(t40);
+    const double z = q[0];
+    const double t53 = fabs(z);
+    const double t44 = p->value[26];
+    const double t54 = t44 + t53;
     const double m_3 = p->value[2];
-    const double t15 = m_3 * t14;
-    const double t16 = t4 * t15;
-    const double t17 = t9 + t16;
-    const double t18 = t3 * t8;
-    const double t19 = t4 * t12;
-    const double t20 = t18 + t19;
-    const double t21 = m_3 * t20;
-    const double t22 = t3 * t21;
-    const double t23 = t17 + t22;
-    const double t24 = t5 * t23;
-    const double t27 = p->value[18];
-    const double t28 = t27 + t11;
-    const double t29 = m_2 * t28;
-    const double t30 = t4 * t20;
-    const double t31 = t3 * t14;
-    const double t32 = t30 - t31;
-    const double t33 = m_3 * t32;
-    const double t34 = t29 + t33;
-    const double t35 = t6 * t34;
-    const double t26 = p->value[17];
-    const double t36 = t26 + t35;
-    const double t37 = t24 + t36;
-    const double t38 = l_1 * t37;
-    const double t39 = 0.5 * t29;
-    const double t40 = t39 + t33;
-    const double t41 = l_2 * t40;
-    const double J_3 = p->value[3];
-    const double t42 = J_3 + t41;
-    const double J_2 = p->value[14];
-    const double t43 = J_2 + t42;
-    const double t44 = t38 + t43;
-    const double J_r = p->value[15];
-    const double t45 = J_r + t44;
-    const double J_1 = p->value[13];
-    const double t46 = J_1 + t45;
-    const double t47 = fabs(t46);
-    const double t80 = p->value[19];
-    if (!(t47 > t80)) {
+    const double t55 = m_3 * t54;
+    const double t56 = t54 * t55;
+    const double t52 = p->value[29];
+    const double t57 = t52 + t56;
+    const double t47 = p->value[27];
+    const double t59 = t47 + t55;
+    const double t60 = 2.0 * t59;
+    const double t61 = p->value[31];
+    const double t62 = t60 + t61;
+    const double t64 = p->value[32];
+    const double t65 = t62 + t64;
+    const double t58 = p->value[30];
+    const double t66 = t58 * t65;
+    const double t69 = p->value[33];
+    const double t70 = t66 + t69;
+    const double t71 = t57 + t70;
+    const double t72 = t71 * 3.552713678800501e-15;
+    if (SCARA_RARELY(!(t41 > t72))) {
         return SCARA_MASS_RANK;
     }
-    const double t88 = t43 / t46;
-    const double t89 = t43 * t88;
-    const double t87 = p->value[20];
-    const double t90 = t87 - t89;
-    const double t91 = fabs(t90);
-    const double t100 = p->value[21];
-    if (!(t91 > t100)) {
+    const double J_r = p->value[14];
+    const double t74 = J_r + t57;
+    const double t75 = t74 * 3.552713678800501e-15;
+    const double t73 = p->value[34];
+    if (SCARA_RARELY(!(t73 > t75))) {
         return SCARA_MASS_RANK;
     }
-    const double t101 = J_3 / t46;
-    const double t102 = J_3 * t101;
-    const double t103 = J_3 * t88;
-    const double t104 = t103 - J_3;
-    const double t105 = t104 / t90;
-    const double t106 = t104 * t105;
-    const double t107 = t102 + t106;
-    const double t108 = J_3 - t107;
-    const double t109 = fabs(t108);
-    const double t110 = p->value[22];
-    if (!(t109 > t110)) {
+    const double t50 = p->value[28];
+    const double t76 = p->value[35];
+    if (SCARA_RARELY(!(t50 > t76))) {
         return SCARA_MASS_RANK;
     }
     const double z_dot = qd[0];
-    const double t111 = 20.0 * z_dot;
-    const double t112 = 200.0 * z_dot;
-    const double t113 = tanh(t112);
-    const double t114 = 5.0 * t113;
-    const double t115 = t111 + t114;
-    const double t116 = p->value[23];
-    const double t117 = t115 - t116;
+    const double t77 = 20.0 * z_dot;
+    const double t78 = 200.0 * z_dot;
+    const double t79 = tanh(t78);
+    const double t80 = 5.0 * t79;
+    const double t81 = t77 + t80;
+    const double t82 = p->value[36];
+    const double t83 = t81 - t82;
     const double u_3 = u[2];
-    const double t118 = u_3 - t117;
-    const double t119 = t118 / m_3;
+    const double t84 = u_3 - t83;
+    const double t85 = t84 / m_3;
     const double q_1_dot = qd[1];
-    const double t120 = 0.8 * q_1_dot;
-    const double t121 = 50.0 * q_1_dot;
-    const double t122 = tanh(t121);
-    const double t123 = 1.5 * t122;
-    const double t124 = t120 + t123;
-    const double t125 = q_1_dot * l_1;
-    const double t126 = q_1_dot * t125;
-    const double t127 = t6 * t126;
+    const double t86 = q_1_dot * q_1_dot;
+    const double t87 = l_1 * t86;
+    const double t88 = t6 * t87;
     const double q_2_dot = qd[2];
-    const double t128 = q_1_dot + q_2_dot;
-    const double t129 = l_2 * t128;
-    const double t130 = t128 * t129;
-    const double t131 = t127 + t130;
-    const double t132 = t4 * t131;
-    const double t133 = t5 * t126;
-    const double t134 = t3 * t133;
-    const double t135 = t132 + t134;
-    const double t136 = t3 * t135;
-    const double t137 = t4 * t133;
-    const double t138 = t3 * t131;
-    const double t139 = t137 - t138;
-    const double t140 = t4 * t139;
-    const double t141 = t136 + t140;
-    const double t142 = m_3 * t141;
-    const double t143 = m_2 * t133;
-    const double t144 = 0.5 * t143;
-    const double t145 = t142 + t144;
-    const double t146 = l_2 * t145;
-    const double t147 = t3 * t139;
-    const double t148 = t4 * t135;
-    const double t149 = t147 - t148;
-    const double t150 = m_3 * t149;
-    const double t151 = 0.5 * t130;
-    const double t152 = t127 + t151;
-    const double t153 = m_2 * t152;
-    const double t154 = t150 - t153;
-    const double t155 = t5 * t154;
-    const double t156 = t143 + t142;
-    const double t157 = t6 * t156;
-    const double t158 = t155 + t157;
-    const double t159 = l_1 * t158;
-    const double t160 = t146 + t159;
-    const double t161 = t124 + t160;
+    const double t89 = q_1_dot + q_2_dot;
+    const double t90 = t89 * t89;
+    const double l_2 = p->value[1];
+    const double t91 = l_2 * t90;
+    const double t92 = t88 + t91;
+    const double t4 = cosine[0];
+    const double t93 = t4 * t92;
+    const double t94 = t5 * t87;
+    const double t3 = sine[0];
+    const double t95 = t3 * t94;
+    const double t96 = t93 + t95;
+    const double t97 = m_3 * t96;
+    const double t98 = t3 * t97;
+    const double t99 = t4 * t94;
+    const double t100 = t3 * t92;
+    const double t101 = t99 - t100;
+    const double t102 = m_3 * t101;
+    const double t103 = t4 * t102;
+    const double t104 = t98 + t103;
+    const double m_2 = p->value[13];
+    const double t105 = m_2 * t94;
+    const double t106 = 0.5 * t105;
+    const double t107 = t104 + t106;
+    const double t108 = l_2 * t107;
     const double u_1 = u[0];
-    const double t162 = u_1 - t161;
-    const double t163 = t162 / t46;
-    const double t164 = 0.5 * q_2_dot;
-    const double t165 = 50.0 * q_2_dot;
-    const double t166 = tanh(t165);
-    const double t167 = t164 + t166;
-    const double t168 = t167 + t146;
+    const double t109 = u_1 - t108;
+    const double t110 = t3 * t102;
+    const double t111 = t4 * t97;
+    const double t112 = t110 - t111;
+    const double t113 = 0.5 * t91;
+    const double t114 = t88 + t113;
+    const double t115 = m_2 * t114;
+    const double t116 = t112 - t115;
+    const double t117 = t5 * t116;
+    const double t118 = t105 + t104;
+    const double t119 = t6 * t118;
+    const double t120 = t117 + t119;
+    const double t121 = 0.5 * q_2_dot;
+    const double t122 = 50.0 * q_2_dot;
+    const double t123 = tanh(t122);
+    const double t124 = t121 + t123;
+    const double t125 = t124 + t108;
     const double u_2 = u[1];
-    const double t169 = u_2 - t168;
-    const double t170 = t162 * t88;
-    const double t171 = t169 - t170;
-    const double t172 = t171 / t90;
-    const double t173 = t171 * t105;
-    const double t174 = t162 * t101;
-    const double t175 = t173 - t174;
+    const double t126 = u_2 - t125;
     const double u_4 = u[3];
-    const double t176 = u_4 - t175;
-    const double t177 = t176 / t108;
-    const double t178 = t105 * t177;
-    const double t179 = t172 - t178;
-    const double t180 = t88 * t179;
-    const double t181 = t163 - t180;
-    const double t182 = t101 * t177;
-    const double t183 = t181 + t182;
-    double rest = t119 - t119;
-    rest += t183 - t183;
-    rest += t179 - t179;
-    rest += t177 - t177;
-    if (isnan(rest) != 0) {
+    const double t127 = u_4 + t126;
+    const double t20 = p->value[20];
+    const double t128 = t20 * t127;
+    const double t129 = t6 * t128;
+    const double t130 = t120 + t129;
+    const double t131 = l_1 * t130;
+    const double t132 = t109 - t131;
+    const double t133 = 0.8 * q_1_dot;
+    const double t134 = t132 - t133;
+    const double t135 = 50.0 * q_1_dot;
+    const double t136 = tanh(t135);
+    const double t137 = 1.5 * t136;
+    const double t138 = t134 - t137;
+    const double t139 = u_4 + t138;
+    const double t16 = p->value[18];
+    const double t140 = t16 * t127;
+    const double t141 = t139 - t140;
+    const double t142 = t141 / t40;
+    const double t15 = p->value[17];
+    const double t143 = t127 / t15;
+    const double t144 = l_1 * t6;
+    const double t145 = t144 * t20;
+    const double t146 = t16 + t145;
+    const double t147 = t146 * t142;
+    const double t148 = t143 - t147;
+    const double J_3 = p->value[3];
+    const double t149 = u_4 / J_3;
+    const double t150 = t142 + t148;
+    const double t151 = t149 + t150;
+    double rest = (t85 - t85) * t142 * t148;
+    rest += t151 - t151;
+    if (SCARA_RARELY(isnan(rest) != 0)) {
         return SCARA_NOT_FINITE;
     }
-    qdd[0] = t119;
-    qdd[1] = t183;
-    qdd[2] = t179;
-    qdd[3] = t177;
+    qdd[0] = t85;
+    qdd[1] = t142;
+    qdd[2] = t148;
+    qdd[3] = t151;
     return SCARA_OK;
 }
 

@@ -220,6 +220,15 @@ skate_status skate_singularity(const double q[3], const skate_params *p, double 
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SKATE_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SKATE_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SKATE_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SKATE_INLINE static inline __attribute__((always_inline))
 #else
@@ -297,9 +306,8 @@ skate_status skate_mass_matrix(const double q[3], const skate_params *p, double 
     (void)q;
     const double Theta_s = p->Theta_s;
     const double m_s = p->m_s;
-    double rest = Theta_s - Theta_s;
-    rest += m_s - m_s;
-    if (isnan(rest) != 0) {
+    double rest = (Theta_s - Theta_s) * m_s;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G[0] = Theta_s;
@@ -363,16 +371,15 @@ skate_status skate_constraint_jacobian(const double q[3], const skate_params *p,
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = -t3;
-    double rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t4;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B[0] = 0.0;
@@ -385,7 +392,7 @@ skate_status skate_constraint_jacobian_dot(const double q[3], const double qd[3]
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -394,9 +401,8 @@ skate_status skate_constraint_jacobian_dot(const double q[3], const double qd[3]
     const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
     const double t5 = phi_dot * t2;
-    double rest = t4 - t4;
-    rest += t5 - t5;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t5;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_dot[0] = 0.0;
@@ -409,16 +415,15 @@ skate_status skate_constraint_pseudoinverse(const double q[3], const skate_param
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = -t3;
-    double rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t4;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_pinv[0] = 0.0;
@@ -431,7 +436,7 @@ skate_status skate_nullspace_projector(const double q[3], const skate_params *p,
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -440,10 +445,8 @@ skate_status skate_nullspace_projector(const double q[3], const skate_params *p,
     const double t4 = t3 * t3;
     const double t5 = t2 * t3;
     const double t6 = t2 * t2;
-    double rest = t4 - t4;
-    rest += t5 - t5;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t5 * t6;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_B[0] = 1.0;
@@ -462,7 +465,7 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -477,10 +480,8 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
     const double t9 = 2.0 * t8;
     const double t10 = (-1.0) + t9;
     const double t11 = phi_dot * t10;
-    double rest = t7 - t7;
-    rest += t11 - t11;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    double rest = (t7 - t7) * t11 * t6;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_B_dot[0] = 0.0;
@@ -498,7 +499,7 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
 skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params *p, double B_G_pinv[3]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -512,13 +513,12 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double t10 = -t3;
-    double rest = t2 - t2;
-    rest += t10 - t10;
-    if (isnan(rest) != 0) {
+    double rest = (t2 - t2) * t10;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_G_pinv[0] = 0.0;
@@ -530,7 +530,7 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
 skate_status skate_weighted_nullspace_projector(const double q[3], const skate_params *p, double N_BG[9]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -544,16 +544,14 @@ skate_status skate_weighted_nullspace_projector(const double q[3], const skate_p
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double t10 = t3 * t3;
     const double t11 = t2 * t3;
     const double t12 = t2 * t2;
-    double rest = t10 - t10;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    double rest = (t10 - t10) * t11 * t12;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_BG[0] = 1.0;
@@ -572,15 +570,14 @@ skate_status skate_control_matrix(const double q[3], const skate_params *p, doub
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t2;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M[0] = 1.0;
@@ -596,15 +593,14 @@ skate_status skate_projected_control_matrix(const double q[3], const skate_param
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t2;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_tilde[0] = 1.0;
@@ -620,15 +616,14 @@ skate_status skate_projected_control_pseudoinverse(const double q[3], const skat
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    double rest = (t3 - t3) * t2;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_tilde_pinv[0] = 1.0;
@@ -644,14 +639,14 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (!(t4 > 7.099748146989106e-30)) {
+    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -659,7 +654,7 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     }
     const double t5 = t2 / t3;
     double rest = t5 - t5;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     F_B[0] = 1.0;
@@ -674,7 +669,7 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
 skate_status skate_projected_mass_matrix(const double q[3], const skate_params *p, double G_tilde[9]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -688,11 +683,9 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
     const double t8 = t2 * t2;
     const double t9 = m_s * t8;
     const double Theta_s = p->Theta_s;
-    double rest = Theta_s - Theta_s;
-    rest += t5 - t5;
-    rest += t7 - t7;
+    double rest = (Theta_s - Theta_s) * t5 * t7;
     rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_tilde[0] = Theta_s;
@@ -710,7 +703,7 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
 skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[3], const skate_params *p, double C_tilde[9]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -728,11 +721,9 @@ skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[
     const double t11 = t2 * t10;
     const double t12 = m_s * t11;
     const double t13 = -t12;
-    double rest = t7 - t7;
-    rest += t9 - t9;
-    rest += t13 - t13;
+    double rest = (t7 - t7) * t9 * t13;
     rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     C_tilde[0] = 0.0;
@@ -769,14 +760,14 @@ skate_status skate_projected_applied_force(const double q[3], const double qd[3]
 skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p, double G_bar[4]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (!(t4 > 7.099748146989106e-30)) {
+    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -785,9 +776,8 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
     const double m_s = p->m_s;
     const double t5 = m_s / t4;
     const double Theta_s = p->Theta_s;
-    double rest = Theta_s - Theta_s;
-    rest += t5 - t5;
-    if (isnan(rest) != 0) {
+    double rest = (Theta_s - Theta_s) * t5;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_bar[0] = Theta_s;
@@ -800,14 +790,14 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
 skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3], const skate_params *p, double C_bar[4]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (!(t4 > 7.099748146989106e-30)) {
+    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -820,7 +810,7 @@ skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3]
     const double t7 = m_s / t6;
     const double t8 = t5 * t7;
     double rest = t8 - t8;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     C_bar[0] = 0.0;
@@ -851,14 +841,14 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (!(t4 > 7.099748146989106e-30)) {
+    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
         if (!(1.0 > 0.0)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -866,7 +856,7 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     }
     const double t5 = 1.0 / t3;
     double rest = t5 - t5;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_bar[0] = 1.0;
@@ -880,7 +870,7 @@ skate_status skate_admissible_velocity(const double q[3], const double qd[3], co
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -894,10 +884,8 @@ skate_status skate_admissible_velocity(const double q[3], const double qd[3], co
     const double t7 = t3 * t6;
     const double t8 = t2 * t6;
     const double phi_dot = qd[0];
-    double rest = phi_dot - phi_dot;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    double rest = (phi_dot - phi_dot) * t7 * t8;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qd_admissible[0] = phi_dot;
@@ -910,7 +898,7 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -938,10 +926,8 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     const double t18 = t2 * t17;
     const double t19 = t14 + t18;
     const double phi_ddot = qdd[0];
-    double rest = phi_ddot - phi_ddot;
-    rest += t13 - t13;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    double rest = (phi_ddot - phi_ddot) * t13 * t19;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd_admissible[0] = phi_ddot;
@@ -955,10 +941,8 @@ skate_status skate_projected_configuration(const double q[3], const skate_params
     const double phi = q[0];
     const double x = q[1];
     const double y = q[2];
-    double rest = phi - phi;
-    rest += x - x;
-    rest += y - y;
-    if (isnan(rest) != 0) {
+    double rest = (phi - phi) * x * y;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     q_projected[0] = phi;
@@ -971,7 +955,7 @@ skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const
     (void)qd;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -987,9 +971,8 @@ skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const
     const double t7 = t5 + t6;
     const double m_s = p->m_s;
     const double t8 = m_s * t7;
-    double rest = t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t8;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -1012,7 +995,7 @@ skate_status skate_actuator_velocity(const double q[3], const double qd[3], cons
     (void)p;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -1024,9 +1007,8 @@ skate_status skate_actuator_velocity(const double q[3], const double qd[3], cons
     const double t5 = y_dot * t2;
     const double t6 = t4 + t5;
     const double phi_dot = qd[0];
-    double rest = phi_dot - phi_dot;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    double rest = (phi_dot - phi_dot) * t6;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     nu[0] = phi_dot;
@@ -1038,9 +1020,8 @@ skate_status skate_actuator_mass_matrix(const double q[3], const skate_params *p
     (void)q;
     const double Theta_s = p->Theta_s;
     const double m_s = p->m_s;
-    double rest = Theta_s - Theta_s;
-    rest += m_s - m_s;
-    if (isnan(rest) != 0) {
+    double rest = (Theta_s - Theta_s) * m_s;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_nu[0] = Theta_s;
@@ -1062,7 +1043,7 @@ skate_status skate_actuator_bias(const double q[3], const double qd[3], const sk
 skate_status skate_forward_dynamics(const double q[3], const double qd[3], const double u[2], const skate_params *p, double qdd[3]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -1076,7 +1057,7 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double T = u[0];
@@ -1100,10 +1081,8 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     const double t23 = m_s * t22;
     const double t24 = t21 + t23;
     const double t25 = t11 * t24;
-    double rest = t10 - t10;
-    rest += t20 - t20;
-    rest += t25 - t25;
-    if (isnan(rest) != 0) {
+    double rest = (t10 - t10) * t20 * t25;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
@@ -1116,7 +1095,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     (void)u;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -1130,7 +1109,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double x_dot = qd[1];
@@ -1142,7 +1121,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
     double rest = t14 - t14;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;
@@ -1166,7 +1145,7 @@ skate_status skate_energy(const double q[3], const double qd[3], const skate_par
     const double t8 = 0.5 * t7;
     const double t9 = t3 + t8;
     double rest = t9 - t9;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     T_U[0] = t9;

@@ -220,6 +220,15 @@ skate_status skate_singularity_f(const float q[3], const skate_params_f *p, floa
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SKATE_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SKATE_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SKATE_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SKATE_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -289,9 +298,8 @@ skate_status skate_mass_matrix_f(const float q[3], const skate_params_f *p, floa
     (void)q;
     const float Theta_s = p->Theta_s;
     const float m_s = p->m_s;
-    float rest = Theta_s - Theta_s;
-    rest += m_s - m_s;
-    if (isnan(rest) != 0) {
+    float rest = (Theta_s - Theta_s) * m_s;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G[0] = Theta_s;
@@ -355,16 +363,15 @@ skate_status skate_constraint_jacobian_f(const float q[3], const skate_params_f 
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = -t3;
-    float rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    float rest = (t2 - t2) * t4;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B[0] = 0.0f;
@@ -377,7 +384,7 @@ skate_status skate_constraint_jacobian_dot_f(const float q[3], const float qd[3]
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -386,9 +393,8 @@ skate_status skate_constraint_jacobian_dot_f(const float q[3], const float qd[3]
     const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
     const float t5 = phi_dot * t2;
-    float rest = t4 - t4;
-    rest += t5 - t5;
-    if (isnan(rest) != 0) {
+    float rest = (t4 - t4) * t5;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_dot[0] = 0.0f;
@@ -401,16 +407,15 @@ skate_status skate_constraint_pseudoinverse_f(const float q[3], const skate_para
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = -t3;
-    float rest = t2 - t2;
-    rest += t4 - t4;
-    if (isnan(rest) != 0) {
+    float rest = (t2 - t2) * t4;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_pinv[0] = 0.0f;
@@ -423,7 +428,7 @@ skate_status skate_nullspace_projector_f(const float q[3], const skate_params_f 
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -432,10 +437,8 @@ skate_status skate_nullspace_projector_f(const float q[3], const skate_params_f 
     const float t4 = t3 * t3;
     const float t5 = t2 * t3;
     const float t6 = t2 * t2;
-    float rest = t4 - t4;
-    rest += t5 - t5;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    float rest = (t4 - t4) * t5 * t6;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_B[0] = 1.0f;
@@ -454,7 +457,7 @@ skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3]
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -469,10 +472,8 @@ skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3]
     const float t9 = 2.0f * t8;
     const float t10 = (-1.0f) + t9;
     const float t11 = phi_dot * t10;
-    float rest = t7 - t7;
-    rest += t11 - t11;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    float rest = (t7 - t7) * t11 * t6;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_B_dot[0] = 0.0f;
@@ -490,7 +491,7 @@ skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3]
 skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params_f *p, float B_G_pinv[3]) {
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -504,13 +505,12 @@ skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const float t10 = -t3;
-    float rest = t2 - t2;
-    rest += t10 - t10;
-    if (isnan(rest) != 0) {
+    float rest = (t2 - t2) * t10;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     B_G_pinv[0] = 0.0f;
@@ -522,7 +522,7 @@ skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params
 skate_status skate_weighted_nullspace_projector_f(const float q[3], const skate_params_f *p, float N_BG[9]) {
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -536,16 +536,14 @@ skate_status skate_weighted_nullspace_projector_f(const float q[3], const skate_
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const float t10 = t3 * t3;
     const float t11 = t2 * t3;
     const float t12 = t2 * t2;
-    float rest = t10 - t10;
-    rest += t11 - t11;
-    rest += t12 - t12;
-    if (isnan(rest) != 0) {
+    float rest = (t10 - t10) * t11 * t12;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     N_BG[0] = 1.0f;
@@ -564,15 +562,14 @@ skate_status skate_control_matrix_f(const float q[3], const skate_params_f *p, f
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    float rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    float rest = (t3 - t3) * t2;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M[0] = 1.0f;
@@ -588,15 +585,14 @@ skate_status skate_projected_control_matrix_f(const float q[3], const skate_para
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    float rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    float rest = (t3 - t3) * t2;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_tilde[0] = 1.0f;
@@ -612,15 +608,14 @@ skate_status skate_projected_control_pseudoinverse_f(const float q[3], const ska
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    float rest = t3 - t3;
-    rest += t2 - t2;
-    if (isnan(rest) != 0) {
+    float rest = (t3 - t3) * t2;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_tilde_pinv[0] = 1.0f;
@@ -636,14 +631,14 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
-    if (!(t4 > 2.046363e-12f)) {
+    if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
         if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -651,7 +646,7 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
     }
     const float t5 = t2 / t3;
     float rest = t5 - t5;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     F_B[0] = 1.0f;
@@ -666,7 +661,7 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
 skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_f *p, float G_tilde[9]) {
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -680,11 +675,9 @@ skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_
     const float t8 = t2 * t2;
     const float t9 = m_s * t8;
     const float Theta_s = p->Theta_s;
-    float rest = Theta_s - Theta_s;
-    rest += t5 - t5;
-    rest += t7 - t7;
+    float rest = (Theta_s - Theta_s) * t5 * t7;
     rest += t9 - t9;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_tilde[0] = Theta_s;
@@ -702,7 +695,7 @@ skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_
 skate_status skate_projected_coriolis_matrix_f(const float q[3], const float qd[3], const skate_params_f *p, float C_tilde[9]) {
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -720,11 +713,9 @@ skate_status skate_projected_coriolis_matrix_f(const float q[3], const float qd[
     const float t11 = t2 * t10;
     const float t12 = m_s * t11;
     const float t13 = -t12;
-    float rest = t7 - t7;
-    rest += t9 - t9;
-    rest += t13 - t13;
+    float rest = (t7 - t7) * t9 * t13;
     rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     C_tilde[0] = 0.0f;
@@ -761,14 +752,14 @@ skate_status skate_projected_applied_force_f(const float q[3], const float qd[3]
 skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f *p, float G_bar[4]) {
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
-    if (!(t4 > 2.046363e-12f)) {
+    if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
         if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -777,9 +768,8 @@ skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f 
     const float m_s = p->m_s;
     const float t5 = m_s / t4;
     const float Theta_s = p->Theta_s;
-    float rest = Theta_s - Theta_s;
-    rest += t5 - t5;
-    if (isnan(rest) != 0) {
+    float rest = (Theta_s - Theta_s) * t5;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_bar[0] = Theta_s;
@@ -792,14 +782,14 @@ skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f 
 skate_status skate_minimal_coriolis_matrix_f(const float q[3], const float qd[3], const skate_params_f *p, float C_bar[4]) {
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
-    if (!(t4 > 2.046363e-12f)) {
+    if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
         if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -812,7 +802,7 @@ skate_status skate_minimal_coriolis_matrix_f(const float q[3], const float qd[3]
     const float t7 = m_s / t6;
     const float t8 = t5 * t7;
     float rest = t8 - t8;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     C_bar[0] = 0.0f;
@@ -843,14 +833,14 @@ skate_status skate_minimal_control_matrix_f(const float q[3], const skate_params
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
-    if (!(t4 > 2.046363e-12f)) {
+    if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
         if (!(1.0f > 0.0f)) {
             return SKATE_CONSTRAINT_RANK;
         }
@@ -858,7 +848,7 @@ skate_status skate_minimal_control_matrix_f(const float q[3], const skate_params
     }
     const float t5 = 1.0f / t3;
     float rest = t5 - t5;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     M_bar[0] = 1.0f;
@@ -872,7 +862,7 @@ skate_status skate_admissible_velocity_f(const float q[3], const float qd[3], co
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -886,10 +876,8 @@ skate_status skate_admissible_velocity_f(const float q[3], const float qd[3], co
     const float t7 = t3 * t6;
     const float t8 = t2 * t6;
     const float phi_dot = qd[0];
-    float rest = phi_dot - phi_dot;
-    rest += t7 - t7;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    float rest = (phi_dot - phi_dot) * t7 * t8;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qd_admissible[0] = phi_dot;
@@ -902,7 +890,7 @@ skate_status skate_admissible_acceleration_f(const float q[3], const float qd[3]
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -930,10 +918,8 @@ skate_status skate_admissible_acceleration_f(const float q[3], const float qd[3]
     const float t18 = t2 * t17;
     const float t19 = t14 + t18;
     const float phi_ddot = qdd[0];
-    float rest = phi_ddot - phi_ddot;
-    rest += t13 - t13;
-    rest += t19 - t19;
-    if (isnan(rest) != 0) {
+    float rest = (phi_ddot - phi_ddot) * t13 * t19;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd_admissible[0] = phi_ddot;
@@ -947,10 +933,8 @@ skate_status skate_projected_configuration_f(const float q[3], const skate_param
     const float phi = q[0];
     const float x = q[1];
     const float y = q[2];
-    float rest = phi - phi;
-    rest += x - x;
-    rest += y - y;
-    if (isnan(rest) != 0) {
+    float rest = (phi - phi) * x * y;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     q_projected[0] = phi;
@@ -963,7 +947,7 @@ skate_status skate_inverse_dynamics_f(const float q[3], const float qd[3], const
     (void)qd;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -979,9 +963,8 @@ skate_status skate_inverse_dynamics_f(const float q[3], const float qd[3], const
     const float t7 = t5 + t6;
     const float m_s = p->m_s;
     const float t8 = m_s * t7;
-    float rest = t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    float rest = (t4 - t4) * t8;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -1004,7 +987,7 @@ skate_status skate_actuator_velocity_f(const float q[3], const float qd[3], cons
     (void)p;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -1016,9 +999,8 @@ skate_status skate_actuator_velocity_f(const float q[3], const float qd[3], cons
     const float t5 = y_dot * t2;
     const float t6 = t4 + t5;
     const float phi_dot = qd[0];
-    float rest = phi_dot - phi_dot;
-    rest += t6 - t6;
-    if (isnan(rest) != 0) {
+    float rest = (phi_dot - phi_dot) * t6;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     nu[0] = phi_dot;
@@ -1030,9 +1012,8 @@ skate_status skate_actuator_mass_matrix_f(const float q[3], const skate_params_f
     (void)q;
     const float Theta_s = p->Theta_s;
     const float m_s = p->m_s;
-    float rest = Theta_s - Theta_s;
-    rest += m_s - m_s;
-    if (isnan(rest) != 0) {
+    float rest = (Theta_s - Theta_s) * m_s;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     G_nu[0] = Theta_s;
@@ -1054,7 +1035,7 @@ skate_status skate_actuator_bias_f(const float q[3], const float qd[3], const sk
 skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const float u[2], const skate_params_f *p, float qdd[3]) {
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -1068,7 +1049,7 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const float T = u[0];
@@ -1092,10 +1073,8 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
     const float t23 = m_s * t22;
     const float t24 = t21 + t23;
     const float t25 = t11 * t24;
-    float rest = t10 - t10;
-    rest += t20 - t20;
-    rest += t25 - t25;
-    if (isnan(rest) != 0) {
+    float rest = (t10 - t10) * t20 * t25;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
@@ -1108,7 +1087,7 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
     (void)u;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -1122,7 +1101,7 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
     const float t9 = t8 * 1.4305115e-06f;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const float x_dot = qd[1];
@@ -1134,7 +1113,7 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
     const float t13 = phi_dot * m_s;
     const float t14 = t12 * t13;
     float rest = t14 - t14;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;
@@ -1158,7 +1137,7 @@ skate_status skate_energy_f(const float q[3], const float qd[3], const skate_par
     const float t8 = 0.5f * t7;
     const float t9 = t3 + t8;
     float rest = t9 - t9;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     T_U[0] = t9;

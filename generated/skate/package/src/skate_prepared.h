@@ -52,6 +52,15 @@ skate_status skate_multipliers_prepared(const double q[3], const double qd[3], c
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SKATE_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SKATE_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SKATE_RARELY(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SKATE_INLINE static inline __attribute__((always_inline))
 #else
@@ -140,7 +149,7 @@ skate_prepared skate_prepare(const skate_params *p) {
 skate_status skate_forward_dynamics_prepared(const double q[3], const double qd[3], const double u[2], const skate_prepared *p, double qdd[3]) {
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -148,7 +157,7 @@ skate_status skate_forward_dynamics_prepared(const double q[3], const double qd[
     skate_sincos(phi, &t2, &t3);
     const double t5 = p->value[2];
     const double t9 = p->value[3];
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double T = u[0];
@@ -174,10 +183,8 @@ skate_status skate_forward_dynamics_prepared(const double q[3], const double qd[
     const double t23 = m_s * t22;
     const double t24 = t21 + t23;
     const double t25 = t11 * t24;
-    double rest = t10 - t10;
-    rest += t20 - t20;
-    rest += t25 - t25;
-    if (isnan(rest) != 0) {
+    double rest = (t10 - t10) * t20 * t25;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
@@ -190,7 +197,7 @@ skate_status skate_multipliers_prepared(const double q[3], const double qd[3], c
     (void)u;
     const double phi = q[0];
     const double t1 = fabs(phi);
-    if (!(100000.0 >= t1)) {
+    if (SKATE_RARELY(!(100000.0 >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     double t2;
@@ -198,7 +205,7 @@ skate_status skate_multipliers_prepared(const double q[3], const double qd[3], c
     skate_sincos(phi, &t2, &t3);
     const double t5 = p->value[2];
     const double t9 = p->value[3];
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double x_dot = qd[1];
@@ -211,7 +218,7 @@ skate_status skate_multipliers_prepared(const double q[3], const double qd[3], c
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
     double rest = t14 - t14;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;

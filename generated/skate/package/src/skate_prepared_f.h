@@ -52,6 +52,15 @@ skate_status skate_multipliers_prepared_f(const float q[3], const float qd[3], c
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SKATE_RARELY_F(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SKATE_RARELY_F(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SKATE_RARELY_F(condition) (condition)
+#endif
+
 #ifdef __GNUC__
 #define SKATE_INLINE_F static inline __attribute__((always_inline))
 #else
@@ -132,7 +141,7 @@ skate_prepared_f skate_prepare_f(const skate_params_f *p) {
 skate_status skate_forward_dynamics_prepared_f(const float q[3], const float qd[3], const float u[2], const skate_prepared_f *p, float qdd[3]) {
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -140,7 +149,7 @@ skate_status skate_forward_dynamics_prepared_f(const float q[3], const float qd[
     skate_sincos_f(phi, &t2, &t3);
     const float t5 = p->value[2];
     const float t9 = p->value[3];
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const float T = u[0];
@@ -166,10 +175,8 @@ skate_status skate_forward_dynamics_prepared_f(const float q[3], const float qd[
     const float t23 = m_s * t22;
     const float t24 = t21 + t23;
     const float t25 = t11 * t24;
-    float rest = t10 - t10;
-    rest += t20 - t20;
-    rest += t25 - t25;
-    if (isnan(rest) != 0) {
+    float rest = (t10 - t10) * t20 * t25;
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
@@ -182,7 +189,7 @@ skate_status skate_multipliers_prepared_f(const float q[3], const float qd[3], c
     (void)u;
     const float phi = q[0];
     const float t1 = fabsf(phi);
-    if (!(100.0f >= t1)) {
+    if (SKATE_RARELY_F(!(100.0f >= t1))) {
         return SKATE_ANGLE_RANGE;
     }
     float t2;
@@ -190,7 +197,7 @@ skate_status skate_multipliers_prepared_f(const float q[3], const float qd[3], c
     skate_sincos_f(phi, &t2, &t3);
     const float t5 = p->value[2];
     const float t9 = p->value[3];
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const float x_dot = qd[1];
@@ -203,7 +210,7 @@ skate_status skate_multipliers_prepared_f(const float q[3], const float qd[3], c
     const float t13 = phi_dot * m_s;
     const float t14 = t12 * t13;
     float rest = t14 - t14;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;

@@ -53,6 +53,15 @@ skate_status skate_multipliers_sc(const skate_trig *sc, const double q[3], const
 #pragma STDC FP_CONTRACT OFF
 #endif
 
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SKATE_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SKATE_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SKATE_RARELY(condition) (condition)
+#endif
+
 skate_status skate_inverse_dynamics_sc(const skate_trig *sc, const double q[3], const double qd[3], const double qdd[3], const skate_params *p, double u[2]) {
     (void)q;
     (void)qd;
@@ -68,9 +77,8 @@ skate_status skate_inverse_dynamics_sc(const skate_trig *sc, const double q[3], 
     const double t7 = t5 + t6;
     const double m_s = p->m_s;
     const double t8 = m_s * t7;
-    double rest = t4 - t4;
-    rest += t8 - t8;
-    if (isnan(rest) != 0) {
+    double rest = (t4 - t4) * t8;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     u[0] = t4;
@@ -88,7 +96,7 @@ skate_status skate_forward_dynamics_sc(const skate_trig *sc, const double q[3], 
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double T = u[0];
@@ -114,10 +122,8 @@ skate_status skate_forward_dynamics_sc(const skate_trig *sc, const double q[3], 
     const double t23 = m_s * t22;
     const double t24 = t21 + t23;
     const double t25 = t11 * t24;
-    double rest = t10 - t10;
-    rest += t20 - t20;
-    rest += t25 - t25;
-    if (isnan(rest) != 0) {
+    double rest = (t10 - t10) * t20 * t25;
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
@@ -137,7 +143,7 @@ skate_status skate_multipliers_sc(const skate_trig *sc, const double q[3], const
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
     const double t9 = t8 * 2.6645352591003757e-15;
-    if (!(t5 > t9)) {
+    if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
     const double x_dot = qd[1];
@@ -151,7 +157,7 @@ skate_status skate_multipliers_sc(const skate_trig *sc, const double q[3], const
     const double t13 = phi_dot * m_s;
     const double t14 = t12 * t13;
     double rest = t14 - t14;
-    if (isnan(rest) != 0) {
+    if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     lambda_B[0] = t14;

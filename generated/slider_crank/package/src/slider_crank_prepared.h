@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[27];
+    double value[26];
 } slider_crank_prepared;
 
 slider_crank_prepared slider_crank_prepare(const slider_crank_params *p);
@@ -22,10 +22,10 @@ slider_crank_prepared slider_crank_prepare(const slider_crank_params *p);
 /* u: the smallest inputs that produce the motion, (27); 47 operations instead of 71 */
 slider_crank_status slider_crank_inverse_dynamics_prepared(const double q[3], const double qd[3], const double qdd[3], const slider_crank_prepared *p, double u[1]);
 
-/* q̈: accelerations under the inputs, (15); 144 operations instead of 176 */
+/* q̈: accelerations under the inputs, (15); 139 operations instead of 171 */
 slider_crank_status slider_crank_forward_dynamics_prepared(const double q[3], const double qd[3], const double u[1], const slider_crank_prepared *p, double qdd[3]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 161 operations instead of 197 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 159 operations instead of 195 */
 slider_crank_status slider_crank_multipliers_prepared(const double q[3], const double qd[3], const double u[1], const slider_crank_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus
@@ -53,6 +53,15 @@ slider_crank_status slider_crank_multipliers_prepared(const double q[3], const d
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
+#endif
+
+/* A condition that no regular state meets: compilers keep what depends on it out of the way. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__FRAMAC__) && (__GNUC__ >= 9)
+#define SLIDER_CRANK_RARELY(condition) (__builtin_expect_with_probability((condition), 0, 1) != 0)
+#elif defined(__GNUC__)
+#define SLIDER_CRANK_RARELY(condition) (__builtin_expect((condition), 0) != 0)
+#else
+#define SLIDER_CRANK_RARELY(condition) (condition)
 #endif
 
 #ifdef __GNUC__
@@ -178,10 +187,10 @@ slider_crank_prepared slider_crank_prepare(const slider_crank_params *p) {
     const double v11 = m_rod * g;
     const double v12 = l * v11;
     const double v13 = 0.5 * v12;
-    const double v14 = 0.5 * m_crank;
-    const double v15 = m_rod + v14;
-    const double v16 = r * g;
-    const double v17 = v15 * v16;
+    const double v14 = m_crank * g;
+    const double v15 = 0.5 * v14;
+    const double v16 = v11 + v15;
+    const double v17 = r * v16;
     const double v18 = 0.5 * J_crank;
     const double v19 = r * r;
     const double v20 = m_rod * v19;
@@ -205,15 +214,10 @@ slider_crank_prepared slider_crank_prepare(const slider_crank_params *p) {
     const double v38 = 0.125 * v37;
     const double v39 = v35 + v38;
     const double v40 = fabs(m_s);
-    const double v41 = r * v11;
-    const double v42 = r * m_crank;
-    const double v43 = g * v42;
-    const double v44 = 0.5 * v43;
-    const double v45 = v41 + v44;
-    const double v46 = r * m_rod;
-    const double v47 = r * v46;
-    const double v48 = 0.5 * v47;
-    const double v49 = v18 + v48;
+    const double v41 = r * m_rod;
+    const double v42 = r * v41;
+    const double v43 = 0.5 * v42;
+    const double v44 = v18 + v43;
     slider_crank_prepared prepared;
     prepared.value[0] = r;
     prepared.value[1] = l;
@@ -237,11 +241,10 @@ slider_crank_prepared slider_crank_prepare(const slider_crank_params *p) {
     prepared.value[19] = v33;
     prepared.value[20] = v39;
     prepared.value[21] = v40;
-    prepared.value[22] = v45;
-    prepared.value[23] = v12;
-    prepared.value[24] = v9;
-    prepared.value[25] = v46;
-    prepared.value[26] = v49;
+    prepared.value[22] = v12;
+    prepared.value[23] = v9;
+    prepared.value[24] = v41;
+    prepared.value[25] = v44;
     return prepared;
 }
 
@@ -250,10 +253,10 @@ slider_crank_status slider_crank_inverse_dynamics_prepared(const double q[3], co
     const double t1 = fabs(alpha);
     const double beta = q[1];
     const double t2 = fabs(beta);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {alpha, beta};
@@ -267,7 +270,7 @@ slider_crank_status slider_crank_inverse_dynamics_prepared(const double q[3], co
     const double t10 = p->value[6];
     const double r = p->value[0];
     const double t4 = cosine[0];
-    if (!(t8 > t10)) {
+    if (SLIDER_CRANK_RARELY(!(t8 > t10))) {
         const double t11 = r * t4;
         const double t12 = t11 * t11;
         const double t13 = t7 * t7;
@@ -339,7 +342,7 @@ slider_crank_status slider_crank_inverse_dynamics_prepared(const double q[3], co
     const double t76 = t68 - t75;
     const double t77 = t76 / t7;
     double rest = t77 - t77;
-    if (isnan(rest) != 0) {
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
     u[0] = t77;
@@ -351,10 +354,10 @@ slider_crank_status slider_crank_forward_dynamics_prepared(const double q[3], co
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -388,7 +391,7 @@ slider_crank_status slider_crank_forward_dynamics_prepared(const double q[3], co
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = t4 * t4;
@@ -434,116 +437,110 @@ slider_crank_status slider_crank_forward_dynamics_prepared(const double q[3], co
     const double t78 = t75 + t77;
     const double t79 = t66 + t78;
     const double t80 = 2.6645352591003757e-15 * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const double t86 = p->value[22];
-    const double t87 = t6 * t86;
-    const double beta_dot = qd[1];
-    const double t88 = beta_dot * beta_dot;
-    const double t89 = m_rod * t15;
-    const double t90 = t88 * t89;
-    const double t91 = 0.5 * t90;
-    const double t92 = t87 + t91;
-    const double crank = u[0];
-    const double t93 = crank - t92;
-    const double t94 = t7 * t93;
-    const double t95 = p->value[23];
-    const double t96 = t4 * t95;
-    const double t97 = 0.5 * t96;
-    const double alpha_dot = qd[0];
-    const double t98 = alpha_dot * alpha_dot;
-    const double t99 = t98 * t89;
-    const double t100 = 0.5 * t99;
-    const double t101 = t97 - t100;
-    const double t102 = t9 * t101;
-    const double t103 = t94 + t102;
+    const double t81 = r * t53;
+    const double t82 = r * t81;
+    const double t83 = t31 + t82;
+    const double t84 = 1.0 / t83;
     const double s = q[2];
-    const double t104 = s - l;
+    const double t85 = s - l;
     const double k = p->value[4];
-    const double t105 = k * t104;
+    const double t86 = k * t85;
     const double s_dot = qd[2];
     const double d = p->value[5];
-    const double t106 = s_dot * d;
-    const double t107 = t105 + t106;
-    const double t108 = t15 * t107;
-    const double t109 = t103 + t108;
+    const double t87 = s_dot * d;
+    const double t88 = t86 + t87;
+    const double t89 = t15 * t88;
+    const double t91 = p->value[22];
+    const double t92 = t4 * t91;
+    const double t93 = 0.5 * t92;
+    const double alpha_dot = qd[0];
+    const double t95 = alpha_dot * alpha_dot;
+    const double t96 = t95 * t15;
+    const double t94 = p->value[7];
+    const double t97 = t94 * t96;
+    const double t98 = t93 - t97;
+    const double t99 = t9 * t98;
+    const double t103 = p->value[11];
+    const double t104 = t6 * t103;
+    const double beta_dot = qd[1];
+    const double t105 = beta_dot * beta_dot;
+    const double t106 = t105 * t15;
+    const double t107 = t94 * t106;
+    const double t108 = t104 + t107;
+    const double crank = u[0];
+    const double t109 = crank - t108;
     const double t110 = t7 * t109;
-    const double t111 = r * t53;
-    const double t112 = r * t111;
-    const double t113 = t31 + t112;
-    const double t114 = 1.0 / t113;
-    const double t115 = t110 * t114;
-    const double t116 = m_s * t15;
-    const double t117 = alpha_dot * t6;
-    const double t118 = r * t117;
-    const double t119 = alpha_dot * t118;
-    const double t120 = beta_dot * t4;
-    const double t121 = l * t120;
-    const double t122 = beta_dot * t121;
-    const double t123 = t119 + t122;
-    const double t124 = t7 * t123;
-    const double t125 = beta_dot * t3;
-    const double t126 = l * t125;
-    const double t127 = beta_dot * t126;
-    const double t128 = alpha_dot * t5;
-    const double t129 = r * t128;
-    const double t130 = alpha_dot * t129;
-    const double t131 = t127 - t130;
-    const double t132 = t21 * t131;
-    const double t133 = t124 + t132;
-    const double t134 = t116 * t133;
-    const double t135 = t6 * t4;
-    const double t136 = t5 * t3;
-    const double t137 = t135 - t136;
-    const double t138 = t11 * t137;
-    const double t139 = m_rod * t138;
-    const double t140 = t7 * t139;
-    const double t141 = 0.5 * t140;
-    const double t145 = p->value[24];
-    const double t146 = t9 * t145;
-    const double t147 = 2.0 * t146;
-    const double t148 = t141 - t147;
-    const double t149 = t148 * t131;
-    const double t150 = t134 - t149;
-    const double t151 = t150 * t114;
-    const double t152 = t115 - t151;
-    const double t153 = t9 * t109;
-    const double t154 = t153 * t114;
-    const double t155 = t9 * t123;
-    const double t156 = t19 * t131;
-    const double t157 = t155 - t156;
-    const double t158 = t116 * t157;
-    const double t160 = t6 * t137;
-    const double t161 = 0.5 * t160;
-    const double t162 = t161 - t4;
-    const double t159 = p->value[25];
-    const double t163 = t159 * t162;
-    const double t164 = r * t163;
+    const double t111 = t99 + t110;
+    const double t112 = t89 + t111;
+    const double t113 = t7 * t112;
+    const double t114 = m_s * t15;
+    const double t115 = alpha_dot * t6;
+    const double t116 = r * t115;
+    const double t117 = alpha_dot * t116;
+    const double t118 = beta_dot * t4;
+    const double t119 = l * t118;
+    const double t120 = beta_dot * t119;
+    const double t121 = t117 + t120;
+    const double t122 = t7 * t121;
+    const double t123 = beta_dot * t3;
+    const double t124 = l * t123;
+    const double t125 = beta_dot * t124;
+    const double t126 = alpha_dot * t5;
+    const double t127 = r * t126;
+    const double t128 = alpha_dot * t127;
+    const double t129 = t125 - t128;
+    const double t130 = t21 * t129;
+    const double t131 = t122 + t130;
+    const double t132 = t114 * t131;
+    const double t133 = t6 * t4;
+    const double t134 = t5 * t3;
+    const double t135 = t133 - t134;
+    const double t136 = t11 * t135;
+    const double t137 = t7 * t136;
+    const double t138 = t94 * t137;
+    const double t142 = p->value[23];
+    const double t143 = t9 * t142;
+    const double t144 = 2.0 * t143;
+    const double t145 = t138 - t144;
+    const double t146 = t129 * t145;
+    const double t147 = t132 - t146;
+    const double t148 = t113 - t147;
+    const double t149 = t84 * t148;
+    const double t150 = t9 * t112;
+    const double t151 = t9 * t121;
+    const double t152 = t19 * t129;
+    const double t153 = t151 - t152;
+    const double t154 = t114 * t153;
+    const double t156 = t6 * t135;
+    const double t157 = 0.5 * t156;
+    const double t158 = t157 - t4;
+    const double t155 = p->value[24];
+    const double t159 = t155 * t158;
+    const double t160 = r * t159;
     const double J_crank = p->value[14];
-    const double t165 = J_crank * t4;
-    const double t166 = t164 - t165;
-    const double t167 = l * t166;
-    const double t168 = t131 * t167;
-    const double t169 = t158 + t168;
-    const double t170 = t169 * t114;
-    const double t171 = t154 - t170;
-    const double t172 = t148 * t157;
-    const double t173 = t133 * t167;
-    const double t174 = t172 + t173;
-    const double t175 = t174 * t114;
-    const double t176 = t15 * t109;
-    const double t177 = t176 * t114;
-    const double t178 = t175 - t177;
-    double rest = t152 - t152;
-    rest += t171 - t171;
-    rest += t178 - t178;
-    if (isnan(rest) != 0) {
+    const double t161 = J_crank * t4;
+    const double t162 = t160 - t161;
+    const double t163 = l * t162;
+    const double t164 = t129 * t163;
+    const double t165 = t154 + t164;
+    const double t166 = t150 - t165;
+    const double t167 = t84 * t166;
+    const double t168 = t131 * t163;
+    const double t169 = t153 * t145;
+    const double t170 = t168 + t169;
+    const double t171 = t15 * t112;
+    const double t172 = t170 - t171;
+    const double t173 = t84 * t172;
+    double rest = (t149 - t149) * t167 * t173;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd[0] = t152;
-    qdd[1] = t171;
-    qdd[2] = t178;
+    qdd[0] = t149;
+    qdd[1] = t167;
+    qdd[2] = t173;
     return SLIDER_CRANK_OK;
 }
 
@@ -552,10 +549,10 @@ slider_crank_status slider_crank_multipliers_prepared(const double q[3], const d
     const double t1 = fabs(beta);
     const double alpha = q[0];
     const double t2 = fabs(alpha);
-    if (!(100000.0 >= t1)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t1))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
-    if (!(100000.0 >= t2)) {
+    if (SLIDER_CRANK_RARELY(!(100000.0 >= t2))) {
         return SLIDER_CRANK_ANGLE_RANGE;
     }
     const double angle[2] = {beta, alpha};
@@ -589,7 +586,7 @@ slider_crank_status slider_crank_multipliers_prepared(const double q[3], const d
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
     const double t27 = t26 * 7.099748146989106e-30;
-    if (!(t18 > t27)) {
+    if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t28 = t4 * t4;
@@ -635,132 +632,130 @@ slider_crank_status slider_crank_multipliers_prepared(const double q[3], const d
     const double t78 = t75 + t77;
     const double t79 = t66 + t78;
     const double t80 = 2.6645352591003757e-15 * t79;
-    if (!(t56 > t80)) {
+    if (SLIDER_CRANK_RARELY(!(t56 > t80))) {
         return SLIDER_CRANK_MASS_RANK;
     }
     const double t81 = 1.0 / t55;
     const double t83 = t6 * t4;
     const double t84 = t5 * t3;
     const double t85 = t83 - t84;
-    const double t86 = t6 * t85;
-    const double t87 = 0.5 * t86;
-    const double t88 = t87 - t4;
-    const double t82 = p->value[25];
-    const double t89 = t82 * t88;
-    const double t90 = r * t89;
-    const double J_crank = p->value[14];
-    const double t91 = J_crank * t4;
-    const double t92 = t90 - t91;
-    const double t93 = l * t92;
+    const double t86 = t11 * t85;
+    const double t87 = t7 * t86;
+    const double t82 = p->value[7];
+    const double t88 = t82 * t87;
+    const double t92 = p->value[23];
+    const double t93 = t9 * t92;
+    const double t94 = 2.0 * t93;
+    const double t95 = t88 - t94;
     const double s = q[2];
-    const double t94 = s - l;
+    const double t96 = s - l;
     const double k = p->value[4];
-    const double t95 = k * t94;
+    const double t97 = k * t96;
     const double s_dot = qd[2];
     const double d = p->value[5];
-    const double t96 = s_dot * d;
-    const double t97 = t95 + t96;
-    const double t98 = t11 * t85;
-    const double t99 = m_rod * t98;
-    const double t100 = t7 * t99;
-    const double t101 = 0.5 * t100;
-    const double t105 = p->value[24];
-    const double t106 = t9 * t105;
-    const double t107 = 2.0 * t106;
-    const double t108 = t101 - t107;
+    const double t98 = s_dot * d;
+    const double t99 = t97 + t98;
     const double alpha_dot = qd[0];
-    const double t109 = alpha_dot * t6;
-    const double t110 = r * t109;
-    const double t111 = alpha_dot * t110;
+    const double t100 = alpha_dot * t6;
+    const double t101 = r * t100;
+    const double t102 = alpha_dot * t101;
     const double beta_dot = qd[1];
-    const double t112 = beta_dot * t4;
-    const double t113 = l * t112;
-    const double t114 = beta_dot * t113;
-    const double t115 = t111 + t114;
-    const double t116 = t9 * t115;
-    const double t117 = beta_dot * t3;
-    const double t118 = l * t117;
-    const double t119 = beta_dot * t118;
-    const double t120 = alpha_dot * t5;
-    const double t121 = r * t120;
-    const double t122 = alpha_dot * t121;
-    const double t123 = t119 - t122;
-    const double t124 = t19 * t123;
-    const double t125 = t116 - t124;
-    const double t126 = t108 * t125;
-    const double t127 = t7 * t115;
-    const double t128 = t21 * t123;
-    const double t129 = t127 + t128;
-    const double t130 = t129 * t93;
+    const double t103 = beta_dot * t4;
+    const double t104 = l * t103;
+    const double t105 = beta_dot * t104;
+    const double t106 = t102 + t105;
+    const double t107 = t7 * t106;
+    const double t108 = beta_dot * t3;
+    const double t109 = l * t108;
+    const double t110 = beta_dot * t109;
+    const double t111 = alpha_dot * t5;
+    const double t112 = r * t111;
+    const double t113 = alpha_dot * t112;
+    const double t114 = t110 - t113;
+    const double t115 = t21 * t114;
+    const double t116 = t107 + t115;
+    const double t118 = t6 * t85;
+    const double t119 = 0.5 * t118;
+    const double t120 = t119 - t4;
+    const double t117 = p->value[24];
+    const double t121 = t117 * t120;
+    const double t122 = r * t121;
+    const double J_crank = p->value[14];
+    const double t123 = J_crank * t4;
+    const double t124 = t122 - t123;
+    const double t125 = l * t124;
+    const double t126 = t116 * t125;
+    const double t127 = t9 * t106;
+    const double t128 = t19 * t114;
+    const double t129 = t127 - t128;
+    const double t130 = t129 * t95;
     const double t131 = t126 + t130;
-    const double t132 = t131 * t81;
+    const double t132 = t81 * t131;
     const double t133 = m_s * t132;
-    const double t134 = t97 + t133;
-    const double t135 = t93 * t134;
+    const double t134 = t99 + t133;
+    const double t135 = t95 * t134;
     const double t136 = m_s * t15;
-    const double t142 = p->value[22];
-    const double t143 = t6 * t142;
-    const double t144 = beta_dot * beta_dot;
-    const double t145 = m_rod * t15;
-    const double t146 = t144 * t145;
-    const double t147 = 0.5 * t146;
-    const double t148 = t143 + t147;
+    const double t138 = p->value[22];
+    const double t139 = t4 * t138;
+    const double t140 = 0.5 * t139;
+    const double t141 = alpha_dot * alpha_dot;
+    const double t142 = t141 * t15;
+    const double t143 = t82 * t142;
+    const double t144 = t140 - t143;
+    const double t145 = t136 * t129;
+    const double t146 = t114 * t125;
+    const double t147 = t145 + t146;
+    const double t148 = t147 * t81;
+    const double t149 = t92 * t148;
+    const double t150 = 2.0 * t149;
+    const double t151 = t136 * t116;
+    const double t152 = t114 * t95;
+    const double t153 = t151 - t152;
+    const double t154 = t81 * t153;
+    const double t155 = t86 * t154;
+    const double t156 = t82 * t155;
+    const double t157 = t150 - t156;
+    const double t158 = t144 + t157;
+    const double t159 = t136 * t158;
+    const double t160 = t135 + t159;
+    const double t161 = t9 * t160;
+    const double t162 = t125 * t134;
+    const double t166 = p->value[11];
+    const double t167 = t6 * t166;
+    const double t168 = beta_dot * beta_dot;
+    const double t169 = t168 * t15;
+    const double t170 = t82 * t169;
+    const double t171 = t167 + t170;
     const double crank = u[0];
-    const double t149 = crank - t148;
-    const double t154 = t136 * t129;
-    const double t155 = t108 * t123;
-    const double t156 = t154 - t155;
-    const double t157 = t156 * t81;
-    const double t153 = p->value[26];
-    const double t158 = t153 * t157;
-    const double t159 = 2.0 * t158;
-    const double t160 = t136 * t125;
-    const double t161 = t123 * t93;
-    const double t162 = t160 + t161;
-    const double t163 = t162 * t81;
-    const double t164 = t99 * t163;
-    const double t165 = 0.5 * t164;
-    const double t166 = t159 - t165;
-    const double t167 = t149 + t166;
-    const double t168 = t136 * t167;
-    const double t169 = t135 + t168;
-    const double t170 = t7 * t169;
-    const double t171 = t108 * t134;
-    const double t172 = p->value[23];
-    const double t173 = t4 * t172;
-    const double t174 = 0.5 * t173;
-    const double t175 = alpha_dot * alpha_dot;
-    const double t176 = t175 * t145;
-    const double t177 = 0.5 * t176;
-    const double t178 = t174 - t177;
-    const double t179 = t105 * t163;
-    const double t180 = 2.0 * t179;
-    const double t181 = t99 * t157;
-    const double t182 = 0.5 * t181;
-    const double t183 = t180 - t182;
-    const double t184 = t178 + t183;
-    const double t185 = t136 * t184;
-    const double t186 = t171 + t185;
-    const double t187 = t9 * t186;
-    const double t188 = t170 + t187;
-    const double t189 = t81 * t188;
-    const double t190 = -t189;
-    const double t191 = t108 * t167;
-    const double t192 = t93 * t184;
-    const double t193 = t191 - t192;
-    const double t194 = t21 * t169;
-    const double t195 = t193 - t194;
-    const double t196 = t19 * t186;
-    const double t197 = t195 + t196;
-    const double t198 = t81 * t197;
-    const double t199 = -t198;
-    double rest = t190 - t190;
-    rest += t199 - t199;
-    if (isnan(rest) != 0) {
+    const double t172 = crank - t171;
+    const double t176 = p->value[25];
+    const double t177 = t176 * t154;
+    const double t178 = 2.0 * t177;
+    const double t179 = t86 * t148;
+    const double t180 = t82 * t179;
+    const double t181 = t178 - t180;
+    const double t182 = t172 + t181;
+    const double t183 = t136 * t182;
+    const double t184 = t162 + t183;
+    const double t185 = t7 * t184;
+    const double t186 = t161 + t185;
+    const double t187 = t81 * t186;
+    const double t188 = -t187;
+    const double t189 = t19 * t160;
+    const double t190 = t95 * t182;
+    const double t191 = t125 * t158;
+    const double t192 = t190 - t191;
+    const double t193 = t21 * t184;
+    const double t194 = t192 - t193;
+    const double t195 = t189 + t194;
+    const double t196 = t81 * t195;
+    const double t197 = -t196;
+    double rest = (t188 - t188) * t197;
+    if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    lambda_B[0] = t190;
-    lambda_B[1] = t199;
+    lambda_B[0] = t188;
+    lambda_B[1] = t197;
     return SLIDER_CRANK_OK;
 }
 
