@@ -32,6 +32,7 @@ mechanisms: robots
 # Run time against error of every model beside other tools: docs/bench, measured on this machine.
 BENCHED := $(CAMPAIGN_FILES) docs/bench/rapkm_without_payload.yaml
 bench: $(VENV)/installed
+	$(BIN)/pytest tests/bench -m bench
 	$(BIN)/symgen bench $(BENCHED) --quiet
 	$(BIN)/python tools/bench_pages.py generated $(BENCHED)
 

@@ -43,7 +43,9 @@ def under_actuated(folder: Path) -> Model:
     return load_model(path)
 
 
-@pytest.mark.parametrize("name", [*DRIVEN, "under-actuated"])
+@pytest.mark.parametrize(
+    "name", ["skate", "under-actuated", *(pytest.param(n, marks=pytest.mark.bench) for n in DRIVEN if n != "skate")]
+)
 def test_inverse_dynamics_of_every_peer(name: str, tmp_path: Path) -> None:
     described = under_actuated(tmp_path) if name == "under-actuated" else model(name)
     reference = Reference(described)

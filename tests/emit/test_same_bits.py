@@ -53,7 +53,7 @@ def same(found: list[float], wanted: list[float]) -> bool:
 
 @pytest.mark.toolchain
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
-@pytest.mark.parametrize("name", shipped.NAMES)
+@pytest.mark.parametrize("name", shipped.SWEPT)
 def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar) -> None:
     shipped.write_sources(name, tmp_path)
     suffix = "" if scalar == "float64" else "_f"
@@ -76,7 +76,7 @@ def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar
             assert same(list(output), wanted), (kernel.name, state)
 
 
-@pytest.mark.parametrize("name", shipped.NAMES)
+@pytest.mark.parametrize("name", shipped.SWEPT)
 def test_python(tmp_path: Path, name: str) -> None:
     shipped.write_sources(name, tmp_path)
     module = load_generated(tmp_path / f"python/{name}.py")

@@ -129,7 +129,7 @@ def test_gappa_counts_the_rounding_of_a_sum_of_angles() -> None:
 
 
 # make fuzz takes every kernel of every model, for longer
-TRIED = ("double_pendulum", "front_car", "skate", "slider_crank", "rear_car", "rapkm_2rrr_rr")
+TRIED = ("double_pendulum", "front_car", "slider_crank", "rear_car")
 SHORT = ("inverse_dynamics", "forward_dynamics", "multipliers", "nullspace_projector", "singularity")
 CAMPAIGNS = {
     "clang": ["-fsanitize=address,undefined,float-cast-overflow"],
