@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 
 from symgen.diagnostics import SymgenBug
 
-MEASURED = ("certificate.json", "*.pdf", "bench.*", "stress.*", "target.*", "simulation.*")
+MEASURED = ("certificate.json", "*.pdf", "bench.*", "stress.*", "target.*", "proof.json", "simulation.*")
 _HELD_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
