@@ -37,8 +37,7 @@ from symgen.results import FORMS, LargestError, Options, Result, Summary, WrongU
 
 if TYPE_CHECKING:
     from symgen.background import Background, Receive
-    from symgen.report.facts import Facts
-    from symgen.report.files import ReportFiles
+    from symgen.report.facts import Facts, ReportFiles
     from symgen.report.proof import ProofFacts
     from symgen.report.targets import TargetCore
     from symgen.verify.certificate import Certificate

@@ -1,9 +1,10 @@
-"""What the derivation of the kernels tells the report."""
+"""What passes between a run and its report, which is made in a process of its own: nothing heavy, both load it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
+from symgen.diagnostics import Mistake, Notice
 from symgen.emit.operations import OperationCounts
 from symgen.records import dataclass
 
@@ -14,3 +15,12 @@ class Facts:
 
     operations: Mapping[str, OperationCounts]
     skipped: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReportFiles:
+    """The report of one model, what the user should know, and mistakes in the model's paths."""
+
+    files: dict[str, str | bytes]
+    notices: tuple[Notice, ...] = ()
+    mistakes: tuple[Mistake, ...] = ()

@@ -6,12 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 from symgen.closedform.limits import TooLargeError
-from symgen.diagnostics import Mistake, Notice
+from symgen.diagnostics import Notice
 from symgen.model.model import Model
 from symgen.naming import file_stem
-from symgen.records import dataclass
 from symgen.report.compose import compose
-from symgen.report.facts import Facts
+from symgen.report.facts import Facts, ReportFiles
 from symgen.report.gather import gather, path_charts, with_measurements
 from symgen.report.html import render_html
 from symgen.report.latex import render_latex
@@ -19,15 +18,6 @@ from symgen.report.pdf import render_pdf
 from symgen.report.proof import ProofFacts
 from symgen.report.targets import TargetCore
 from symgen.verify.certificate import Certificate
-
-
-@dataclass(frozen=True, slots=True)
-class ReportFiles:
-    """The report of one model, what the user should know, and mistakes in the model's paths."""
-
-    files: dict[str, str | bytes]
-    notices: tuple[Notice, ...] = ()
-    mistakes: tuple[Mistake, ...] = ()
 
 
 def report_files(model: Model, receive: Callable[[], Any], measured: bool) -> ReportFiles:

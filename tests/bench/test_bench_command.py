@@ -70,6 +70,7 @@ def test_without_gcc_it_is_wrong_use(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.bench
 @pytest.mark.toolchain
 @pytest.mark.usefixtures("gcc")
 def test_without_valgrind_instructions_are_left_out(

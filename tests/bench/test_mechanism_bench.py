@@ -46,6 +46,7 @@ def test_frames_and_energies_give_the_same_equations(name: str) -> None:
     assert found[0] == pytest.approx(found[1], rel=1e-10, abs=1e-10)
 
 
+@pytest.mark.bench
 @pytest.mark.toolchain
 def test_every_peer_computes_u(tool: Callable[[str], str], monkeypatch: pytest.MonkeyPatch) -> None:
     tool("gcc")

@@ -68,7 +68,7 @@ def test_inverse_dynamics_of_every_peer(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("quantity", ["forward_dynamics", "multipliers"])
-@pytest.mark.parametrize("name", ["front_car", "slider_crank"])
+@pytest.mark.parametrize("name", ["slider_crank", pytest.param("front_car", marks=pytest.mark.bench)])
 def test_forward_dynamics_and_multipliers(name: str, quantity: str, tmp_path: Path) -> None:
     described = model(name)
     reference = Reference(described)

@@ -27,6 +27,12 @@ def test_model_to_c(tmp_path: Path) -> None:
     assert not loaded & set(HEAVY)
 
 
+def test_a_report_leaves_its_libraries_to_the_process_that_makes_it(tmp_path: Path) -> None:
+    loaded = modules_after(str(MODELS / "skate.yaml"), "--no-verify", "--quiet", "--out", str(tmp_path))
+    assert (tmp_path / "skate/report/skate.html").exists()
+    assert not loaded & set(HEAVY)
+
+
 def test_the_command_line_itself_loads_no_template_engine_and_no_yaml() -> None:
     script = "import sys, symgen.cli; print(*sys.modules)"
     made = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
