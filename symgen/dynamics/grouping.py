@@ -11,9 +11,9 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from symgen.dynamics.common_factors import with_common_factors
 from symgen.dynamics.factoring import Factoring
 from symgen.dynamics.late_factors import with_late_factors
+from symgen.dynamics.sum_factors import with_common_factors
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost, reached, topological
 from symgen.records import dataclass

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import pytest
 
-from symgen.dynamics.common_factors import MOST_TERMS, with_common_factors
 from symgen.dynamics.factoring import Factoring
 from symgen.dynamics.grouping import grouped
 from symgen.dynamics.late_factors import with_late_factors
+from symgen.dynamics.sum_factors import MOST_TERMS, with_common_factors
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost
