@@ -13,8 +13,8 @@ from typing import Any, TypeAlias
 from flint import arb_mat
 
 from symgen.verify.reference import BITS, Reference
+from symgen.verify.reference_evaluation import Evaluation
 from symgen.verify.reference_linear import column, norm
-from symgen.verify.reference_quantities import Evaluation
 from symgen.verify.reference_tape import precision
 from symgen.verify.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation

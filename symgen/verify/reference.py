@@ -15,9 +15,10 @@ from typing import Any, TypeAlias
 from flint import ctx
 
 from symgen.model.model import Model
+from symgen.verify.reference_evaluation import Evaluation
 from symgen.verify.reference_linear import square
 from symgen.verify.reference_manifold import Ranks, generic_ranks
-from symgen.verify.reference_quantities import QUANTITIES, Evaluation, offered
+from symgen.verify.reference_quantities import QUANTITIES, offered
 from symgen.verify.reference_system import System
 from symgen.verify.reference_tape import ball, precision
 from symgen.verify.reference_translation import literal_values

@@ -15,7 +15,7 @@ from symgen.model.model import Allocation
 from symgen.verify.reference_linear import column, columns_of, determinant, pseudoinverse, solve
 
 if TYPE_CHECKING:
-    from symgen.verify.reference_quantities import Evaluation
+    from symgen.verify.reference_evaluation import Evaluation
 
 
 def allocated(e: Evaluation, allocation: Allocation) -> Any:

@@ -21,8 +21,8 @@ from symgen.graph.evaluate import Evaluator
 from symgen.ir.kernel import Status
 from symgen.verify.reference import State
 from symgen.verify.reference_allocation import internal_force
+from symgen.verify.reference_evaluation import Evaluation
 from symgen.verify.reference_linear import column, norm, solve
-from symgen.verify.reference_quantities import Evaluation
 from symgen.verify.reference_tape import ball, precision
 from symgen.verify.run import generated_sources, verify
 from symgen.verify.states import sample_states
