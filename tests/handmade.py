@@ -90,7 +90,7 @@ def loads(*arguments: str) -> tuple[Load, ...]:
     places = {"x": ("q", 0), "theta": ("q", 1), "x_dot": ("qd", 0), "theta_dot": ("qd", 1)}
     members = {"L": 0, "I": 1, "half_turn": 2, "root": 3}
     return tuple(
-        Load(name, places[name][0], places[name][1]) if name in places else Load(name, "p", members[name], name)  # type: ignore[arg-type]
+        Load(name, places[name][0], places[name][1]) if name in places else Load(name, "p", members[name], name)
         for name in arguments
     )
 

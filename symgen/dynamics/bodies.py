@@ -43,7 +43,7 @@ class Scalars:
         """Sum of products."""
         return self.graph.sum(factor * rate for factor, rate in terms if not (factor.is_zero or rate.is_zero))
 
-    def named(self, name: str, value: Scalar) -> Scalar:  # noqa: ARG002
+    def named(self, _: str, value: Scalar, /) -> Scalar:
         """Scalars have no names."""
         return value
 

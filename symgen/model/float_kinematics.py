@@ -49,7 +49,7 @@ class Floats:
                     total[index] = total.get(index, 0.0) + factor * value
         return total
 
-    def named(self, name: str, value: float) -> float:  # noqa: ARG002
+    def named(self, _: str, value: float, /) -> float:
         """Floats have no names."""
         return value
 

@@ -82,7 +82,7 @@ class Formulas:
             if exact_value(coefficient.expression) != 0
         }
 
-    def named(self, name: str, value: Formula) -> Formula:
+    def named(self, name: str, value: Formula, /) -> Formula:
         """A name for the value, unless it is as short as a name."""
         match value.expression:
             case Number() | Pi() | Name() | Negation(operand=Number() | Pi() | Name()):

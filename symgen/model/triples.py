@@ -49,7 +49,7 @@ class Arithmetic(Protocol[P, V]):
         """Sum of products of a number and a rate; 0 for no terms."""
         ...
 
-    def named(self, name: str, value: P) -> P:
+    def named(self, name: str, value: P, /) -> P:
         """The number under a name of its own, where the arithmetic keeps names."""
         ...
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import pytest
 
@@ -68,7 +69,7 @@ def test_labels_do_not_overlap(wanted: list[float]) -> None:
     assert all(-1e-12 <= height <= 1.0 for height in placed)
 
 
-def measured(generator: str, form: str, count: float, **changes: object) -> Measured:
+def measured(generator: str, form: str, count: float, **changes: Any) -> Measured:
     row = Measured(
         generator=generator,
         form=form,
@@ -83,7 +84,7 @@ def measured(generator: str, form: str, count: float, **changes: object) -> Meas
         chosen=generator == "symgen",
         on_front=generator == "symgen",
     )
-    return replace(row, **changes)  # type: ignore[arg-type]  # a test's shorthand
+    return replace(row, **changes)
 
 
 def result_of(name: str, factor: float = 1.0) -> Benchmark:

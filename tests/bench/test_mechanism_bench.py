@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import casadi
 import pytest
 from shipped import ROOT, model
 
@@ -24,7 +25,6 @@ def quiet(_: str) -> None:
 
 @pytest.mark.parametrize(("name", "most"), [("arm7", 1700), ("chain8", 800), ("delta", 115), ("gough_stewart", 420)])
 def test_recursion_keeps_what_is_shared(name: str, most: int) -> None:
-    casadi = pytest.importorskip("casadi")
     s = mechanics_by_frames(CasadiEngine(), model(name))
     arguments = [casadi.vertcat(*s.inputs[array]) for array in ("q", "qd", "qdd", "p")]
     function = casadi.Function("f", arguments, [casadi.cse(casadi.vertcat(*s.balance))])
@@ -33,7 +33,6 @@ def test_recursion_keeps_what_is_shared(name: str, most: int) -> None:
 
 @pytest.mark.parametrize("name", ["rapkm_bodies", "front_car_bodies", "arm7"])
 def test_frames_and_energies_give_the_same_equations(name: str) -> None:
-    casadi = pytest.importorskip("casadi")
     found = []
     for derive in (mechanics_by_frames, mechanics):
         s = derive(CasadiEngine(), model(name))

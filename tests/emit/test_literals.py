@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from symgen.diagnostics import SymgenBug
 from symgen.emit.literals import c_literal, decimal_text, numpy_literal, round_to_float32
+from symgen.ir.kernel import Scalar
 
 FRACTIONS = st.fractions(min_value=-(10**12), max_value=10**12, max_denominator=10**12)
 
@@ -63,8 +64,8 @@ def test_text_reads_back(value: Fraction) -> None:
         ("float32", Fraction(16777217), "16777216.0f"),
     ],
 )
-def test_c_literals(scalar: str, value: Fraction, text: str) -> None:
-    assert c_literal(scalar, value) == text  # type: ignore[arg-type]
+def test_c_literals(scalar: Scalar, value: Fraction, text: str) -> None:
+    assert c_literal(scalar, value) == text
 
 
 def test_numpy_literal() -> None:
@@ -72,6 +73,6 @@ def test_numpy_literal() -> None:
 
 
 @pytest.mark.parametrize(("scalar", "power"), [("float32", 128), ("float64", 1024)])
-def test_overflow_is_a_bug_of_ours(scalar: str, power: int) -> None:
+def test_overflow_is_a_bug_of_ours(scalar: Scalar, power: int) -> None:
     with pytest.raises(SymgenBug, match="does not fit"):
-        c_literal(scalar, Fraction(2) ** power)  # type: ignore[arg-type]
+        c_literal(scalar, Fraction(2) ** power)

@@ -73,7 +73,7 @@ def plain(tree: object, point: dict[str, float]) -> float:
                 return math.nan if value < 0 and exponent.denominator > 1 else value ** float(exponent)
             except (ZeroDivisionError, OverflowError):
                 return math.nan
-    name, *parts = tree  # type: ignore[misc]
+    name, *parts = tree
     values = [plain(part, point) for part in parts]
     try:
         return float(FUNCTIONS[name](*values))

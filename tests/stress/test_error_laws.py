@@ -10,11 +10,13 @@ import pytest
 from shipped import model
 from test_families import found, known, reference
 
+from symgen.ir.kernel import Scalar
 from symgen.stress.families import Family, _family
-from symgen.stress.kernels import PIECES, Kernels
+from symgen.stress.kernels import PIECES, Kernels, Outcome
 from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series
 from symgen.stress.sweep import Sweeper
 from symgen.stress.zeros import places
+from symgen.verify.reference import State
 
 
 def swept(name: str, family: Family, folder: Path, quantities: tuple[str, ...]) -> tuple[dict[str, Series], Sweeper]:
@@ -70,11 +72,11 @@ def test_a_wrong_kernel_is_found_out(tmp_path: Path) -> None:
         names = kernels.names
 
         @staticmethod
-        def run(name, state, scalar):  # type: ignore[no-untyped-def]
+        def run(name: str, state: State, scalar: Scalar) -> Outcome:
             outcome = kernels.run(name, state, scalar)
             return replace(outcome, status=0, entries=tuple(x * (1 + 1e-5) if x == x else 0.0 for x in outcome.entries))
 
-    sweeper = Sweeper(reference("rear_car"), Spoiled(), [family])  # type: ignore[arg-type]
+    sweeper = Sweeper(reference("rear_car"), Spoiled(), [family])
     sweeper.family(0)
     failures = "\n".join(sweeper.result().failures)
     assert "beyond the tolerance" in failures

@@ -11,6 +11,7 @@ import handmade
 import pytest
 
 from symgen.emit.c import emit_c
+from symgen.model.model import Model
 
 pytestmark = pytest.mark.toolchain
 STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror", "-O2"]
@@ -30,9 +31,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def write(folder: Path, model: object, own_sincos: bool) -> None:
+def write(folder: Path, model: Model, own_sincos: bool) -> None:
     for scalar in ("float64", "float32"):
-        for path, text in emit_c(model, handmade.program(scalar, own_sincos)).items():  # type: ignore[arg-type]
+        for path, text in emit_c(model, handmade.program(scalar, own_sincos)).items():
             (folder / Path(path).name).write_text(text)
 
 

@@ -1,8 +1,10 @@
 """A mechanism as the user of a symbolic tool writes it: forward kinematics frame by frame in the tool's own scalars.
 
 Rotation matrices and velocities in body axes are handed from frame to frame, energies are sums over bodies, and the
-motion equations come from the tool's derivatives along directions, never through matrices.  Written out, as
-`symgen.model.energy_form` has them for readers, the same energies cost tools that share by themselves many times more.
+motion equations come from the tool's derivatives along directions, never through matrices.  In world axes, as
+textbooks write them, rotation matrices are multiplied up and velocities of mass centres are the world's.  Written out,
+as `symgen.model.energy_form` has them for readers, the same energies cost tools that share by themselves many times
+more.
 """
 
 from __future__ import annotations
@@ -20,8 +22,9 @@ from symgen.bench.peers.mechanics import Mechanics
 from symgen.model.components import components_in, definitions_before_frames
 from symgen.model.expression import Expression
 from symgen.model.kinematics import Kinematics
-from symgen.model.mechanism import component
+from symgen.model.mechanism import WORLD, component
 from symgen.model.model import Model
+from symgen.model.triples import applied
 from symgen.witness.lagrange import Lagrange, lagrange
 
 
@@ -47,7 +50,7 @@ class _Scalars:
         is_zero = self._engine.is_zero
         return total(self._engine, [a * b for a, b in terms if not (is_zero(a) or is_zero(b))])
 
-    def named(self, name: str, value: Symbol) -> Symbol:  # noqa: ARG002
+    def named(self, _: str, value: Symbol, /) -> Symbol:
         return value
 
 
@@ -64,8 +67,8 @@ class Written:
     applied: list[Symbol]
 
 
-def written(engine: Engine, model: Model) -> Written:
-    """The mechanism in the scalars of one tool."""
+def written(engine: Engine, model: Model, world_axes: bool = False) -> Written:
+    """The mechanism in the scalars of one tool; velocities in the axes of the bodies or of the world."""
     lengths = {"q": model.n, "qd": model.n, "qdd": model.n, "p": len(model.parameters)}
     inputs = {array: engine.symbols(array, length) for array, length in lengths.items()}
     scope = {coordinate.name: inputs["q"][i] for i, coordinate in enumerate(model.coordinates)}
@@ -75,7 +78,7 @@ def written(engine: Engine, model: Model) -> Written:
         scope[definition.name] = translate(engine, definition.value, scope)
     scalars = _Scalars(engine, scope, inputs)
     kinematics: Kinematics[Symbol, Symbol] = Kinematics(model.mechanism, scalars, sums_of_angles=False)
-    kinetic, potential = _energies(engine, model, scalars, kinematics)
+    kinetic, potential = _energies(engine, model, scalars, kinematics, world_axes)
     for name in components_in(model):
         one = component(name)
         scope[name] = kinematics.component_rate(one) if one.is_rate else kinematics.component(one)
@@ -125,9 +128,9 @@ def mechanics_by_frames(engine: Engine, model: Model) -> Mechanics:
     return Mechanics(s.inputs, balance, B, s.control)
 
 
-def lagrange_by_frames(model: Model) -> Lagrange:
+def lagrange_by_frames(model: Model, world_axes: bool = False) -> Lagrange:
     """The matrices of CasADi's user."""
-    s = written(CasadiEngine(), model)
+    s = written(CasadiEngine(), model, world_axes)
     q, qd, qdd, p = (_column(s.inputs[array]) for array in ("q", "qd", "qdd", "p"))
     control = casadi.SX.zeros(model.n, model.m)
     for i, row in enumerate(s.control):
@@ -149,7 +152,7 @@ def _column(values: list[Symbol]) -> casadi.SX:
 
 
 def _energies(
-    engine: Engine, model: Model, scalars: _Scalars, kinematics: Kinematics[Symbol, Symbol]
+    engine: Engine, model: Model, scalars: _Scalars, kinematics: Kinematics[Symbol, Symbol], world_axes: bool
 ) -> tuple[Symbol, Symbol]:
     space, combination = kinematics.space, scalars.combination
     half = engine.number(Fraction(1, 2))
@@ -158,7 +161,10 @@ def _energies(
     kinetic, weights = [], []
     for body in model.mechanism.bodies:
         twist, com, mass = kinematics.twist(body.frame), space.values(body.com), scalars.value(body.mass)
-        speed = space.summed(twist.linear, space.crossed(twist.angular, com))
+        arm, moving = com, twist
+        if world_axes:
+            arm, moving = applied(kinematics.axes(body.frame), com), kinematics.twist(body.frame, WORLD)
+        speed = space.summed(moving.linear, space.crossed(moving.angular, arm))
         tensor = [space.values(row) for row in body.inertia.rows]
         momentum = [combination(zip(row, twist.angular, strict=True)) for row in tensor]
         kinetic.append(half * mass * combination(zip(speed, speed, strict=True)))

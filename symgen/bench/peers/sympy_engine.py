@@ -73,7 +73,7 @@ class SympyEngine(Engine):
 class _Printer(C99CodePrinter):  # type: ignore[misc]  # SymPy has no types
     """Small integer powers as products: `pow` would be a call in every kernel."""
 
-    def _print_Pi(self, expr: Any) -> str:  # noqa: ARG002
+    def _print_Pi(self, _: Any) -> str:
         return "3.14159265358979323846"
 
     def _print_Pow(self, expr: Any) -> str:
