@@ -43,10 +43,13 @@ def forces_along(model: Model, trajectory: Trajectory) -> Forces:
 
 
 def inverse_dynamics(forces: Forces) -> Array:
-    """u = (WᵀM)⁺Wᵀτ (k×m), of least norm."""
+    """u (k×m) of least norm with WᵀMu = Wᵀτ, by singular values; those that vanish are left out."""
     W_t = np.swapaxes(forces.W, 1, 2)
-    projected = W_t @ forces.tau[:, :, None]
-    return np.asarray((np.linalg.pinv(W_t @ forces.M, rcond=RANK_TOLERANCE) @ projected)[:, :, 0])
+    left, values, right = np.linalg.svd(W_t @ forces.M, full_matrices=False)
+    kept = values > RANK_TOLERANCE * values[:, :1]
+    along = np.swapaxes(left, 1, 2) @ (W_t @ forces.tau[:, :, None])
+    scaled = np.divide(along[:, :, 0], values, out=np.zeros_like(values), where=kept)
+    return np.asarray((np.swapaxes(right, 1, 2) @ scaled[:, :, None])[:, :, 0])
 
 
 def kernel_bases(B: Array) -> Array:
