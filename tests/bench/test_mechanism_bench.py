@@ -9,13 +9,15 @@ import pytest
 from shipped import ROOT, model
 
 from symgen.bench import build as build_module
-from symgen.bench import mechanisms
-from symgen.bench.mechanism_goals import GOALS, MECHANISMS, STUDY
+from symgen.bench import mechanism_pages, mechanisms
+from symgen.bench.goals import AS_WRITTEN, Goal
+from symgen.bench.mechanism_goals import CHEAPEST_WRITTEN, GOALS, MECHANISMS, STUDY
 from symgen.bench.mechanism_pages import page, table_of
 from symgen.bench.mechanisms import drawn_states, mechanism_benchmark
 from symgen.bench.peers.casadi_engine import CasadiEngine
-from symgen.bench.peers.frames import mechanics_by_frames
+from symgen.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
 from symgen.bench.peers.mechanics import mechanics
+from symgen.bench.peers.native import direct_balance
 from symgen.bench.peers.pinocchio_program import pinocchio_time, tree_text
 
 
@@ -67,6 +69,30 @@ def test_goals_and_study_have_a_place_for_every_mechanism() -> None:
     assert all(len(goal.ratios) == len(MECHANISMS) for goal in GOALS)
     assert all(len(counts) == len(MECHANISMS) for counts in STUDY.values())
     assert page({}).startswith("# Mechanisms")
+
+
+def test_as_written_is_the_writing_of_the_study() -> None:
+    def row(generator: str, form: str, count: int) -> dict[str, object]:
+        return {"generator": generator, "form": form, "instructions": count, "nanoseconds": 1.0}
+
+    looped = [row("CasADi", "literal", 90), row("CasADi", "native", 100), row("wrenfold", "range", 50)]
+    serial = [row("CasADi", "AD", 70), row("CasADi", "AD in world axes", 110), row("CasADi", "native", 900)]
+    for peers, study, cheapest in ((looped, 100, 90), (serial, 110, 70), (looped[:1], 90, 90)):
+        goals = [Goal(against, "libm", ()) for against in (AS_WRITTEN, CHEAPEST_WRITTEN)]
+        found = [mechanism_pages.ratio([row("symgen", "range, libm", 45), *peers], goal, None) for goal in goals]
+        assert [text.split("/ ")[1].split()[0] for text in found] == [str(study), str(cheapest)]
+
+
+def test_velocities_in_either_axes_give_the_same_equations() -> None:
+    casadi = pytest.importorskip("casadi")
+    one = model("arm7")
+    state = drawn_states(one, 1)[0]
+    found = []
+    for world_axes in (False, True):
+        s = lagrange_by_frames(one, world_axes)
+        function = casadi.Function("f", [s.q, s.qd, s.qdd, s.p], [direct_balance(s)])
+        found.append(function(state[:7], state[7:14], state[14:21], state[21:]).full())
+    assert found[0] == pytest.approx(found[1], rel=1e-11, abs=1e-11)
 
 
 @pytest.mark.parametrize(("name", "joints", "rows"), [("arm7", 7, 0), ("rapkm_bodies", 6, 4), ("chain8", 8, 2)])

@@ -24,7 +24,7 @@ from symgen.model.expression import Expression
 from symgen.model.kinematics import Kinematics
 from symgen.model.mechanism import WORLD, component
 from symgen.model.model import Model
-from symgen.model.triples import applied
+from symgen.model.triples import applied, plus
 from symgen.witness.lagrange import Lagrange, lagrange
 
 
@@ -163,14 +163,14 @@ def _energies(
         twist, com, mass = kinematics.twist(body.frame), space.values(body.com), scalars.value(body.mass)
         arm, moving = com, twist
         if world_axes:
-            arm, moving = applied(kinematics.axes(body.frame), com), kinematics.twist(body.frame, WORLD)
+            moving, arm = kinematics.twist(body.frame, WORLD), applied(kinematics.axes(body.frame), com)
         speed = space.summed(moving.linear, space.crossed(moving.angular, arm))
         tensor = [space.values(row) for row in body.inertia.rows]
         momentum = [combination(zip(row, twist.angular, strict=True)) for row in tensor]
         kinetic.append(half * mass * combination(zip(speed, speed, strict=True)))
         kinetic.append(half * combination(zip(momentum, twist.angular, strict=True)))
         if not weightless:
-            place = kinematics.place(body.frame, com)
+            place = plus(kinematics.position(body.frame), arm) if world_axes else kinematics.place(body.frame, com)
             weights.append(-mass * combination(zip(gravity, place, strict=True)))
     for rotor in model.mechanism.rotor_inertias:
         rate = scalars.scope[f"{rotor.coordinate}_dot"]

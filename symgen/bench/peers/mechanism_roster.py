@@ -29,6 +29,8 @@ LONGEST_WRITTEN = 16
 MOST_DENSE = 14  # coordinates, of peers whose C grows with the square of their number or faster
 MOST_WITH_ENERGIES = 6
 SERIAL = "AD"
+SERIAL_IN_WORLD_AXES = "AD in world axes"
+FROM_ENERGIES = " from energies"
 
 
 def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], tuple[tuple[str, str], ...]]:
@@ -44,7 +46,7 @@ def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], 
     for engine_type in engines:
         routes: dict[str, Route] = {"": mechanics_by_frames}
         if len(engines) > 1 and model.n <= MOST_WITH_ENERGIES:
-            routes[" from energies"] = mechanics
+            routes[FROM_ENERGIES] = mechanics
         for route, derive in routes.items():
             for name, build in forms.items():
                 try:
@@ -105,21 +107,30 @@ def _selects(model: Model) -> bool:
 
 def _as_written(model: Model) -> list[CCandidate]:
     """(27) with (28): through the matrices G and C where they are short, and with tau along directions."""
+    if model.n > LONGEST_WRITTEN:
+        return []
+    routes: dict[str, Lagrange] = {"": lagrange_by_frames(model)}
+    if model.n <= MOST_LEAN and model.r:
+        routes[FROM_ENERGIES] = differentiate(model)
     found = []
-    routes = {"": lagrange_by_frames} | ({" from energies": differentiate} if model.n <= MOST_WITH_ENERGIES else {})
-    forms: dict[str, Callable[[Lagrange], Any]] = {"literal": native.direct_balance}
-    if model.n <= MOST_LEAN:
-        forms["native"] = native.user_matrices
-    for route, derive in routes.items() if model.n <= LONGEST_WRITTEN else ():
-        s = derive(model)
-        for form, balance in forms.items():
-            entry = f"casadi_{form}{route}_float64".replace(" ", "_")
-            name = f"function_of_{entry}"
-            value = native.inverse_dynamics(model, s, balance)
-            source, functions = generated(name, [s.q, s.qd, s.qdd, s.p], value)
-            units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
-            found.append(CCandidate("CasADi", f"{form}{route}", "float64", entry, units, functions))
+    for route, s in routes.items():
+        if model.r:
+            found.append(_matrix_candidate(model, s, f"literal{route}", native.direct_balance))
+        if model.n <= MOST_DENSE:
+            found.append(_matrix_candidate(model, s, f"native{route}", native.user_matrices))
+    if not model.r:
+        s = lagrange_by_frames(model, world_axes=True)
+        found.append(_matrix_candidate(model, s, SERIAL_IN_WORLD_AXES, native.direct_balance))
     return found
+
+
+def _matrix_candidate(model: Model, s: Lagrange, form: str, balance: Callable[[Lagrange], Any]) -> CCandidate:
+    entry = f"casadi_{form}_float64".lower().replace(" ", "_")
+    name = f"function_of_{entry}"
+    value = native.inverse_dynamics(model, s, balance)
+    source, functions = generated(name, [s.q, s.qd, s.qdd, s.p], value)
+    units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    return CCandidate("CasADi", form, "float64", entry, units, functions)
 
 
 def _candidate(engine: Engine, model: Model, form: str, derive: Route, build: Build) -> CCandidate:
@@ -131,5 +142,3 @@ def _candidate(engine: Engine, model: Model, form: str, derive: Route, build: Bu
     if needs_adaptor:
         units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
     return CCandidate(engine.tool, form, "float64", entry, units, functions)
-
-
