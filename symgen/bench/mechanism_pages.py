@@ -121,8 +121,8 @@ def _study(results: Results, names: Sequence[str]) -> str:
     return (
         "## The peers are no straw men\n\nInstructions of the peers in the study that the goals come from, how far the "
         "peers here are from them, and symgen's u with libm over the study's count. The study's arm, Delta and "
-        "Gough-Stewart platform have other parameters: the platform here has its joints given by angles, whose sines the "
-        "peers evaluate.\n\n"
+        "Gough-Stewart platform have other parameters: the platform here has its joints given by angles, whose sines "
+        "the peers evaluate.\n\n"
         + _table(["against", *names], rows)
     )
 
