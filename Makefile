@@ -46,9 +46,9 @@ bench-mechanisms: $(VENV)/installed
 generation: $(VENV)/installed
 	$(BIN)/python tools/generation_page.py
 
-# The portable sine and cosine at every float32, a few minutes.
+# The portable sine and cosine at every float32, a minute on two cores.
 trig: $(VENV)/installed
-	SYMGEN_TRIG_STRIDE=1 $(BIN)/pytest tests/toolchain/test_portable_pair.py -k everywhere
+	SYMGEN_TRIG_STRIDE=1 $(BIN)/pytest tests/toolchain/test_portable_pair.py -k everywhere -n 2
 
 # Numerical stability of every model: docs/stress, measured on this machine.
 stress: $(VENV)/installed
