@@ -7,15 +7,13 @@ Moore-Penrose inverse of M~ W^(-1/2), the limits from the end points of the inte
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flint import arb, arb_mat
 
 from symgen.model.model import Allocation
+from symgen.verify.reference_evaluation import Evaluation
 from symgen.verify.reference_linear import column, columns_of, determinant, pseudoinverse, solve
-
-if TYPE_CHECKING:
-    from symgen.verify.reference_evaluation import Evaluation
 
 
 def allocated(e: Evaluation, allocation: Allocation) -> Any:

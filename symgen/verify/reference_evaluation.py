@@ -13,7 +13,6 @@ from typing import Any, TypeAlias
 
 from flint import arb_mat
 
-from symgen.verify.reference_allocation import allocated
 from symgen.verify.reference_linear import (
     column,
     columns_of,
@@ -169,14 +168,6 @@ class Evaluation:
             gram = self.projected_control * self.projected_control.transpose() + self.projector_off
             return solve(gram, self.projected_control).transpose()
         return pseudoinverse(self.projected_control, self.ranks.actuation)
-
-    @cached_property
-    def inverse_dynamics(self) -> Any:
-        """u (27), or as the model's allocation says."""
-        allocation = self.system.model.allocation
-        if allocation is not None:
-            return allocated(self, allocation)
-        return self.control_inverse * (self.projector * self.load)
 
     @cached_property
     def accelerations(self) -> Any:

@@ -8,11 +8,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from symgen.verify.reference_allocation import allocated
 from symgen.verify.reference_evaluation import Evaluation
 from symgen.verify.reference_linear import column, right_pseudoinverse
 from symgen.verify.reference_manifold import Ranks
 from symgen.verify.reference_measures import actuation_measure, constraint_measure
 from symgen.verify.reference_system import System
+
+
+def _inverse_dynamics(e: Evaluation) -> Any:
+    """u (27), or as the model's allocation says."""
+    allocation = e.system.model.allocation
+    if allocation is not None:
+        return allocated(e, allocation)
+    return e.control_inverse * (e.projector * e.load)
 
 
 def _inverse_dynamics_residual(e: Evaluation) -> Any:
@@ -100,7 +109,7 @@ QUANTITIES: dict[str, Definition] = {
     "admissible_velocity": lambda e: e.projected_rate,
     "admissible_acceleration": _admissible_acceleration,
     "projected_configuration": _projected_configuration,
-    "inverse_dynamics": lambda e: e.inverse_dynamics,
+    "inverse_dynamics": _inverse_dynamics,
     "inverse_dynamics_residual": _inverse_dynamics_residual,
     "actuator_velocity": lambda e: e.at.control.transpose() * e.rate,
     "actuator_mass_matrix": lambda e: e.quasi.transpose() * e.at.mass * e.quasi,
