@@ -276,6 +276,8 @@ class Graph:
             return self.neg(self.div(a, b.args[0]))
         if a.op == "mul" and b in a.args:
             return a.args[1] if a.args[0] is b else a.args[0]
+        if b.op == "abs" and b.args[0] is a:
+            return self.function("copysign", (self.one, a))
         if b.op == "mul" and a in b.args:
             return self.div(self.one, b.args[1] if b.args[0] is a else b.args[0])
         if b.op == "div":

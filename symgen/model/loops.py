@@ -97,7 +97,7 @@ class Rows:
     def _rolling(self, frame: str, radius: Expression, axle: int) -> Iterator[tuple[str, Expression]]:
         """No slip where the wheel touches the plane, and the height of its centre where that can change.
 
-        The lowest point lies at -R (n - (n.a) a) / sqrt(1 - (n.a)^2) from the centre, with the axle a and the normal n.
+        The lowest point lies at -R (n - (n.a) a) / |n - (n.a) a| from the centre, with the axle a and the normal n.
         """
         column = axle + 1
         parent = self._kinematics.frames[frame].parent
@@ -112,15 +112,31 @@ class Rows:
             yield "along", minus(rate("vx"), times(radius, rate("wy")))
             yield "across", plus(rate("vy"), times(radius, rate("wx")))
             return
-        lean = Name(Component(frame, f"r3{column}").name)
-        side = Call("sqrt", (minus(ONE, Power(lean, TWO)),))
-        arm_x, arm_y = (
-            times(times(radius, lean), Name(Component(frame, f"r{row}{column}").name)) for row in (1, 2)
-        )
-        arm_x, arm_y, arm_z = divided(arm_x, side), divided(arm_y, side), negated(times(radius, side))
-        yield "along", plus(rate("vx"), minus(times(rate("wy"), arm_z), times(rate("wz"), arm_y)))
-        yield "across", plus(rate("vy"), minus(times(rate("wz"), arm_x), times(rate("wx"), arm_z)))
+        # the spin does not show in the axes of what carries the wheel
+        still = parent != WORLD and exact_value(self._value(Component(frame, f"r{column}{column}", parent).name)) == 1
+        carrier = parent if still else frame
+        one, other = (axle + 1) % 3, (axle + 2) % 3
+        up_one, up_other = (self._entry(carrier, 2, index) for index in (one, other))
+        side = Call("sqrt", (plus(Power(up_one, TWO), Power(up_other, TWO)),))
+        arm_one, arm_other = (negated(times(radius, divided(up, side))) for up in (up_one, up_other))
+        spin, turn_one, turn_other = (Name(Component(frame, f"w{AXES[k]}", carrier).name) for k in (axle, one, other))
+        # what turning adds to the velocity of the centre: the cross product with the arm
+        added = {
+            axle: minus(times(turn_one, arm_other), times(turn_other, arm_one)),
+            one: negated(times(spin, arm_other)),
+            other: times(spin, arm_one),
+        }
+        for row, name in enumerate(("along", "across")):
+            slip: Expression = Name(f"{frame}.v{AXES[row]}")
+            for index, value in added.items():
+                slip = plus(slip, times(self._entry(carrier, row, index), value))
+            yield name, slip
         yield "height", minus(Name(f"{frame}.z"), times(radius, side))
+
+    def _entry(self, frame: str, row: int, column: int) -> Expression:
+        """An entry of the attitude of a frame in the world; zero where it is zero in every configuration."""
+        name = Component(frame, f"r{row + 1}{column + 1}").name
+        return ZERO if self._zero(name) else Name(name)
 
     def _named(
         self, key: ScalarNode, rows: Iterable[tuple[str, Expression]], of_rates: tuple[str, ...] = ()

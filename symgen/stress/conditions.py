@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -34,6 +35,20 @@ class Conditions:
         except ReferenceValueError:
             return None
         return (first, second) if math.isfinite(first) and math.isfinite(second) else None
+
+    def columns(self, state: State) -> float:
+        """How far the columns of M are from depending on each other, 0 to 1.
+
+        Sum of the minors of M'M of the size of the degree of actuation, beside that of orthogonal columns.  The second
+        measure of singularity compares M~ with M, and does not see where M itself loses rank.
+        """
+        M = self.matrix("control_matrix", state)
+        rank = self._reference.ranks.actuation
+        sizes = np.linalg.norm(M, axis=0)
+        subsets = list(combinations(range(M.shape[1]), rank))
+        orthogonal = sum(float(np.prod(sizes[list(J)])) ** 2 for J in subsets)
+        found = sum(float(np.prod(np.linalg.svd(M[:, J], compute_uv=False))) ** 2 for J in subsets)
+        return found / orthogonal if orthogonal > 0 else 0.0
 
     def floor(self, name: str, scalar: Scalar, state: State, measures: Measures | None) -> float:
         """eps κ(B) κ(FᵀM), by 1/κ² ≈ measure of rows of one length.

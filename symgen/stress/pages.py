@@ -163,7 +163,9 @@ def _scaling(result: Mapping[str, Any]) -> str:
             elif all(s["identical"] for s in mine):
                 cells.append("same bits")
             else:
-                cells.append(f"{max(_finite(s['units']) for s in mine):.2g}")
+                refused = sum(s["refused"] for s in mine)
+                error = f"{max(_finite(s['units']) for s in mine):.2g}"
+                cells.append(f"{error}, {refused} refused" if refused else error)
         rows.append(cells)
     return _table(["other units (error in units)", "u", "q̈", "λ"], rows)
 

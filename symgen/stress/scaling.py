@@ -27,6 +27,7 @@ STATES = 4
 BITS = 256
 POLYNOMIAL = ("minor", "minor factored", "range", "nullspace")  # forms without square roots
 SAME = 1e-40
+RANKS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)
 # exponents of two for mass, length, time
 POWERS_OF_TWO = (("lengths", (0, 3, 0)), ("masses", (-4, 0, 0)), ("times", (0, 0, 2)), ("all three", (3, -2, 1)))
 Factors: TypeAlias = tuple[Fraction, ...]  # of mass, length, time
@@ -36,6 +37,7 @@ Factors: TypeAlias = tuple[Fraction, ...]  # of mass, length, time
 class Scaled:
     """One quantity under one change of units, over all states: the largest error in units of d + eps |y*|.
 
+    `refused` counts states with a rank status: relative ranks depend on units, and lengths are no longer O(1).
     `covariant` is false where the exact result depends on units, so that nothing is compared.  `identical` says that
     the bits are the same after conversion, `required` that they must be.
     """
@@ -45,6 +47,7 @@ class Scaled:
     scalar: Scalar
     covariant: bool
     units: float
+    refused: int
     identical: bool
     required: bool
 
@@ -102,12 +105,13 @@ def _compare(
         required = binary and name == "inverse_dynamics" and kernels.way(name) in POLYNOMIAL
         required = required and _one_dimension(reference)
         for scalar in SCALARS:
-            worst, identical = 0.0, True
+            worst, refused, identical = 0.0, 0, True
             for index, (state, moved) in enumerate(zip(states, converted, strict=True)):
                 moved = rounded_state(moved, scalar)
                 outcome = other_kernels.run(name, moved, scalar)
                 if outcome.status != Status.OK:
-                    worst, identical = float("inf"), False
+                    worst, identical = worst if outcome.status in RANKS else float("inf"), False
+                    refused += 1
                     continue
                 expected = expectations(other, moved, (name,), scalar, f"{what} {index}")[name]
                 worst = max(worst, expected.in_units(expected.distance(outcome.entries)))
@@ -116,7 +120,7 @@ def _compare(
                     pairs = zip(plain.entries, conversion, outcome.entries, strict=True)
                     identical = identical and all(factor is None or x * factor == y for x, factor, y in pairs)
             identical = identical and binary
-            found.append(Scaled(what, name, scalar, conversion is not None, worst, identical, required))
+            found.append(Scaled(what, name, scalar, conversion is not None, worst, refused, identical, required))
     return found
 
 

@@ -298,7 +298,7 @@ class Sweeper:
         eps = float(UNIT_ROUNDOFF[scalar])
         low, high = (model.n * eps) ** 2, (1e3 * model.n * eps) ** 2
         input_counts = name == "inverse_dynamics" and ranks.actuation == model.n - ranks.constraints
-        counting = measures if input_counts else measures[:1]
+        counting = (*measures, self._conditions.columns(state)) if input_counts else measures[:1]
         given = (model.constraint_rank_tolerance, model.actuation_rank_tolerance)
         if min(counting) < low:
             counts[2] += 1

@@ -93,9 +93,13 @@ def _units(result: Stress) -> str:
             elif all(s.identical for s in mine):
                 cells.append("same bits")
             else:
-                cells.append(f"{max(s.units for s in mine):.2g}")
+                cells.append(f"{max(s.units for s in mine):.2g}" + _refused(sum(s.refused for s in mine)))
         rows.append(cells)
     return columns(("other units*", "u", "qdd", "λ"), rows, "<>>>") + "\n  * error as above, both scalar types"
+
+
+def _refused(states: int) -> str:
+    return f", {states} refused" if states else ""
 
 
 def _runs(result: Stress) -> str:
