@@ -9,6 +9,7 @@ from fractions import Fraction
 from symgen.emit.about import STATUS_MEANING, count_lines, renaming_lines, shape_text, symbol_lines, unit_text
 from symgen.emit.comments import c_comment, c_comment_lines, indent_of
 from symgen.emit.defaults import default_values
+from symgen.emit.finite import SUM, FiniteTest
 from symgen.emit.literals import c_literal
 from symgen.emit.locals import Names, all_statements, array_arguments, check_operands, names_of, used_locals
 from symgen.emit.pairs import GROUP_NAMES, PairsView, group_lines, leading_group, pair_names, pairs_view
@@ -187,6 +188,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
     loads = [load for load in kernel.loads if load.local in used]
     loaded = {load.argument for load in loads}
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
+    finite = FiniteTest(scalar, (names.locals[o.name] for o in kernel.outputs if isinstance(o, Local)))
     lines = [f"(void){name};" for name in (*(a.name for a in array_arguments(kernel)), "p") if name not in loaded]
     waiting: dict[str, str] = {}
     for load in loads:
@@ -209,10 +211,14 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
                 # all angles before the first call of the library: what they are read from is not needed after it
                 lines += due(o for s in block.statements if s.operation == "sincos" for o in s.operands)
             lines += [*due(statement.operands), *printer.statement(statement)]
+            lines += [line for target in statement.targets for line in finite.factor(names.locals[target])]
         for check in block.checks:
             lines += [*due(check_operands(check)), *printer.check(check)]
     lines += due(kernel.outputs)
-    lines += _finite_test(model, program, kernel, names, rare)
+    lines += finite.remaining()
+    if any(isinstance(output, Local) for output in kernel.outputs):
+        failed = status_name(model, Status.NOT_FINITE)
+        lines += [f"if ({rare}(isnan({SUM}) != 0)) {{", f"    return {failed};", "}"]
     lines += [
         f"{output}[{index}] = {printer.operand(operand).strip('()')};" for index, operand in enumerate(kernel.outputs)
     ]
@@ -225,30 +231,6 @@ def _place(load: Load, names: Names) -> str:
     if load.argument == "p":
         return f"p->{names.members[load.member]}"
     return f"sc->{load.member}" if load.argument == "sc" else f"{load.argument}[{load.index}]"
-
-
-def _finite_test(model: Model, program: Program, kernel: Kernel, names: Names, rare: str) -> list[str]:
-    """The test that decides for all outputs."""
-    results = [names.locals[o.name] for o in dict.fromkeys(kernel.outputs) if isinstance(o, Local)]
-    if not results:
-        return []
-    first, *others = rests(results)
-    return [
-        f"{C_TYPE[program.scalar]} rest = {first};",
-        *(f"rest += {other};" for other in others),
-        f"if ({rare}(isnan(rest) != 0)) {{",
-        f"    return {status_name(model, Status.NOT_FINITE)};",
-        "}",
-    ]
-
-
-def rests(results: Sequence[str]) -> list[str]:
-    """Terms that are 0 for finite results, and one of them NaN otherwise: x - x and its product with others.
-
-    Three results a term, so that intervals of the terms stay finite too, which tools that know no correlation need.
-    """
-    groups = [results[start : start + 3] for start in range(0, len(results), 3)]
-    return [" * ".join((f"({x} - {x})" if others else f"{x} - {x}", *others)) for x, *others in groups]
 
 
 def _read_back(group: Sequence[Statement], scalar: str, names: Names) -> dict[str, str]:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from symgen.emit.c import c_members, rests, status_name
+from symgen.emit.c import c_members, status_name
 from symgen.emit.comments import c_comment_lines
+from symgen.emit.finite import rests
 from symgen.emit.locals import Names, all_statements, array_arguments, names_of
 from symgen.emit.pairs import pair_body
 from symgen.emit.quantities import BATCHED, meaning

@@ -12,7 +12,9 @@ from symgen.records import dataclass
 
 ARGUMENT_NAMES = ("q", "qd", "qdd", "u", "p")
 # Names that the templates and statement printers use inside a kernel.
-KERNEL_NAMES = frozenset({*ARGUMENT_NAMES, "rest", "np", "status", "batch", "entries", "angle", "sine", "cosine"})
+KERNEL_NAMES = frozenset(
+    {*ARGUMENT_NAMES, "rest", "term", "np", "status", "batch", "entries", "angle", "sine", "cosine"}
+)
 
 
 @dataclass(frozen=True, slots=True)

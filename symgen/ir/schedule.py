@@ -1,6 +1,6 @@
 """From scalars of a graph to a straight-line kernel: order, names, thresholds.
 
-Statements come depth first, operands just before the operation that needs them, which keeps few values alive.
+Statements come depth first, operands just before the operation that needs them; see `order` for where that is too much.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
+from symgen.ir.order import relaxed
 from symgen.ir.sincos import angle_limit, sincos
 from symgen.model.quantities import QUANTITIES
 from symgen.records import dataclass
@@ -49,7 +50,7 @@ def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalars: Seque
     The order of statements is worked out once; the thresholds, which differ, are filled in last.
     """
     limits = _Limits(mechanics)
-    kernels = [_kernel(mechanics, derived, limits) for derived in quantities]
+    kernels = [relaxed(_kernel(mechanics, derived, limits)) for derived in quantities]
     programs: dict[Scalar, Program] = {}
     for scalar in scalars:
         filler = _Filler(limits.values(scalar))

@@ -14,9 +14,10 @@ import handmade
 import pytest
 import shipped
 
-from symgen.emit.c import emit_c, rests
+from symgen.emit.c import emit_c
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.c_sc import emit_c_sc
+from symgen.emit.finite import rests
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.naming import file_stem
