@@ -14,7 +14,7 @@ class Factoring:
     """Multiplies scalars out and factors them again; sums of parameters and the sums in `kept` stay whole."""
 
     def __init__(self, graph: Graph, parameters: Sequence[Scalar]) -> None:
-        self._graph = graph
+        self.graph = graph
         self._fixed: dict[Scalar, bool] = dict.fromkeys(parameters, True)
         self._multipliers: dict[frozenset[Scalar], Multiplier] = {}
 
@@ -31,9 +31,9 @@ class Factoring:
         """The scalars multiplied out, cancelled and factored where they are not too long."""
         multiplier = self._multipliers.get(kept)
         if multiplier is None:
-            multiplier = Multiplier(self._graph, lambda node: node in kept or self.fixed(node))
+            multiplier = Multiplier(self.graph, lambda node: node in kept or self.fixed(node))
             self._multipliers[kept] = multiplier
-        return tuple(refactored(self._graph, share_angles(self._graph, outputs), multiplier, self.fixed))
+        return tuple(refactored(self.graph, share_angles(self.graph, outputs), multiplier, self.fixed))
 
     def cancelled(self, scalar: Scalar) -> Scalar:
         """The scalar multiplied out and factored where that makes it shorter."""
@@ -44,7 +44,7 @@ class Factoring:
         """The sums that are factors of two components or more: what a vector is a multiple of."""
         seen: dict[Scalar, int] = {}
         for component in components:
-            _, powers = self._graph.products.monomial(component)
+            _, powers = self.graph.products.monomial(component)
             for factor, power in powers.items():
                 if power > 0 and factor.op in ("add", "sub") and not self.fixed(factor):
                     seen[factor] = seen.get(factor, 0) + 1

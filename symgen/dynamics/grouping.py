@@ -13,6 +13,8 @@ from typing import TypeAlias
 
 from symgen.dynamics.factoring import Factoring
 from symgen.dynamics.late_factors import with_late_factors
+from symgen.dynamics.opposites import with_one_difference
+from symgen.dynamics.shared_parts import with_shared_products, with_shared_sums
 from symgen.dynamics.sum_factors import with_common_factors
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost, reached, topological
@@ -34,16 +36,21 @@ class _Weighed:
 def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     """The outputs with their products regrouped, each step taken where it saves operations.
 
-    What is taken out of sums decides what later steps find, so that short outputs are begun in two ways.
+    What is taken out of sums decides what later steps find, so that short outputs are begun in several ways.
     """
-    start = _weighed(_unified(graph, outputs))
-    found = _improved(graph, factoring, start, (_with_collected_factors, *_STEPS))
-    if len(reached(outputs)) <= SHORT:
-        pairs = _improved(graph, factoring, start, (_with_common_factors,))
-        others = list(dict.fromkeys([found, *([] if pairs is start else [_improved(graph, factoring, pairs, _STEPS)])]))
-        late = [_improved(graph, factoring, one, (with_late_factors,)) for one in others]
-        found = min([*others, *late], key=lambda one: one.weight)
-    return list(_improved(graph, factoring, found, (_with_quotients,)).outputs)
+    start = _improved(graph, factoring, _weighed(_unified(graph, outputs)), _SIGNS_AND_NUMBERS)
+    short = len(reached(outputs)) <= SHORT
+    starts = [start, _improved(graph, factoring, start, (_with_parameters_taken_out,))] if short else [start]
+    found = []
+    for one in dict.fromkeys(starts):
+        found.append(_improved(graph, factoring, one, (_with_collected_factors, *_STEPS)))
+        if short:
+            pairs = _improved(graph, factoring, one, (_with_common_factors,))
+            found += [] if pairs is one else [_improved(graph, factoring, pairs, _STEPS)]
+    if short:
+        found += [_improved(graph, factoring, one, (with_late_factors,)) for one in dict.fromkeys(found)]
+    ended = (_improved(graph, factoring, one, _LAST_STEPS) for one in dict.fromkeys(found))
+    return list(min(ended, key=lambda one: one.weight).outputs)
 
 
 def _improved(graph: Graph, factoring: Factoring, best: _Weighed, steps: Sequence[_Step]) -> _Weighed:
@@ -56,7 +63,8 @@ def _improved(graph: Graph, factoring: Factoring, best: _Weighed, steps: Sequenc
 
 
 def _weighed(outputs: Sequence[Scalar]) -> _Weighed:
-    return _Weighed(tuple(outputs), cost(outputs).weight)
+    signs = sum(node.op == "neg" for node in reached(outputs))
+    return _Weighed(tuple(outputs), cost(outputs).weight + signs)
 
 
 def _unified(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
@@ -172,4 +180,43 @@ def _as_it_stands(graph: Graph, node: Scalar, args: tuple[Scalar, ...]) -> Scala
     return node if args == node.args else graph.raw(node.op, args, node.payload)
 
 
+def _with_numbers_joined(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """1/2 (p sqrt(3)) as (1/2 sqrt(3)) p: numbers with numbers, which compilers multiply."""
+    image: dict[Scalar, Scalar] = {}
+    for node in topological(outputs):
+        args = tuple(image[argument] for argument in node.args)
+        joined = None
+        if node.op == "mul" and args[0].constant is not None and factoring.fixed(node) and args[1].op == "mul":
+            for a, b in (args[1].args, args[1].args[::-1]):
+                if joined is None and _is_number(a) and not _is_number(b):
+                    joined = graph.raw("mul", (graph.raw("mul", (args[0], a)), b))
+        image[node] = _as_it_stands(graph, node, args) if joined is None else joined
+    return [image[output] for output in outputs]
+
+
+def _is_number(node: Scalar) -> bool:
+    """Whether a scalar holds no symbol."""
+    return all(inner.op != "symbol" for inner in topological([node]))
+
+
+def _with_parameters_taken_out(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """x + p a - p b as x + p (a - b) also where products of parameters are needed elsewhere, likewise for numbers."""
+    return with_common_factors(graph, outputs, factoring.fixed)
+
+
+def _with_shared_sums(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    return with_one_difference(graph, with_shared_sums(graph, outputs))
+
+
+def _with_shared_products(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    return with_shared_products(graph, outputs)
+
+
+def _with_one_difference(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    return with_one_difference(graph, outputs)
+
+
+_SIGNS_AND_NUMBERS = (_with_one_difference, _with_numbers_joined)
 _STEPS = (_with_numbers_moved, _with_parameters_joined)
+# sums that two others held are found in more of them once those are one
+_LAST_STEPS = (_with_one_difference, _with_shared_sums, _with_shared_sums, _with_shared_products, _with_quotients)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import topological
+from symgen.graph.traverse import substitute, topological
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
 
@@ -28,6 +28,37 @@ class Guard:
     degree: int
     first: tuple[Guard, ...] = ()
     scale: Scalar | None = None
+
+
+def where_negligible(graph: Graph, total: Scalar, values: Sequence[Scalar]) -> list[Scalar]:
+    """Values as they are where a sum of squares is 0 to rounding; as they stand if `total` is no sum of squares.
+
+    Each root of its squares is 0 then, and the cosine of an angle whose sine is 0 is 1 or -1.  It is replaced where
+    both signs give the same values, that is where it stands in squares.
+    """
+    roots = _roots(total)
+    found = substitute(graph, values, dict.fromkeys(roots, graph.zero))
+    for root in roots:
+        if root.op == "sin":
+            cosine = graph.trig("cos", root.args[0])
+            either = [substitute(graph, found, {cosine: sign}) for sign in (graph.one, -graph.one)]
+            if either[0] == either[1]:
+                found = either[0]
+    return found
+
+
+def _roots(total: Scalar) -> list[Scalar]:
+    """What the terms of a sum are squares of; none if there is a term that is no square."""
+    terms, roots = [total], []
+    while terms:
+        term = terms.pop()
+        if term.op == "add":
+            terms += term.args
+        elif term.op == "mul" and term.args[0] is term.args[1]:
+            roots.append(term.args[0])
+        else:
+            return []
+    return roots
 
 
 def magnitude(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:

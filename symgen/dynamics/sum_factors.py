@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import topological
@@ -32,20 +32,30 @@ class _Group:
     terms: tuple[_Term, ...]
 
 
-def with_common_factors(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
-    """The outputs with common factors taken out of sums, from products and inner sums that nothing else needs."""
+def with_common_factors(
+    graph: Graph, outputs: Sequence[Scalar], apart: Callable[[Scalar], bool] | None = None
+) -> list[Scalar]:
+    """The outputs with common factors taken out of sums, from products and inner sums that nothing else needs.
+
+    `apart` tells which terms of sums, such as parameters, are to be found though others need the products or the
+    sums that hold them; numbers are factors too then.
+    """
     order = topological(outputs)
     uses = Counter([*(argument for node in order for argument in node.args), *outputs])
-    inside = {a for node in order if node.op in _SUMS for a in node.args if a.op in _SUMS and uses[a] == 1}
+    whole = {node for node in order if uses[node] > 1 and (apart is None or not apart(node))}
+    sums = [a for node in order if node.op in _SUMS for a in node.args if a.op in _SUMS]
+    inside = {a for a in sums if uses[a] == 1 or (apart is not None and any(map(apart, a.args)))}
     image: dict[Scalar, Scalar] = {}
     for node in order:
         args = tuple(image[argument] for argument in node.args)
         image[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
-        if node.op in _SUMS and node not in inside:
-            groups = _grouped([_Term(sign, term, _factors(term, uses)) for sign, term in _terms(node, inside)])
+        if node.op in _SUMS and (node not in inside or uses[node] > 1):
+            terms = [_Term(sign, term, _factors(term, whole)) for sign, term in _terms(node, inside)]
+            groups = _grouped(terms, numbers=apart is not None)
             if any(group.common for group in groups):
-                quotients = _Quotients(graph, uses, image)
-                image[node] = _sum(graph, [(g.terms[0].sign, quotients.product(g)) for g in groups])
+                quotients = _Quotients(graph, whole, image)
+                signs = _signs(groups)
+                image[node] = _sum(graph, [(s, quotients.product(g, s)) for s, g in zip(signs, groups, strict=True)])
     return [image[output] for output in outputs]
 
 
@@ -63,14 +73,14 @@ def _terms(node: Scalar, inside: Collection[Scalar]) -> list[tuple[int, Scalar]]
     return found
 
 
-def _factors(term: Scalar, uses: Mapping[Scalar, int]) -> tuple[Scalar, ...]:
-    """The factors of a product that nothing else needs, shared products whole."""
-    if term.op != "mul" or uses[term] > 1:
+def _factors(term: Scalar, whole: Collection[Scalar]) -> tuple[Scalar, ...]:
+    """The factors of a product, those products left alone that are to stay whole."""
+    if term.op != "mul" or term in whole:
         return (term,)
-    return tuple(factor for argument in term.args for factor in _factors(argument, uses))
+    return tuple(factor for argument in term.args for factor in _factors(argument, whole))
 
 
-def _grouped(terms: Sequence[_Term]) -> list[_Group]:
+def _grouped(terms: Sequence[_Term], numbers: bool) -> list[_Group]:
     """The terms in groups, those first that save most products; in the order of their first terms."""
     left = dict(enumerate(terms)) if len(terms) <= MOST_TERMS else {}
     groups = []
@@ -78,9 +88,9 @@ def _grouped(terms: Sequence[_Term]) -> list[_Group]:
         holders: dict[Scalar, list[int]] = {}
         for place, term in left.items():
             for factor in dict.fromkeys(term.factors):
-                if factor.constant is None and len(term.factors) > 1:
+                if (numbers or factor.constant is None) and len(term.factors) > 1:
                     holders.setdefault(factor, []).append(place)
-        shared = [(_common([left[place].factors for place in places]), places) for places in holders.values()]
+        shared = [(_common([left[place].factors for place in places], numbers), places) for places in holders.values()]
         common, places = max(shared, key=lambda found: len(found[0]) * (len(found[1]) - 1), default=((), []))
         if len(places) < 2:
             break
@@ -90,11 +100,23 @@ def _grouped(terms: Sequence[_Term]) -> list[_Group]:
     return sorted(groups, key=lambda group: group.place)
 
 
-def _common(products: Sequence[tuple[Scalar, ...]]) -> tuple[Scalar, ...]:
+def _signs(groups: Sequence[_Group]) -> list[int]:
+    """Of each group that of its oldest term, so that a - b in one sum and b - a in another become the same.
+
+    At least one is positive where that needs no sign of its own.
+    """
+    found = [min(group.terms, key=lambda term: term.product.serial).sign for group in groups]
+    if all(sign < 0 for sign in found):
+        mixed = (k for k, group in enumerate(groups) if any(term.sign > 0 for term in group.terms))
+        found[next(mixed, 0)] *= -1
+    return found
+
+
+def _common(products: Sequence[tuple[Scalar, ...]], numbers: bool) -> tuple[Scalar, ...]:
     first, *others = (Counter(factors) for factors in products)
     for other in others:
         first &= other
-    return tuple(factor for factor in first.elements() if factor.constant is None)
+    return tuple(factor for factor in first.elements() if numbers or factor.constant is None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,22 +124,21 @@ class _Quotients:
     """Products without some of their factors, otherwise multiplied in the order in which they were."""
 
     graph: Graph
-    uses: Mapping[Scalar, int]
+    kept: Collection[Scalar]
     image: Mapping[Scalar, Scalar]
 
-    def product(self, group: _Group) -> Scalar:
-        """The group without the sign of its first term."""
-        sign = group.terms[0].sign
-        rests = [(sign * term.sign, self._rest(term.product, Counter(group.common), True)) for term in group.terms]
+    def product(self, group: _Group, sign: int) -> Scalar:
+        """The group, divided by a sign."""
+        rests = [(sign * term.sign, self._rest(term.product, Counter(group.common))) for term in group.terms]
         inner = _sum(self.graph, [(s, self.graph.one if rest is None else rest) for s, rest in rests])
         if not group.common:
             return inner
         return self.graph.raw("mul", (_product(self.graph, [self.image[f] for f in group.common]), inner))
 
-    def _rest(self, node: Scalar, gone: Counter[Scalar], whole: bool) -> Scalar | None:
+    def _rest(self, node: Scalar, gone: Counter[Scalar]) -> Scalar | None:
         """The product without the factors in `gone`, which loses them; None where nothing is left."""
-        if node.op == "mul" and (whole or self.uses[node] == 1):
-            left, right = (self._rest(argument, gone, False) for argument in node.args)
+        if node.op == "mul" and node not in self.kept:
+            left, right = (self._rest(argument, gone) for argument in node.args)
             if left is None or right is None:
                 return right if left is None else left
             return self.graph.raw("mul", (left, right))

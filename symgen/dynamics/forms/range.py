@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, unit, wedge_all
+from symgen.dynamics.factoring import Factoring
 from symgen.dynamics.forms.definite import Definite
 from symgen.dynamics.forms.elimination import Elimination
 from symgen.dynamics.forms.form import Form, form
@@ -21,9 +22,10 @@ from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.spaces import HouseholderSpace
+from symgen.graph.content import divided, usual_number
 from symgen.graph.matrix import Matrix, Vector, dot, transpose
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import substitute
+from symgen.graph.traverse import cost, substitute
 from symgen.ir.kernel import Status
 
 # Cores with more rows are solved by reflections: minors grow faster.
@@ -47,7 +49,7 @@ def range_form(
         return None
     graph = mechanics.graph
     core = tuple(tuple(row.coefficients.get(j, graph.zero) for j in names) for row in rows)
-    solved = _Core(elimination, graph, names, core, tuple(row.right for row in rows))
+    solved = _Core(elimination, mechanics.factoring, names, core, tuple(row.right for row in rows))
     definite = Definite(mechanics)
     u, guards = solved.inputs(internal)
     open_guards = [guard for guard in guards if not definite.holds(guard.denominator)]
@@ -61,11 +63,11 @@ class _Core:
     """The rows A x = b that elimination leaves, solved for any x, and the inputs that belong to it."""
 
     def __init__(
-        self, elimination: Elimination, graph: Graph, names: Sequence[int], core: Matrix, right: Vector
+        self, elimination: Elimination, factoring: Factoring, names: Sequence[int], core: Matrix, right: Vector
     ) -> None:
-        self._elimination, self._graph = elimination, graph
+        self._elimination, self._graph = elimination, factoring.graph
         self._names, self._core, self._right = names, core, right
-        self._size = len(core)
+        self._size, self._factoring = len(core), factoring
 
     def inputs(self, internal: int) -> tuple[Vector, tuple[Guard, ...]]:
         """The u of least norm, and the guards of the core and of the internal forces."""
@@ -98,15 +100,14 @@ class _Core:
 
     def _by_minors(self, internal: int) -> tuple[Vector, list[Vector], Guard, Scalar]:
         """A particular solution, the null vector if there is one, and what small minors make small."""
+        if self._size == len(self._names) == MOST_MINORS:
+            return self._bordered()
         graph = self._graph
         forms = ActuationForms(
             RowForms(graph, (), self._size, 0), transpose(self._core, len(self._names)), self._size
         )
         denominator = forms.denominator()
-        scale = magnitude(graph, [denominator])[0]
-        guard = Guard(
-            Status.ACTUATION_RANK, denominator, 1 if forms.single else 2, (self._regularity(),), scale
-        )
+        guard, measure = self._guarded(denominator, 1 if forms.single else 2)
         if self._size == 1 and not forms.single:
             # any solution serves, because internal forces are taken out of u afterwards
             share = self._right[0] / denominator
@@ -114,7 +115,35 @@ class _Core:
         else:
             particular = forms.solve(self._right)
         null = [cross_product(graph, self._core, len(self._names))] if internal else []
-        return particular, null, guard, denominator / scale
+        return particular, null, guard, measure
+
+    def _bordered(self) -> tuple[Vector, list[Vector], Guard, Scalar]:
+        """The solution of a square core as the null vector of [A, b].
+
+        All its determinants share the minors of the rows that are multiplied first; sparse ones have fewest.
+        """
+        rows = [(*row, right) for row, right in zip(self._core, self._right, strict=True)]
+        rows.sort(key=lambda row: sum(not entry.is_zero for entry in row))
+        *minors, denominator = cross_product(self._graph, tuple(rows), len(self._names) + 1)
+        guard, measure = self._guarded(denominator, 1)
+        inverse = 1 / denominator
+        return tuple(-minor * inverse for minor in minors), [], guard, measure
+
+    def _guarded(self, denominator: Scalar, degree: int) -> tuple[Guard, Scalar]:
+        """The guard of the core's minors, and what they are of their bound."""
+        scale = self._scale(denominator)
+        guard = Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale)
+        return guard, denominator / scale
+
+    def _scale(self, minors: Scalar) -> Scalar:
+        """The sum of absolute terms, in which terms of minors that cancel in sign are equal, with factors taken out."""
+        graph = self._graph
+        (given,) = magnitude(graph, [minors])
+        entries = [entry for row in self._core for entry in row]
+        (shorter,) = self._factoring.shorten((given,), frozenset(magnitude(graph, entries)))
+        number = usual_number([shorter])
+        # a number in front becomes part of the threshold
+        return min((given, number * divided(graph, shorter, number)), key=lambda scale: cost([scale]).weight)
 
     def _by_reflections(self) -> tuple[Vector, list[Vector], Guard]:
         """The solution of least norm, an orthonormal null-space basis, and the product of the pivots."""

@@ -1,0 +1,152 @@
+"""Parts that several sums or several products share: x + a - b and y + a - b with a - b computed once.
+
+Sums and products are taken apart into their terms as far as nothing else needs what is inside; then the pair that most
+of them hold becomes a term of its own, and so on (greedy: M. A. Breuer, Generation of optimal code for expressions via
+factorization, 1969).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from typing import TypeAlias
+
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import reached, topological
+
+_Term: TypeAlias = tuple[int, Scalar]
+_Pair: TypeAlias = tuple[_Term, _Term]
+
+# Longer sums and products stay as they are.
+MOST_TERMS = 24
+_SUM, _PRODUCT = ("add", "sub"), ("mul",)
+
+
+def with_shared_sums(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """The outputs with pairs of terms that several sums hold, with the same or with opposite signs, added once."""
+    return _Sharing(graph, _SUM, outputs).outputs()
+
+
+def with_shared_products(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """The outputs with pairs of factors that several products hold multiplied once."""
+    return _Sharing(graph, _PRODUCT, outputs).outputs()
+
+
+class _Sharing:
+    """The sums or the products of the outputs as lists of signed terms (signs of factors are positive)."""
+
+    def __init__(self, graph: Graph, ops: Collection[str], outputs: Sequence[Scalar]) -> None:
+        self._graph, self._ops, self._outputs = graph, ops, outputs
+        self._order = topological(outputs)
+        uses = Counter([*(a for node in self._order for a in node.args), *outputs])
+        inside = {
+            a for node in self._order if node.op in ops for a in node.args if a.op in ops and uses[a] == 1
+        }
+        # angles stay as they are: what else takes their sines and cosines has to find them
+        angles = reached(node for node in self._order if node.op in ("sin", "cos"))
+        roots = [node for node in self._order if node.op in ops and node not in inside and node not in angles]
+        self._terms = {node: _taken_apart(node, inside) for node in roots}
+        self._long = {node for node in roots if len(self._terms[node]) > MOST_TERMS}
+        self._inside = inside
+
+    def outputs(self) -> list[Scalar]:
+        """The outputs rebuilt."""
+        pairs = self._shared()
+        image: dict[Scalar, Scalar] = {}
+        made: dict[Scalar, Scalar] = {}
+        for node in self._order:
+            terms = self._terms.get(node)
+            if terms is None or node in self._long or not any(part in pairs for _, part in terms):
+                args = tuple(image[a] for a in node.args)
+                image[node] = node if args == node.args else self._graph.raw(node.op, args, node.payload)
+            else:
+                image[node] = self._built(terms, pairs, image, made)
+        return [image[output] for output in self._outputs]
+
+    def _shared(self) -> dict[Scalar, _Pair]:
+        """Pairs worth a term of their own, by the scalar that stands for them; `self._terms` then hold those."""
+        places: dict[_Pair, set[Scalar]] = {}
+        for node, terms in self._terms.items():
+            if node not in self._long:
+                for pair in _pairs(terms):
+                    places.setdefault(pair, set()).add(node)
+        found: dict[Scalar, _Pair] = {}
+        while True:
+            best = max(places, key=lambda pair: (len(places[pair]), *_age(pair)), default=None)
+            if best is None or len(places[best]) < 2:
+                return found
+            whole = self._graph.symbol(f"shared part {self._ops} {len(found)}")
+            found[whole] = best
+            for node in sorted(places.pop(best), key=lambda node: node.serial):
+                for pair in _pairs(self._terms[node]):
+                    if pair in places:
+                        places[pair].discard(node)
+                self._terms[node] = _with(self._terms[node], best, whole)
+                for pair in _pairs(self._terms[node]):
+                    places.setdefault(pair, set()).add(node)
+
+    def _built(
+        self, terms: Sequence[_Term], pairs: Mapping[Scalar, _Pair], image: Mapping[Scalar, Scalar],
+        made: dict[Scalar, Scalar],
+    ) -> Scalar:
+        """A sum or product of terms, of which some stand for pairs."""
+        parts = []
+        for sign, part in terms:
+            if part in pairs and part not in made:
+                made[part] = self._built(pairs[part], pairs, image, made)
+            parts.append((sign, made[part] if part in pairs else image[part]))
+        if self._ops is _PRODUCT:
+            total = parts[0][1]
+            for _, factor in parts[1:]:
+                total = self._graph.raw("mul", (total, factor))
+            return total
+        start = next((k for k, (sign, _) in enumerate(parts) if sign > 0), 0)
+        sign, total = parts[start]
+        total = total if sign > 0 else self._graph.raw("neg", (total,))
+        for k, (sign, part) in enumerate(parts):
+            if k != start:
+                total = self._graph.raw("add" if sign > 0 else "sub", (total, part))
+        return total
+
+
+def _taken_apart(node: Scalar, inside: Collection[Scalar]) -> list[_Term]:
+    found = []
+    stack = [(1, node)]
+    while stack:
+        sign, part = stack.pop()
+        if part is node or part in inside:
+            left, right = part.args
+            stack += [(-sign if part.op == "sub" else sign, right), (sign, left)]
+        else:
+            found.append((sign, part))
+    return found
+
+
+def _pairs(terms: Sequence[_Term]) -> set[_Pair]:
+    """The pairs of different terms, the older one first and positive."""
+    found = set()
+    for k, one in enumerate(terms):
+        for other in terms[k + 1 :]:
+            if one[1] is not other[1]:
+                found.add(_pair(one, other))
+    return found
+
+
+def _pair(one: _Term, other: _Term) -> _Pair:
+    (sign, a), (second, b) = (one, other) if one[1].serial < other[1].serial else (other, one)
+    return (1, a), (sign * second, b)
+
+
+def _age(pair: _Pair) -> tuple[int, int]:
+    return -pair[0][1].serial, -pair[1][1].serial
+
+
+def _with(terms: Sequence[_Term], pair: _Pair, whole: Scalar) -> list[_Term]:
+    """The terms with `whole` in the place of the first that belongs to the pair."""
+    (_, a), (_, b) = pair
+    first = next(k for k, (_, part) in enumerate(terms) if part is a)
+    second = next(k for k, (_, part) in enumerate(terms) if part is b)
+    sign = terms[first][0]
+    rest = [term for k, term in enumerate(terms) if k not in (first, second)]
+    rest.insert(min(first, second), (sign, whole))
+    return rest

@@ -1,0 +1,82 @@
+"""Parts that several sums and products share, differences the other way round, factors that parameters hide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import pytest
+
+from symgen.dynamics.opposites import with_one_difference
+from symgen.dynamics.shared_parts import with_shared_products, with_shared_sums
+from symgen.dynamics.sum_factors import with_common_factors
+from symgen.graph.evaluate import Evaluator
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import cost, reached
+
+VALUES = {name: 0.3 + 0.7 * k for k, name in enumerate("abcdefpq")}
+Step = Callable[[Graph, Sequence[Scalar]], list[Scalar]]
+
+
+def symbols(graph: Graph, names: str) -> list[Scalar]:
+    return [graph.symbol(name) for name in names]
+
+
+def sum_of(graph: Graph, signed: Sequence[tuple[int, Scalar]]) -> Scalar:
+    (_, total), *rest = signed
+    for sign, term in rest:
+        total = graph.raw("add" if sign > 0 else "sub", (total, term))
+    return total
+
+
+def taken(step: Step, graph: Graph, outputs: Sequence[Scalar], operations: int) -> list[Scalar]:
+    """The outputs after a step, checked to keep their values and to take so many operations."""
+    found = step(graph, outputs)
+    assert list(Evaluator(found)(VALUES)) == pytest.approx(list(Evaluator(outputs)(VALUES)), rel=1e-14)
+    assert cost(found).weight == operations
+    return found
+
+
+def test_pairs_of_terms_are_added_once_whatever_their_sign() -> None:
+    graph = Graph()
+    a, b, c, d, e, f = symbols(graph, "abcdef")
+    sums = [sum_of(graph, [(1, x), (s, a), (-s, b)]) for x, s in ((c, 1), (d, -1), (e, 1))]
+    taken(with_shared_sums, graph, [*sums, graph.raw("mul", (f, sums[0]))], 5)
+
+
+def test_pairs_of_factors_are_multiplied_once() -> None:
+    graph = Graph()
+    a, b, c, d, e, _ = symbols(graph, "abcdef")
+    products = [graph.raw("mul", (a, graph.raw("mul", (x, b)))) for x in (c, d, e)]
+    taken(with_shared_products, graph, products, 4)
+
+
+def test_angles_stay_as_they_are() -> None:
+    graph = Graph()
+    a, b, c, d, _, _ = symbols(graph, "abcdef")
+    angles = [sum_of(graph, [(1, x), (1, a), (-1, b)]) for x in (c, d)]
+    sines = [graph.function("sin", (angle,)) for angle in angles]
+    for step in (with_shared_sums, with_one_difference):
+        assert step(graph, sines) == sines
+
+
+def test_differences_the_other_way_round_are_one() -> None:
+    graph = Graph()
+    a, b, c, d, _, _ = symbols(graph, "abcdef")
+    one, other = graph.raw("sub", (a, b)), graph.raw("sub", (b, a))
+    outputs = [graph.raw("mul", (c, one)), graph.raw("add", (d, graph.raw("mul", (c, other))))]
+    found = taken(with_one_difference, graph, outputs, 4 - 1)
+    assert all(node.op != "neg" for node in reached(found))
+
+
+def test_parameters_are_taken_out_of_sums_that_share_them() -> None:
+    graph = Graph()
+    a, b, c, d, _, _, p, q = symbols(graph, "abcdefpq")
+    product = graph.raw("mul", (p, q))
+    sums = [sum_of(graph, [(1, x), (1, product), (-1, graph.raw("mul", (p, y)))]) for x, y in ((a, b), (c, d))]
+    fixed = {p, q, product}
+
+    def step(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+        return with_common_factors(graph, outputs, fixed.__contains__)
+
+    assert cost(with_common_factors(graph, sums)).weight == 7
+    taken(step, graph, sums, 6)
