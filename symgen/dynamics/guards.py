@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import substitute, topological
+from symgen.graph.traverse import reached, substitute, topological
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
 
@@ -34,9 +34,11 @@ def where_negligible(graph: Graph, total: Scalar, values: Sequence[Scalar]) -> l
     """Values as they are where a sum of squares is 0 to rounding; as they stand if `total` is no sum of squares.
 
     Each root of its squares is 0 then, and the cosine of an angle whose sine is 0 is 1 or -1.  It is replaced where
-    both signs give the same values, that is where it stands in squares.
+    both signs give the same values, that is where it stands in squares.  Values with quotients stay as they stand.
     """
     roots = _roots(total)
+    if any(node.op in ("div", "ratio_or_zero") for node in reached(values)):
+        return list(values)
     found = substitute(graph, values, dict.fromkeys(roots, graph.zero))
     for root in roots:
         if root.op == "sin":

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from symgen.diagnostics import SymgenBug
 from symgen.dynamics.catalogue import Derived
-from symgen.dynamics.guards import Guard, magnitude
+from symgen.dynamics.guards import Guard, magnitude, where_negligible
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.angles import share_angles
 from symgen.graph.scalar import Graph
@@ -61,12 +61,16 @@ def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalars: Seque
 
 @dataclass(frozen=True, slots=True)
 class _Test:
-    """A guard with its limit as a scalar: passes where denominator > limit (or < -limit, hence `size`)."""
+    """A guard with its limit as a scalar: passes where denominator > limit (or < -limit, hence `size`).
+
+    `vanishes`: where it fails, the terms of `size` are 0 to rounding.
+    """
 
     status: Status
     size: Node
     limit: Node
     first: tuple[_Test, ...]
+    vanishes: bool
 
 
 class _Limits:
@@ -96,9 +100,13 @@ class _Limits:
             scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
             size = guard.denominator if guard.degree == 2 else graph.function("abs", (guard.denominator,))
             first = tuple(self.tests(guard.first))
+            if all(cause.status is guard.status and not cause.first for cause in first):
+                first = ()  # nothing to tell apart
             # a denominator that is its own scale, such as a length, is negligible only where it is 0
             limit = graph.zero if scale is size else self._limit(guard, scale)
-            self._known[guard] = _Test(guard.status, size, limit, first)
+            # a model's own tolerance may be far above rounding
+            vanishes = guard.degree == 2 and _own_tolerance(self._mechanics, guard) is None
+            self._known[guard] = _Test(guard.status, size, limit, first, vanishes)
         return self._known[guard]
 
     def _limit(self, guard: Guard, scale: Node) -> Node:
@@ -173,6 +181,7 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     # what only a failure looks at must not decide which angles a regular state evaluates
     causes = list(_causes(tests))
     image |= zip(causes, share_angles(mechanics.graph, causes, arguments), strict=True)
+    tests = [_told(mechanics.graph, test, image) for test in tests]
     computed = [argument for argument in arguments if _angles([argument])]
     plain = [argument for argument in arguments if argument not in computed]
     blocks = [writer.angle_block(plain), Block(tuple(writer.pairs(plain, order)), ())]
@@ -204,6 +213,16 @@ def _angles_among(nodes: Sequence[Node]) -> list[Node]:
 
 def _causes(tests: Sequence[_Test]) -> list[Node]:
     return [node for test in tests for cause in test.first for node in (cause.size, cause.limit, *_causes([cause]))]
+
+
+def _told(graph: Graph, test: _Test, image: dict[Node, Node]) -> _Test:
+    """The test with causes as they are where it fails; what takes the place of a size is its own image."""
+    if not test.vanishes or not test.first:
+        return test
+    sizes = where_negligible(graph, image[test.size], [image[cause.size] for cause in test.first])
+    for size in sizes:
+        image.setdefault(size, size)
+    return replace(test, first=tuple(replace(c, size=size) for c, size in zip(test.first, sizes, strict=True)))
 
 
 class _Writer:
