@@ -18,7 +18,7 @@ from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.dynamics.catalogue import BY_NAME
 from symgen.dynamics.forms.motions import BY_FRAMES
-from symgen.dynamics.inverse import FormChoice, InverseDynamics
+from symgen.dynamics.inverse import FormChoice
 from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities
 from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
@@ -208,10 +208,10 @@ def _failing_forms(derived: _Derived) -> tuple[tuple[str, str], ...]:
     """Where what is generated is not valid if a form was asked for, and which forms are left to be asked for and where
     they fail."""
     derivations = derived.derivations
-    form = derivations.form
+    form, inverse = derivations.form, derivations.inverse
     told = list(_forms(derivations, ()))
-    if form is not None and form.verdict.admitted:
-        others = InverseDynamics(derived.model, derivations.generic).failing() or form.failed
+    if form is not None and inverse is not None and form.verdict.admitted:
+        others = inverse.failing() or form.failed
         told += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
     # articulated inertias are taken only where G is definite, and then no form fails
     moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]

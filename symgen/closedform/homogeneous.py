@@ -7,8 +7,7 @@ so ordinary gcd and factorisation recognise sin(a - b) and the like (theory.md, 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from functools import lru_cache
+from collections.abc import Iterable, Mapping, Sequence
 from math import prod
 
 import flint
@@ -16,27 +15,38 @@ from sympy import QQ
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.ring import TrigRing
+from symgen.closedform.used import Monomial, Used
 
 # A polynomial of more terms, once homogeneous, is factored as an ordinary one only: its length doubles with every angle
 # that a monomial lacks.
 MOST_TERMS = 3_000
 
 
-@lru_cache(maxsize=64)
-def _context(generators: int) -> flint.fmpq_mpoly_ctx:
-    return flint.fmpq_mpoly_ctx.get([f"x{i}" for i in range(generators)], flint.Ordering.lex)
+def _images(used: Used, p: PolyElement) -> list[flint.fmpq_mpoly]:
+    """The parity classes of p, each made homogeneous in every pair (s_i, c_i)."""
+    classes: dict[tuple[int, ...], dict[Monomial, flint.fmpq]] = {}
+    for monomial, coefficient in used.terms(p).items():
+        key = tuple([(monomial[s] + monomial[c]) % 2 for s, c in used.pairs])
+        classes.setdefault(key, {})[monomial] = coefficient
+    return [_raised(used, classes[key]) for key in sorted(classes)]
 
 
-def _to_flint(p: PolyElement) -> flint.fmpq_mpoly:
-    terms = {m: flint.fmpq(int(c.numerator), int(c.denominator)) for m, c in p.items()}
-    return _context(p.ring.ngens).from_dict(terms)
-
-
-def _from_flint(ring: TrigRing, p: flint.fmpq_mpoly) -> PolyElement:
-    result = ring.polys.zero.copy()
-    for monomial, c in p.to_dict().items():
-        result[tuple(int(e) for e in monomial)] = QQ(int(c.numerator), int(c.denominator))
-    return result
+def _raised(used: Used, terms: Mapping[Monomial, flint.fmpq]) -> flint.fmpq_mpoly:
+    """One parity class times powers of s_i^2 + c_i^2 = 1, so that all its terms have the same degree in a pair."""
+    degrees = {monomial: [monomial[s] + monomial[c] for s, c in used.pairs] for monomial in terms}
+    tops = [max(column) for column in zip(*degrees.values(), strict=True)]
+    parts: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
+    for monomial, coefficient in terms.items():
+        missing = tuple([(top - d) // 2 for top, d in zip(tops, degrees[monomial], strict=True)])
+        parts.setdefault(missing, {})[monomial] = coefficient
+    total = used.polynomial({})
+    for missing, part in parts.items():
+        raised = used.polynomial(part)
+        for (s, c), times in zip(used.pairs, missing, strict=True):
+            if times:
+                raised *= (used.generator(s) ** 2 + used.generator(c) ** 2) ** times
+        total += raised
+    return total
 
 
 def parity_classes(ring: TrigRing, p: PolyElement) -> list[PolyElement]:
@@ -44,25 +54,16 @@ def parity_classes(ring: TrigRing, p: PolyElement) -> list[PolyElement]:
     parts: dict[tuple[int, ...], PolyElement] = {}
     pairs = tuple(zip(ring.sine, ring.cosine, strict=True))
     for monomial, coefficient in p.items():
-        key = tuple((monomial[s] + monomial[c]) % 2 for s, c in pairs)
+        key = tuple([(monomial[s] + monomial[c]) % 2 for s, c in pairs])
         parts.setdefault(key, ring.polys.zero.copy())[monomial] = coefficient
     return [parts[key] for key in sorted(parts)]
 
 
 def homogeneous(ring: TrigRing, p: PolyElement) -> PolyElement:
     """A normal form of one parity class, made homogeneous in every pair (s_i, c_i)."""
-    for s, c in zip(ring.sine, ring.cosine, strict=True):
-        degrees = {monomial[s] + monomial[c] for monomial in p}
-        if len(degrees) < 2:
-            continue
-        top = max(degrees)
-        one = ring.generator(s) ** 2 + ring.generator(c) ** 2
-        parts: dict[int, PolyElement] = {}
-        for monomial, coefficient in p.items():
-            missing = (top - monomial[s] - monomial[c]) // 2
-            parts.setdefault(missing, ring.polys.zero.copy())[monomial] = coefficient
-        p = sum((part * one**missing for missing, part in parts.items()), ring.zero)
-    return p
+    used = Used(ring, [p])
+    (result,) = _images(used, p)
+    return used.element(result)
 
 
 def _homogeneous_terms(ring: TrigRing, p: PolyElement) -> int:
@@ -70,19 +71,22 @@ def _homogeneous_terms(ring: TrigRing, p: PolyElement) -> int:
     pairs = tuple(zip(ring.sine, ring.cosine, strict=True))
     degrees = [[monomial[s] + monomial[c] for s, c in pairs] for monomial in p]
     tops = [max(column) for column in zip(*degrees, strict=True)]
-    return sum(prod((top - degree) // 2 + 1 for top, degree in zip(tops, row, strict=True)) for row in degrees)
+    return sum(prod([(top - degree) // 2 + 1 for top, degree in zip(tops, row, strict=True)]) for row in degrees)
 
 
 def common_factor(ring: TrigRing, polynomials: Iterable[PolyElement]) -> PolyElement:
     """The greatest common factor of normal forms: homogeneous, primitive, leading coefficient positive."""
+    ordered = sorted((p for p in polynomials if p), key=len)
+    if not ordered or any(p.is_ground for p in ordered):
+        return ring.one
+    used = Used(ring, ordered)
     result: flint.fmpq_mpoly | None = None
-    for p in sorted((p for p in polynomials if p), key=len):
-        for part in parity_classes(ring, p):
-            image = _to_flint(homogeneous(ring, part))
+    for p in ordered:
+        for image in _images(used, p):
             result = image if result is None else result.gcd(image)
             if result.is_constant():
                 return ring.one
-    return ring.one if result is None else _primitive(_from_flint(ring, result))
+    return _primitive(used.element(result))
 
 
 def _primitive(p: PolyElement) -> PolyElement:
@@ -94,13 +98,14 @@ def divide(ring: TrigRing, p: PolyElement, factor: PolyElement) -> PolyElement:
     """p / factor for a homogeneous common factor, in normal form."""
     if factor == 1:
         return p
-    divisor = _to_flint(factor)
+    used = Used(ring, (p, factor))
+    divisor = used.image(factor)
     result = ring.zero
-    for part in parity_classes(ring, p):
-        quotient, remainder = divmod(_to_flint(homogeneous(ring, part)), divisor)
+    for image in _images(used, p):
+        quotient, remainder = divmod(image, divisor)
         if remainder != 0:
             raise ArithmeticError("not a common factor")
-        result = result + ring.normal(_from_flint(ring, quotient))
+        result = result + ring.normal(used.element(quotient))
     return result
 
 
@@ -108,11 +113,12 @@ def cancel_plain(ring: TrigRing, numerator: PolyElement, denominator: PolyElemen
     """Cancel a common factor of the normal forms as ordinary polynomials, which helps a denominator of mixed parity."""
     if len(denominator) == 1 or len(parity_classes(ring, denominator)) == 1:
         return numerator, denominator
-    top, bottom = _to_flint(numerator), _to_flint(denominator)
+    used = Used(ring, (numerator, denominator))
+    top, bottom = used.image(numerator), used.image(denominator)
     shared = top.gcd(bottom)
     if shared.is_constant():
         return numerator, denominator
-    return _from_flint(ring, divmod(top, shared)[0]), _from_flint(ring, divmod(bottom, shared)[0])
+    return used.element(divmod(top, shared)[0]), used.element(divmod(bottom, shared)[0])
 
 
 def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[PolyElement, int], ...]]:
@@ -126,7 +132,7 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
     if len(p) == 1:
         ((monomial, coefficient),) = p.items()
         single = [(ring.generator(i), e) for i, e in enumerate(monomial) if e]
-        return ring.polys.ground_new(coefficient), tuple(sorted(single, key=lambda item: _order(item[0])))
+        return ring.polys.ground_new(coefficient), tuple(single)
     ring.work.spend(len(p) * ring.polys.ngens)
     long = any(_homogeneous_terms(ring, part) > MOST_TERMS for part in parity_classes(ring, p))
     content = ring.one if long else common_factor(ring, [p])
@@ -134,14 +140,19 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
     constant = ring.one
     factors: list[tuple[PolyElement, int]] = []
     for image in (content, rest):
-        leading, parts = _to_flint(image).factor()
-        constant = constant * ring.polys.ground_new(QQ(int(leading.numerator), int(leading.denominator)))
+        if image == 1:
+            continue
+        used = Used(ring, [image])
+        leading, parts = used.image(image).factor()
+        constant = constant * ring.polys.ground_new(QQ(leading.numerator, leading.denominator))
         for part, multiplicity in parts:
-            q = _from_flint(ring, part)
+            q = used.element(part)
             primitive = _primitive(q)
             constant = constant * (q.LC / primitive.LC) ** int(multiplicity)
             factors.append((primitive, int(multiplicity)))
-    return constant, tuple(sorted(factors, key=lambda item: _order(item[0])))
+    if len(factors) > 1:
+        factors.sort(key=lambda item: _order(item[0]))
+    return constant, tuple(factors)
 
 
 def _order(p: PolyElement) -> tuple[int, Sequence[tuple[int, ...]], Sequence[str]]:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from fractions import Fraction
 from functools import lru_cache
 
+import flint
 import mpmath
 from mpmath import mp, mpf
 from sympy.polys.rings import PolyElement
@@ -58,6 +60,12 @@ def _real(value: object) -> mpf:
     return value
 
 
+def _working_precision() -> AbstractContextManager[None]:
+    """Flint's numbers, an order of magnitude faster, with the digits of mpmath's."""
+    precision: AbstractContextManager[None] = flint.ctx.workprec(mp.prec)
+    return precision
+
+
 class Point:
     """Values of all variables of a ring, ready to evaluate its elements."""
 
@@ -72,18 +80,21 @@ class Point:
             generators += [mpmath.sin(angle), mpmath.cos(angle)]
         for opaque in ring.opaque:
             generators.append(evaluate_expression(opaque.expression, self.values, definitions))
-        self._generators = generators
+        with _working_precision():
+            self._generators = [flint.arb(value) for value in generators]
 
     def polynomial(self, p: PolyElement) -> mpf:
         """The value of a ring element."""
-        total = mpf(0)
-        for coefficient, powers in _terms(p):
-            term = coefficient
-            for position, exponent in powers:
-                value = self._generators[position]
-                term *= value if exponent == 1 else value**exponent
-            total += term
-        return total
+        with _working_precision():
+            total = flint.arb(0)
+            for coefficient, powers in _terms(p):
+                term = coefficient
+                for position, exponent in powers:
+                    value = self._generators[position]
+                    term *= value if exponent == 1 else value**exponent
+                total += term
+        mantissa, exponent = total.mid().man_exp()
+        return mpf((int(mantissa), int(exponent)))
 
     def quotient(self, value: Quotient) -> mpf:
         """The value of a fraction."""
@@ -96,11 +107,11 @@ class Point:
 
 
 @lru_cache(maxsize=4096)  # the same rows at every step of Newton's method; at the working precision of all points
-def _terms(p: PolyElement) -> tuple[tuple[mpf, tuple[tuple[int, int], ...]], ...]:
+def _terms(p: PolyElement) -> tuple[tuple[flint.arb, tuple[tuple[int, int], ...]], ...]:
     """Coefficients, and the positions and exponents of the generators that occur."""
     return tuple(
         (
-            mpf(int(coefficient.numerator)) / int(coefficient.denominator),
+            flint.arb(int(coefficient.numerator)) / int(coefficient.denominator),
             tuple((position, exponent) for position, exponent in enumerate(monomial) if exponent),
         )
         for monomial, coefficient in p.items()

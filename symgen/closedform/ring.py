@@ -16,6 +16,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 from symgen.closedform.angles import AngleBasis
 from symgen.closedform.limits import WorkCounter
+from symgen.closedform.used import Used
 from symgen.model.expression import Expression, Name
 from symgen.records import dataclass
 
@@ -31,6 +32,9 @@ class Opaque:
 
 # Looking for squares of so many sines is included in the cost of a product; every further one costs as much again.
 FREE_ANGLES = 6
+
+# A product of so many products of terms is cheaper by way of flint.
+LONG_PRODUCT = 60
 
 
 class TrigRing:
@@ -80,7 +84,10 @@ class TrigRing:
 
     def normal(self, p: PolyElement) -> PolyElement:
         """The canonical form: every s_i to the power 0 or 1."""
-        self.work.spend(len(p) * max(0, len(self.sine) - FREE_ANGLES))
+        self._look_for_squares(len(p))
+        powers = slice(self.sine[0], self.cosine[-1], 2) if self.sine else slice(0)
+        if all(max(monomial[powers], default=0) < 2 for monomial in p):
+            return p
         for s, c in zip(self.sine, self.cosine, strict=True):
             if all(monomial[s] < 2 for monomial in p):
                 continue
@@ -95,10 +102,23 @@ class TrigRing:
                 p = p + part * square**pairs
         return p
 
+    def _look_for_squares(self, terms: int) -> None:
+        """Count the work of that."""
+        self.work.spend(terms * max(0, len(self.sine) - FREE_ANGLES))
+
     def product(self, p: PolyElement, q: PolyElement) -> PolyElement:
         """The product in normal form."""
         self.work.spend(len(p) * len(q))
-        return self.normal(p * q)
+        if len(p) * len(q) < LONG_PRODUCT:
+            return self.normal(p * q)
+        used = Used(self, (p, q))
+        result = used.image(p) * used.image(q)
+        self._look_for_squares(len(result))
+        degrees = result.degrees()
+        for s, c in used.pairs:
+            if degrees[s] > 1:
+                _, result = divmod(result, used.generator(s) ** 2 + used.generator(c) ** 2 - 1)
+        return used.element(result)
 
     def shape(self, p: PolyElement) -> tuple[int, ...]:
         """The positions of the generators that occur."""

@@ -8,12 +8,15 @@ SymPy symbols carry the model's names and no assumptions.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from functools import lru_cache
+from operator import sub
 from typing import Any
 
 import sympy
 from sympy import QQ, Add, Expr, Integer, Mul, Rational, Symbol, cos, sin, tan
 from sympy.polys.rings import PolyElement
 
+from symgen.closedform.fourier import Series, fourier_series, least_length
 from symgen.closedform.homogeneous import factorise
 from symgen.closedform.quotient import Quotient, polynomial
 from symgen.closedform.ring import TrigRing
@@ -57,6 +60,8 @@ class Speller:
             self.angles.append(angle)
             self.symbols += [sin(angle), cos(angle)]
         self.symbols += [spell_expression(atom.expression) for atom in ring.opaque]
+        self._dynamic = tuple(sorted(self.dynamic))
+        self._products: dict[tuple[int, ...], Expr] = {}
         self._known: dict[PolyElement, tuple[Rational, Expr]] = {}
         self._factored: dict[PolyElement, Expr] = {}
 
@@ -94,7 +99,7 @@ class Speller:
                 expressions.append(expression ** (-multiplicity))
             else:
                 powers[position] = powers.get(position, 0) - multiplicity
-        return scale * self._powers(powers, pair=True) * Mul(*expressions)
+        return scale * self._powers(powers) * Mul(*expressions)
 
     def _merge(self, factors: list[tuple[PolyElement, int]]) -> list[tuple[PolyElement, int]]:
         """Multiply two factors that are shorter as one: (cos x - sin x) (cos x + sin x) is cos(2 x)."""
@@ -120,39 +125,51 @@ class Speller:
         (monomial,) = factor
         return int(monomial.index(1))
 
-    def _powers(self, powers: Mapping[int, int], pair: bool) -> Expr:
-        """A product of generators; sin cos becomes sin(2 x)/2 and sin/cos becomes tan when `pair`."""
+    def _powers(self, powers: Mapping[int, int]) -> Expr:
+        """A product of generators; sin cos becomes sin(2 x)/2 and sin/cos becomes tan."""
         powers = dict(powers)
-        result: Expr = Integer(1)
+        factors: list[Expr] = []
         for index, (s, c) in enumerate(zip(self.ring.sine, self.ring.cosine, strict=True)):
             a, b = powers.get(s, 0), powers.get(c, 0)
-            if not pair or a <= 0 or b == 0:
+            if a <= 0 or b == 0:
                 continue
             shared = min(a, abs(b))
             powers[s] = a - shared
             if b > 0:
                 powers[c] = b - shared
-                result *= (sin(2 * self.angles[index]) / 2) ** shared
+                factors.append((sin(2 * self.angles[index]) / 2) ** shared)
             else:
                 powers[c] = b + shared
-                result *= tan(self.angles[index]) ** shared
-        for position, exponent in sorted(powers.items()):
-            result *= self.symbols[position] ** exponent
-        return result
+                factors.append(tan(self.angles[index]) ** shared)
+        factors += [self.symbols[position] ** exponent for position, exponent in sorted(powers.items())]
+        return Mul(*factors)
+
+    def _monomial(self, monomial: tuple[int, ...]) -> Expr:
+        """A product of generators as it stands."""
+        known = self._products.get(monomial)
+        if known is None:
+            factors = [self.symbols[i] if e == 1 else self.symbols[i] ** e for i, e in enumerate(monomial) if e]
+            known = self._products[monomial] = Mul(*factors)
+        return known
 
     def shorter(self, p: PolyElement) -> tuple[Rational, Expr]:
         """(scale, sum) of a factor in the shortest of its forms: polynomial, Fourier sum, or collected by rates."""
         if p not in self._known:
-            forms = [self._plain(p)]
+            best = self._plain(p)
+            length = _length(best)
             normal = self.ring.normal(p)
-            if normal != p:
-                forms.append(self._plain(normal))
-            if sum(2 ** sum(monomial[i] for i in self.ring.angle_positions) for monomial in p) <= MOST_WAVES:
-                forms.append(self.fourier(p))
+            others = [self._plain(normal)] if normal != p else []
+            if sum([2 ** sum([monomial[i] for i in self.ring.angle_positions]) for monomial in p]) <= MOST_WAVES:
+                series = fourier_series(self.ring, p)
+                if least_length(series) < length:
+                    others.append(self._waves(series))
             collected = self._collected(normal)
             if collected is not None:
-                forms.append((Integer(1), collected))
-            self._known[p] = _upright(*min(forms, key=_length))
+                others.append((Integer(1), collected))
+            for form in others:
+                if (operations := _length(form)) < length:
+                    best, length = form, operations
+            self._known[p] = _upright(*best)
         return self._known[p]
 
     def _plain(self, p: PolyElement) -> tuple[Rational, Expr]:
@@ -163,27 +180,33 @@ class Speller:
     def _sum(self, p: PolyElement) -> Expr:
         terms = []
         for monomial, coefficient in p.terms():
-            product = self._powers({i: e for i, e in enumerate(monomial) if e}, pair=False)
-            terms.append(_rational(coefficient) * product)
+            product = self._monomial(monomial)
+            terms.append(product if coefficient == 1 else _rational(coefficient) * product)
         return Add(*terms)
 
     def _collected(self, p: PolyElement) -> Expr | None:
         """The sum over the monomials in rates and accelerations, every coefficient factored."""
         groups: dict[tuple[int, ...], PolyElement] = {}
         for monomial, coefficient in p.items():
-            outer = tuple(e if i in self.dynamic else 0 for i, e in enumerate(monomial))
-            inner = tuple(0 if i in self.dynamic else e for i, e in enumerate(monomial))
-            groups.setdefault(outer, self.ring.polys.zero.copy())[inner] = coefficient
+            outer = tuple([monomial[i] for i in self._dynamic])
+            inner = list(monomial)
+            for i in self._dynamic:
+                inner[i] = 0
+            groups.setdefault(outer, self.ring.polys.zero.copy())[tuple(inner)] = coefficient
         if len(groups) < 2:
             return None
         terms = []
         for outer in sorted(groups, reverse=True):
-            terms.append(self._powers({i: e for i, e in enumerate(outer) if e}, False) * self.polynomial(groups[outer]))
+            rates = [self.symbols[i] ** e for i, e in zip(self._dynamic, outer, strict=True) if e]
+            terms.append(Mul(*rates) * self.polynomial(groups[outer]))
         return Add(*terms)
 
     def fourier(self, p: PolyElement) -> tuple[Rational, Expr]:
         """(scale, sum) with p = scale * sum: sines and cosines of angle combinations, coprime integer coefficients."""
-        series = fourier_series(self.ring, p)
+        return self._waves(fourier_series(self.ring, p))
+
+    def _waves(self, series: Series) -> tuple[Rational, Expr]:
+        """(scale, sum) of a Fourier series."""
         scale = QQ(0)
         for parts in series.values():
             for part in parts:
@@ -200,12 +223,14 @@ class Speller:
     def _coefficient(self, p: PolyElement) -> Expr:
         """A coefficient of a Fourier sum: its common monomial and rational content taken out, the rest in one piece."""
         content, rest = p.primitive()
-        common = tuple(min(exponents) for exponents in zip(*rest, strict=True))
+        if len(rest) == 1:
+            return _rational(content) * self._sum(rest)
+        common = tuple(map(min, *rest))
         reduced = self.ring.polys.zero.copy()
         for monomial, coefficient in rest.items():
-            reduced[tuple(e - c for e, c in zip(monomial, common, strict=True))] = coefficient
+            reduced[tuple(map(sub, monomial, common))] = coefficient
         sign, expression = _upright(Integer(1), self._sum(reduced))
-        factor = _rational(content) * sign * self._powers({i: e for i, e in enumerate(common) if e}, pair=False)
+        factor = _rational(content) * sign * self._monomial(common)
         return Mul(factor, expression)
 
 
@@ -220,59 +245,16 @@ def _upright(scale: Rational, expression: Expr) -> tuple[Rational, Expr]:
 
 def _length(form: tuple[Rational, Expr]) -> int:
     scale, expression = form
-    return int(expression.count_ops()) + int(abs(scale) != 1)
+    if not expression.is_Add:
+        return _operations(expression) + int(abs(scale) != 1)
+    negative = [term.as_coeff_Mul()[0].is_negative for term in expression.args]
+    terms = sum([_operations(-term if minus else term) for term, minus in zip(expression.args, negative, strict=True)])
+    return terms + len(negative) - 1 + int(all(negative)) + int(abs(scale) != 1)
 
 
-def fourier_series(ring: TrigRing, p: PolyElement) -> dict[tuple[int, ...], tuple[PolyElement, PolyElement]]:
-    """Frequencies of the atoms to the coefficients of cosine and sine; the first non-zero frequency is positive."""
-    waves: dict[tuple[int, ...], tuple[PolyElement, PolyElement]] = {}
-    for monomial, coefficient in p.terms():
-        rest = list(monomial)
-        for position in ring.angle_positions:
-            rest[position] = 0
-        degree = sum(monomial[position] for position in ring.angle_positions)
-        scale = ring.polys.zero.copy()
-        scale[tuple(rest)] = coefficient / 2**degree
-        for frequencies, (real, imaginary) in _wave_product(ring, monomial).items():
-            leading = next((k for k in frequencies if k), 0)
-            key = tuple(-k for k in frequencies) if leading < 0 else frequencies
-            if leading < 0:
-                imaginary = -imaginary
-            cosine, sine = waves.get(key, (ring.zero, ring.zero))
-            waves[key] = (
-                cosine + scale.mul_ground(QQ(real)) if real else cosine,
-                sine - scale.mul_ground(QQ(imaginary)) if imaginary else sine,
-            )
-    constant = (0,) * len(ring.sine)
-    if constant in waves:
-        waves[constant] = (waves[constant][0], ring.zero)
-    return {key: value for key, value in sorted(waves.items()) if value[0] or value[1]}
-
-
-def _wave_product(ring: TrigRing, monomial: tuple[int, ...]) -> dict[tuple[int, ...], tuple[int, int]]:
-    """2^degree times the sines and cosines of a monomial as complex exponentials, coefficients (real, imaginary)."""
-    waves: dict[tuple[int, ...], tuple[int, int]] = {(): (1, 0)}
-    for s, c in zip(ring.sine, ring.cosine, strict=True):
-        if not monomial[s] and not monomial[c]:
-            waves = {(*frequencies, 0): value for frequencies, value in waves.items()}
-            continue
-        single: dict[int, tuple[int, int]] = {0: (1, 0)}
-        for kind, power in ((0, monomial[s]), (1, monomial[c])):
-            for _ in range(power):
-                step: dict[int, tuple[int, int]] = {}
-                for k, (x, y) in single.items():
-                    for shift in (1, -1):
-                        # 2 cos = e + 1/e, 2 sin = -i (e - 1/e)
-                        add = (x, y) if kind else (y * shift, -x * shift)
-                        old = step.get(k + shift, (0, 0))
-                        step[k + shift] = (old[0] + add[0], old[1] + add[1])
-                single = step
-        waves = {
-            (*frequencies, k): (x * u - y * v, x * v + y * u)
-            for frequencies, (x, y) in waves.items()
-            for k, (u, v) in single.items()
-        }
-    return waves
+@lru_cache(maxsize=4096)  # the same terms stand in many sums
+def _operations(expression: Expr) -> int:
+    return int(expression.count_ops())
 
 
 def _rational(value: Any) -> Rational:

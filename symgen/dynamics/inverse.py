@@ -134,8 +134,12 @@ class InverseDynamics:
         if min(self._least_costs.values()) > LONGEST_EXAMINED:
             return ()
         offers = [offer for name in AUTOMATIC if isinstance(offer := self.offer(name), Offer)]
-        verdicts = [(offer.way, self.verdict(offer)) for offer in offers]
+        verdicts = [(offer.way, self.verdict(offer)) for offer in offers if not self._is_admitted(offer)]
         return tuple((way, found.explanation) for way, found in verdicts if not found.admitted)
+
+    def _is_admitted(self, offer: Offer) -> bool:
+        """Whether the form was found valid already."""
+        return offer.way in self._verdicts and self._verdicts[offer.way].admitted
 
     def _cheapest(self) -> tuple[Offer, FormChoice] | str:
         offers = self._built()

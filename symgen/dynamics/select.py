@@ -63,6 +63,7 @@ class Derivations:
     absent: tuple[tuple[str, str], ...]
     form: FormChoice | None = None  # of the inverse dynamics, where they are among the quantities
     named: tuple[tuple[str, FormChoice], ...] = ()  # of other quantities, where a form was asked for by name
+    inverse: InverseDynamics | None = None  # the forms of u that were looked at
 
 
 class NoSuchFormError(Exception):
@@ -154,10 +155,12 @@ def derive_quantities(
     quantities: list[Derived] = []
     choices: list[Choice] = []
     chosen_form: FormChoice | None = None
+    inverse: InverseDynamics | None = None
     named: list[tuple[str, FormChoice]] = []
     for name in present:
         if name == "inverse_dynamics":
-            found = InverseDynamics(model, generic).choose(forms.get(name, "auto"))
+            inverse = InverseDynamics(model, generic)
+            found = inverse.choose(forms.get(name, "auto"))
             if isinstance(found, str):
                 raise NoSuchFormError(name, forms.get(name, "auto"), found)
             offer, chosen_form = found
@@ -199,7 +202,7 @@ def derive_quantities(
         form = BY_FRAMES if best == ARTICULATED else _form_along(along.get(best), name)
         choices.append(Choice(name, best, tuple(costs.items()), form))
     grouped = tuple(_with_groups(mechanics, derived) for derived in quantities)
-    return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named))
+    return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named), inverse)
 
 
 def _named(mechanics: Mechanics, generic: Genericity, quantity: str, name: str) -> tuple[Derived, FormChoice]:
