@@ -17,7 +17,7 @@ from symgen.dynamics.exterior import square as multivector_square
 from symgen.dynamics.forms.definiteness import positive_definite
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.dynamics.forms.motion import Motion, Problem
-from symgen.dynamics.forms.motions import MotionName, candidates, cheapest, motion
+from symgen.dynamics.forms.motions import MotionName, candidates, cheapest, few_minors, motion
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
@@ -92,6 +92,9 @@ class Derivation:
         if "nullspace" in names and not positive_definite(self.mechanics):
             # not even built: equal functions are one node, and pivots of a singular G may be 0/0 where others are not
             names = tuple(name for name in names if name != "schur_qr")
+            if self.generic.rank == self.r and few_minors(self.generic):
+                # where the constraints carry a load, what is left of it along a motion cancels in the minors only
+                names = ("minor", *names)
         return {name: motion(name, self.mechanics, self.space, self.inertia) for name in names}
 
     @cached_property

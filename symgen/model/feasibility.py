@@ -11,6 +11,9 @@ from symgen.model.names import counted
 
 SAMPLES = 5
 
+# Components of a motion this small, at this many configurations, are none.
+HELD, ENOUGH = 1e-7, 3
+
 # A configuration whose rank depends on which of these is taken for zero is too close to a singularity to tell.
 THRESHOLDS = (1e-9, 1e-5)
 
@@ -49,6 +52,7 @@ def check_motion(
         return
     regular = [(q, b) for q, b, its in zip(points, jacobians, ranks, strict=True) if its == generic]
     yield from _check_masses(mechanics, regular, spans["kinetic_energy"])
+    yield from _held(mechanics, regular, spans["constraints"])
     if independent:
         yield from _check_independent(mechanics, regular, independent, n - generic, spans["independent_velocities"])
 
@@ -93,6 +97,25 @@ def _check_masses(
         yield Mistake(
             "the accelerations are undetermined: some motion that the constraints allow moves no mass",
             "give every coordinate that can move a mass or inertia in `kinetic_energy` or `bodies`",
+            span,
+        )
+
+
+def _held(mechanics: Mechanics, regular: list[tuple[list[float], Rows]], span: Span | None) -> Iterator[Notice]:
+    """Coordinates that no admissible motion changes: more often an axis that is not parallel than what was meant."""
+    held = set(range(len(mechanics.coordinates))) if len(regular) >= ENOUGH else set()
+    for q, jacobian in regular:
+        if not held:
+            return
+        basis = null_space(jacobian, len(q))
+        held = {i for i in held if all(abs(motion[i]) < HELD for motion in basis)}
+    places = [(mechanics.coordinates[i].name, regular[0][0][i]) for i in sorted(held)]
+    if places:
+        names = ", ".join(f"`{name}`" for name, _ in places)
+        listed = ", ".join(f"{name} = {value:.4g}" for name, value in places)
+        yield Notice(
+            f"{names} cannot move: the constraints hold {listed}; if that is not meant, check axes, lengths and loops, "
+            f"else leave the {'coordinates' if len(places) > 1 else 'coordinate'} out",
             span,
         )
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import comb
 from typing import Literal, TypeAlias
 
 from symgen.dynamics.forms.definiteness import positive_definite
@@ -24,6 +25,7 @@ from symgen.graph.traverse import cost
 
 MotionName: TypeAlias = Literal["minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt"]
 MOTION_NAMES: tuple[MotionName, ...] = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt")
+MOST_MINORS = 70
 BY_FRAMES = "articulated"  # of bodies only, without a null space: forms/articulated.py
 
 
@@ -35,6 +37,11 @@ def candidates(generic: Genericity, space: NullSpace) -> tuple[MotionName, ...]:
     if generic.rank < generic.r:
         return ("nullspace",)
     return ("minor", "schur_qr") if by_minors else ("schur_qr", "nullspace")
+
+
+def few_minors(generic: Genericity) -> bool:
+    """Whether minors of the rows are at hand although the null space is not built from them."""
+    return 1 <= generic.delta <= LARGEST_DELTA and comb(generic.n, generic.n // 2) <= MOST_MINORS
 
 
 def cheapest(
