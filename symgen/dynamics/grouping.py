@@ -49,7 +49,8 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
             found += [] if pairs is one else [_improved(graph, factoring, pairs, _STEPS)]
     if short:
         found += [_improved(graph, factoring, one, (with_late_factors,)) for one in dict.fromkeys(found)]
-    ended = (_improved(graph, factoring, one, _LAST_STEPS) for one in dict.fromkeys(found))
+    last = _LAST_STEPS if short else _LAST_STEPS[1:]
+    ended = (_improved(graph, factoring, one, last) for one in dict.fromkeys(found))
     return list(min(ended, key=lambda one: one.weight).outputs)
 
 
@@ -218,5 +219,5 @@ def _with_one_difference(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) 
 
 _SIGNS_AND_NUMBERS = (_with_one_difference, _with_numbers_joined)
 _STEPS = (_with_numbers_moved, _with_parameters_joined)
-# sums that two others held are found in more of them once those are one
-_LAST_STEPS = (_with_one_difference, _with_shared_sums, _with_shared_sums, _with_shared_products, _with_quotients)
+# what two sums held is found in more of them once those two are one: short outputs are gone through twice
+_LAST_STEPS = (_with_shared_sums, _with_shared_sums, _with_shared_products, _with_quotients)

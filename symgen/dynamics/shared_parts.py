@@ -71,10 +71,12 @@ class _Sharing:
                 for pair in _pairs(terms):
                     places.setdefault(pair, set()).add(node)
         found: dict[Scalar, _Pair] = {}
-        while True:
-            best = max(places, key=lambda pair: (len(places[pair]), *_age(pair)), default=None)
-            if best is None or len(places[best]) < 2:
-                return found
+        often = {pair for pair, nodes in places.items() if len(nodes) > 1}
+        while often:
+            best = max(often, key=lambda pair: (len(places[pair]), *_age(pair)))
+            often.discard(best)
+            if len(places[best]) < 2:
+                continue
             whole = self._graph.symbol(f"shared part {self._ops} {len(found)}")
             found[whole] = best
             for node in sorted(places.pop(best), key=lambda node: node.serial):
@@ -83,7 +85,11 @@ class _Sharing:
                         places[pair].discard(node)
                 self._terms[node] = _with(self._terms[node], best, whole)
                 for pair in _pairs(self._terms[node]):
-                    places.setdefault(pair, set()).add(node)
+                    nodes = places.setdefault(pair, set())
+                    nodes.add(node)
+                    if len(nodes) > 1:
+                        often.add(pair)
+        return found
 
     def _built(
         self, terms: Sequence[_Term], pairs: Mapping[Scalar, _Pair], image: Mapping[Scalar, Scalar],

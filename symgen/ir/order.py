@@ -33,7 +33,9 @@ _ANYWHERE = frozenset({"add", "sub", "mul", "neg", "abs", "copysign", "min", "ma
 def relaxed(kernel: Kernel) -> Kernel:
     """The kernel in an order in which fewer values wait, where they do not fit into registers; else itself."""
     late = any(s.operation == "sincos" for block in kernel.blocks[_HEAD:] for s in block.statements)
-    if late or not REGISTERS < len(kernel.statements) <= LONGEST:
+    # without tests nothing waits across one: compilers find orders of their own, and from the written one better ones
+    tested = any(block.checks for block in kernel.blocks[_HEAD:])
+    if late or not tested or not REGISTERS < len(kernel.statements) <= LONGEST:
         return kernel
     body = _Body(kernel)
     waiting = body.waiting(body.written)
