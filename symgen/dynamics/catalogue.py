@@ -15,12 +15,16 @@ from symgen.records import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Derived:
-    """A quantity as scalars: row-major outputs of `shape`, and the denominators they depend on."""
+    """A quantity as scalars: row-major outputs of `shape`, and the denominators they depend on.
+
+    `remark` is what its reader must know for this system.
+    """
 
     name: str
     shape: tuple[int, ...]
     outputs: Vector
     guards: tuple[Guard, ...]
+    remark: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -201,8 +201,16 @@ def derive_quantities(
         quantities.append(candidates[best])
         form = BY_FRAMES if best == ARTICULATED else _form_along(along.get(best), name)
         choices.append(Choice(name, best, tuple(costs.items()), form))
-    grouped = tuple(_with_groups(mechanics, derived) for derived in quantities)
+    grouped = tuple(_with_groups(mechanics, _remarked(derived, generic)) for derived in quantities)
     return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named), inverse)
+
+
+def _remarked(derived: Derived, generic: Genericity) -> Derived:
+    """What dependent rows leave open is said where the quantity is called."""
+    if derived.name != MOTIONS[1] or generic.rank == generic.r:
+        return derived
+    which = f"not unique, as the constraints depend on each other (rank {generic.rank} of {generic.r})"
+    return replace(derived, remark=f"{which}: these are the smallest; u and q̈ are not affected")
 
 
 def _named(mechanics: Mechanics, generic: Genericity, quantity: str, name: str) -> tuple[Derived, FormChoice]:

@@ -171,7 +171,7 @@ def _kernel(model: Model, program: Program, kernel: Kernel, names: Names, parame
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
     prototype = f"{model.name}_status {model.name}_{kernel.name}{SUFFIX[program.scalar]}({', '.join(arguments)})"
-    comment = c_comment_lines(f"{meaning(kernel.name)}; {shape_text(kernel)}")
+    comment = c_comment_lines(f"{meaning(kernel)}; {shape_text(kernel)}")
     return FunctionView(comment, prototype, kernel_body(model, program, kernel, names))
 
 

@@ -152,7 +152,7 @@ def _function(
     body += printer.flag([check for block in parts.blocks for check in block.checks], kernel.outputs)
     body += [f"result[{k}][k] = {printer.plain.operand(operand)};" for k, operand in enumerate(kernel.outputs)]
     return BatchView(
-        comment=c_comment_lines(f"{meaning(kernel.name)}; {output} has {len(kernel.outputs)} rows"),
+        comment=c_comment_lines(f"{meaning(kernel)}; {output} has {len(kernel.outputs)} rows"),
         prototype=f"size_t {name}({', '.join(given)})",
         single=single,
         arguments=arguments,

@@ -121,6 +121,6 @@ def _function(
     name = f"{model.name}_{kernel.name}_prepared{suffix}"
     (plain,) = (k for k in program.kernels if k.name == kernel.name)
     now, before = (count_operations(k.statements).total for k in (kernel, plain))
-    comment = c_comment_lines(f"{meaning(kernel.name)}; {now} operations instead of {before}")
+    comment = c_comment_lines(f"{meaning(kernel)}; {now} operations instead of {before}")
     body = kernel_body(model, program, kernel, names)
     return PreparedFunctionView(comment, f"{model.name}_status {name}({', '.join(arguments)})", body)

@@ -93,5 +93,5 @@ def _function(
     arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {model.name}_params{suffix} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
     prototype = f"{model.name}_status {model.name}_{kernel.name}_sc{suffix}({', '.join(arguments)})"
-    comment = c_comment_lines(meaning(kernel.name))
+    comment = c_comment_lines(meaning(kernel))
     return GivenFunctionView(comment, prototype, kernel_body(model, program, kernel, names))

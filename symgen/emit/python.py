@@ -118,7 +118,7 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> FunctionView:
     arguments = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
     given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
     result = ", ".join(str(extent) for extent in kernel.shape)
-    about = f"{meaning(kernel.name)[:1].upper()}{meaning(kernel.name)[1:]}: {given} -> (..., {result})."
+    about = f"{meaning(kernel)[:1].upper()}{meaning(kernel)[1:]}: {given} -> (..., {result})."
     return FunctionView(
         name=kernel.name,
         arguments=arguments,

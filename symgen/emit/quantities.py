@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symgen.ir.kernel import Kernel
 from symgen.model.quantities import QUANTITIES
 
 # Those with a kernel for many states: what trajectories, sampling and simulations evaluate by the million.
@@ -56,9 +57,10 @@ def output_argument(quantity: str) -> str:
     return _OUTPUT_ARGUMENTS.get(quantity, "result")
 
 
-def meaning(quantity: str) -> str:
-    """One line on a quantity: symbol, description, equation of the paper."""
-    known = _BY_NAME.get(quantity)
+def meaning(kernel: Kernel) -> str:
+    """One line on a quantity: symbol, description, equation of the paper, what is to be known of this system."""
+    known = _BY_NAME.get(kernel.name)
     if known is None:
-        return quantity.replace("_", " ")
-    return f"{known.symbol}: {known.description}" + (f", {known.equation}" if known.equation else "")
+        return kernel.name.replace("_", " ")
+    line = f"{known.symbol}: {known.description}" + (f", {known.equation}" if known.equation else "")
+    return line + (f"; {kernel.remark}" if kernel.remark else "")

@@ -129,6 +129,7 @@ class Kernel:
 
     Order at run time: loads, then `blocks` one after the other (statements, then their checks), then the test that
     every output is finite (status NOT_FINITE), then the stores.  `outputs` are row-major entries of `shape`.
+    `remark` is for the comments of its functions.
     """
 
     name: str
@@ -137,6 +138,7 @@ class Kernel:
     blocks: tuple[Block, ...]
     outputs: tuple[Operand, ...]
     shape: tuple[int, ...]
+    remark: str = ""
 
     @property
     def statements(self) -> tuple[Statement, ...]:

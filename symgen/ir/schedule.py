@@ -200,6 +200,7 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
         blocks=tuple(blocks),
         outputs=tuple(writer.operand(node) for node in outputs),
         shape=derived.shape,
+        remark=derived.remark,
     )
 
 

@@ -143,7 +143,7 @@ def _counts(program: Program) -> Iterator[str]:
     for kernel in program.kernels:
         c = count_operations(kernel.statements)
         counts = f"{c.add} | {c.mul} | {c.div} | {c.sqrt} | {c.sincos} | {c.other}"
-        yield f"| `{kernel.name}` | {_cell(meaning(kernel.name))}; {_shape(kernel)} | {counts} |"
+        yield f"| `{kernel.name}` | {_cell(meaning(kernel))}; {_shape(kernel)} | {counts} |"
 
 
 def _shape(kernel: Kernel) -> str:

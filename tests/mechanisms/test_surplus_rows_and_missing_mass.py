@@ -13,10 +13,13 @@ from symgen.dynamics.genericity import genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.select import derive_quantities
 from symgen.dynamics.structure import analyse
+from symgen.emit.c import emit_c
 from symgen.graph.evaluate import Evaluator
+from symgen.ir.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.mechanics import default_values
 from symgen.model.model import Model
+from symgen.package.files import emit_package
 from symgen.verify.reference import Reference
 from symgen.verify.states import sample_states
 
@@ -129,6 +132,17 @@ def test_multipliers_that_are_not_unique_are_told() -> None:
     mechanics = Mechanics(four_bars()[0])
     told = {one.what: one.why for one in analyse(mechanics, genericity(mechanics)).decisions}
     assert "rank 2 of 3; none is dropped" in told["a unique set of multipliers"]
+
+
+def test_headers_and_packages_say_that_multipliers_are_not_unique() -> None:
+    for model, times in zip(four_bars(), (1, 0), strict=True):
+        derived = derive_quantities(model, ("multipliers",))
+        program = schedule(derived.mechanics, derived.quantities, ("float64",))["float64"]
+        files = emit_c(model, program)
+        package = emit_package(model, [program], files)
+        for text in (files[f"c/{model.name}.h"], package["package/README.md"]):
+            words = " ".join(str(text).split())
+            assert words.count("not unique, as the constraints depend on each other (rank 2 of 3)") == times
 
 
 def test_a_sleeve_without_mass_passes_its_force_on() -> None:
