@@ -6,8 +6,8 @@ written, in a register while there are some, else on the stack.  Where more valu
 module looks for a better order: from the last step to the first, always the step that makes the fewest values wait
 (list scheduling; Muchnick, Advanced Compiler Design and Implementation, chapter 17).  A step is a test, or an
 expression of which no part has another use.  A test may stand anywhere before what it protects: what is divided by its
-denominator, or what the schedule put behind it for another reason (a root, a library function, a denominator that is
-not tested).
+denominator, or what the schedule put behind it for another reason (a root, a library function, a denominator of
+states that is not tested).
 
 The operations are the same, on the same operands: results have the same bits, and statuses the same order.
 """
@@ -76,13 +76,17 @@ class _Body:
     def _behind(self, passed: Sequence[int]) -> list[int]:
         """How many checks must stand before each statement."""
         tested = self._tested()
+        fixed = {load.local for load in self._kernel.loads if load.argument == "p"}
         behind: list[int] = []
         for step, statement in enumerate(self._statements):
             own = 0
-            if statement.operation not in _ANYWHERE:
+            alone = fixed.issuperset(names_in(statement.operands))
+            if alone:
+                fixed.update(statement.targets)
+            if statement.operation == "div" and isinstance(divisor := statement.operands[1], Local):
+                own = min(passed[step], tested.get(divisor.name, 0 if alone else passed[step]))
+            elif statement.operation not in _ANYWHERE:
                 own = passed[step]
-                if statement.operation == "div" and isinstance(divisor := statement.operands[1], Local):
-                    own = min(own, tested.get(divisor.name, own))
             behind.append(max([own, *(behind[source] for source in self.sources[step])]))
         return behind
 

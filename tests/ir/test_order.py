@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from fractions import Fraction
+from typing import Literal as Literally
 
 import pytest
 import shipped
@@ -85,9 +86,9 @@ def test_inverse_dynamics_of_the_parallel_robot_fits_into_registers(monkeypatch:
     assert waiting(kernel) >= REGISTERS > waiting(relaxed(kernel))
 
 
-def legs(count: int, operation: str = "mul") -> Kernel:
+def legs(count: int, operation: str = "mul", argument: Literally["q", "p"] = "q") -> Kernel:
     """A sum over `count` of x_i / d, where each x_i is an expression of two values that it alone shares with y_i."""
-    loads = tuple(Load(f"q{i}", "q", i) for i in range(count))
+    loads = tuple(Load(f"q{i}", argument, i) for i in range(count))
     statements = [Statement((f"a{i}",), "add", (Local(f"q{i}"), Literal(Fraction(1)))) for i in range(count)]
     statements += [Statement((f"b{i}",), "mul", (Local(f"q{i}"), Literal(Fraction(3)))) for i in range(count)]
     tested = Block(
@@ -123,3 +124,11 @@ def test_a_quotient_by_something_untested_stays_behind_the_tests() -> None:
     kernel = relaxed(legs(12, "div"))
     assert waiting(kernel) < waiting(legs(12, "div"))
     assert not quotients & {target for statement in kernel.blocks[2].statements for target in statement.targets}
+
+
+def test_a_quotient_of_parameters_may_stand_before_tests_of_others() -> None:
+    kernel = relaxed(legs(12, "div", "p"))
+    assert not divisions_before_their_test(kernel)
+    before = {target for statement in kernel.blocks[2].statements for target in statement.targets}
+    assert {f"x{i}" for i in range(12)} & before
+    assert not {f"z{i}" for i in range(12)} & before
