@@ -138,8 +138,7 @@ def _footprints(measured: Results) -> str:
         "denominators and results and to tell the causes of a failure; stack is that of their frames together. The "
         "peers test nothing. With libm nobody's sine and cosine are counted, with portable symgen's are and the "
         "peers' are not: linked statically, `sincos` of the GNU library adds 12 kB. "
-        "[0019](../decisions/0019-instructions-and-bytes.md) says what the tests take and why the RA-PKM misses its "
-        "goal for code.\n\n" + _table(["", *PAPER], rows)
+        "[0019](../decisions/0019-instructions-and-bytes.md) says what the tests take.\n\n" + _table(["", *PAPER], rows)
     )
 
 
