@@ -72,6 +72,7 @@ def _check_masses(
     mechanics: Mechanics, regular: list[tuple[list[float], Rows]], span: Span | None
 ) -> Iterator[Mistake]:
     definite_somewhere = False
+    still: set[str] = set()
     for q, jacobian in regular:
         try:
             mass = mechanics.mass_matrix(q)
@@ -93,12 +94,23 @@ def _check_masses(
         definite_somewhere = is_positive(reduced)[1]
         if definite_somewhere and mechanics.mass_is_sure:
             break
+        if not definite_somewhere:
+            still |= _without_mass(mechanics, jacobian, mass)
     if not definite_somewhere:
+        names = [f"`{c.name}`" for c in mechanics.coordinates if c.name in still]
+        alone = len(names) == 1
+        moving = f"{names[0]} does" if alone else f"{', '.join(names) or 'the coordinates'} move together"
         yield Mistake(
-            "the accelerations are undetermined: some motion that the constraints allow moves no mass",
-            "give every coordinate that can move a mass or inertia in `kinetic_energy` or `bodies`",
+            f"the accelerations are undetermined: no mass moves where {moving}, which the constraints allow",
+            f"give {'it' if alone else 'one of them'} a mass or inertia in `kinetic_energy` or `bodies`",
             span,
         )
+
+
+def _without_mass(mechanics: Mechanics, jacobian: Rows, mass: Rows) -> set[str]:
+    """The coordinates that take part in an admissible motion of no mass."""
+    motions = null_space([*jacobian, *(row for row in mass if any(row))], len(mass))
+    return {c.name for i, c in enumerate(mechanics.coordinates) if any(abs(motion[i]) > HELD for motion in motions)}
 
 
 def _held(mechanics: Mechanics, regular: list[tuple[list[float], Rows]], span: Span | None) -> Iterator[Notice]:

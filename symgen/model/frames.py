@@ -120,5 +120,5 @@ def _frame(scope: Scope, key: ScalarNode, node: Node) -> Frame:
 def _report_circle(scope: Scope, found: dict[str, Frame], circle: list[str]) -> None:
     way = " -> ".join(circle)
     message = f"the frame `{circle[0]}` hangs on itself: {way}"
-    remedy = "every frame descends from `world`; close loops with constraints between points"
+    remedy = "every frame descends from `world`; take a parent out and close the loop under `loops`"
     scope.wrong(message, remedy, found[circle[0]].span)

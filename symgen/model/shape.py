@@ -187,7 +187,9 @@ def _check_listing(shape: Listing, node: SequenceNode, what: str) -> Iterator[Mi
     count = len(node.items)
     if count < shape.least or (shape.most is not None and count > shape.most):
         due = f"{shape.least}" if shape.least == shape.most else f"at least {shape.least}"
-        yield Mistake(f"{what} has {count} entries, {due} are due", QUOTING, node.span)
+        entries = "1 entry" if count == 1 else f"{count} entries"
+        remedy = f"write {due}, separated by commas" if count < shape.least else QUOTING
+        yield Mistake(f"{what} has {entries}, {due} are due", remedy, node.span)
     for item in node.items:
         yield from check_shape(shape.item, item, f"an entry of {what}")
 

@@ -361,6 +361,10 @@ BODIES = {
     "negative_moment": heavy("xx: 1, yy: 1, zz: 1, xy: 1.5"),
     "unknown_element": heavy("zy: 1"),
     "massless_motion": arm(bodies="bodies: {upper: {mass: 0}, lower: {mass: m}}\n"),
+    "massless_motion_of_two": arm(
+        frames="frames:\n  upper: {rotation: [[z, a]]}\n  lower: {parent: upper, rotation: [[z, b]]}\n",
+        bodies="bodies: {lower: {mass: m, com: [l/2, 0, 0], inertia: {zz: J}}}\n",
+    ),
     "rotor_on_a_frame": arm(more="rotor_inertias: {upper: J}\n"),
     "negative_rotor": arm(more="rotor_inertias: {a: -J}\n"),
     "point_in_an_unknown_frame": arm(points=POINTS.replace("lower", "hand")),
