@@ -10,7 +10,8 @@ from symgen.model.dense import Rows
 from symgen.model.expression import Expression
 from symgen.model.gradient import Dual, Gradients
 from symgen.model.kinematics import Kinematics
-from symgen.model.mechanism import Mechanism, component
+from symgen.model.mechanism import WORLD, Mechanism, component
+from symgen.model.triples import Rates, Triple, minus
 
 Form: TypeAlias = dict[int, float]
 """Coefficients of the rates by the number of the coordinate."""
@@ -61,13 +62,44 @@ class FloatKinematics:
         self._mechanism, self._index = mechanism, gradients.index
         self._arithmetic = Floats(gradients)
         self._kinematics: Kinematics[float, Form] = Kinematics(mechanism, self._arithmetic, False)
+        self._places: dict[tuple[str, str], tuple[Triple[float], Rates[Form]]] = {}
 
     def place(self, name: str) -> Dual:
         """Value and gradient of a component that is no rate."""
         one = component(name)
         if one.is_rate:
             raise KeyError(name)
-        return self._kinematics.component(one), self._kinematics.component_rate(one)
+        if one.what.startswith("r"):
+            return self._kinematics.component(one), self._kinematics.component_rate(one)
+        key = one.owner, one.axes
+        if key not in self._places:
+            position = self._kinematics.position(*key)
+            in_world = one.axes == WORLD
+            rates = self._motion(one.owner, position) if in_world else self._kinematics.position_rate(*key)
+            self._places[key] = position, rates
+        position, rates = self._places[key]
+        return position[one.index], rates[one.index]
+
+    def _motion(self, owner: str, position: Triple[float]) -> Rates[Form]:
+        """The gradient of a position in the world: each joint on the way moves it and turns it about its own place.
+
+        A twist carried from frame to frame would have as many entries as there are coordinates on the way, at each.
+        """
+        kinematics, space = self._kinematics, self._kinematics.space
+        total: Rates[Form] = ({}, {}, {})
+        frame = owner
+        if owner in kinematics.points:
+            point = kinematics.points[owner]
+            frame = point.frame
+            _add(total, space.turned(kinematics.axes(frame), space.rates(point.at)))
+        for name in kinematics.lineage(frame)[:-1]:
+            joint, parent = kinematics.joint(name), kinematics.frames[name].parent
+            if any(joint.place_rate):
+                _add(total, space.turned(kinematics.axes(parent), joint.place_rate))
+            if any(joint.turning_before):
+                arm = minus(position, kinematics.place(name, space.origin))
+                _add(total, space.crossed(space.turned(kinematics.axes(parent), joint.turning_before), arm))
+        return total
 
     def value(self, name: str) -> float:
         """The value of a component that is no rate."""
@@ -99,3 +131,10 @@ class FloatKinematics:
                     for j, b in rate.items():
                         matrix[i][j] += a * b
         return matrix
+
+
+def _add(total: Rates[Form], rates: Rates[Form]) -> None:
+    """Add to what is there."""
+    for sum_of_all, form in zip(total, rates, strict=True):
+        for index, value in form.items():
+            sum_of_all[index] = sum_of_all.get(index, 0.0) + value

@@ -48,6 +48,7 @@ class Kinematics(Generic[P, V]):
         self._sums_of_angles = sums_of_angles
         self.frames = {frame.name: frame for frame in mechanism.frames}
         self.points = {point.name: point for point in mechanism.points}
+        self._lines: dict[str, list[str]] = {WORLD: [WORLD]}
         self._joints: dict[str, Joint[P, V]] = {}
         self._axes: dict[tuple[str, str], Rows[P]] = {}
         self._places: dict[tuple[str, str], Triple[P]] = {}
@@ -58,10 +59,12 @@ class Kinematics(Generic[P, V]):
 
     def lineage(self, frame: str) -> list[str]:
         """The frame, its parent, and so on to the world."""
-        line = [frame]
-        while line[-1] != WORLD:
-            line.append(self.frames[line[-1]].parent)
-        return line
+        if frame not in self._lines:
+            line = [frame]
+            while line[-1] != WORLD:
+                line.append(self.frames[line[-1]].parent)
+            self._lines[frame] = line
+        return self._lines[frame]
 
     def plane(self, ancestor: str, frame: str) -> tuple[Vector3 | None, Expression] | None:
         """Axis and angle of a frame against an ancestor, where all turns between share one main axis."""
@@ -182,6 +185,8 @@ class Kinematics(Generic[P, V]):
 
     def _meeting(self, one: str, other: str) -> str:
         """The nearest frame that both descend from."""
+        if other == WORLD:
+            return WORLD
         line = set(self.lineage(one))
         return next(frame for frame in self.lineage(other) if frame in line)
 
@@ -207,11 +212,12 @@ class Kinematics(Generic[P, V]):
 
     def _below(self, ancestor: str, frame: str) -> tuple[Rows[P], Triple[P]]:
         """Axes and origin of a frame, seen from one that it descends from."""
-        line = self.lineage(frame)
-        for name in reversed(line[: line.index(ancestor) + 1]):
-            if (ancestor, name) not in self._axes:
-                axes, place = self._step_below(ancestor, name)
-                self._axes[ancestor, name], self._places[ancestor, name] = axes, place
+        if (ancestor, frame) not in self._axes:
+            line = self.lineage(frame)
+            for name in reversed(line[: line.index(ancestor) + 1]):
+                if (ancestor, name) not in self._axes:
+                    axes, place = self._step_below(ancestor, name)
+                    self._axes[ancestor, name], self._places[ancestor, name] = axes, place
         return self._axes[ancestor, frame], self._places[ancestor, frame]
 
     def _step_below(self, ancestor: str, name: str) -> tuple[Rows[P], Triple[P]]:
