@@ -58,7 +58,10 @@ stress: $(VENV)/installed
 # Every model on every emulated core, the goals of cost, the example firmware.
 firmware: $(VENV)/installed
 	$(BIN)/pytest -m firmware
-	$(BIN)/symgen target $(MODELS) --cpu all --quiet
+	$(MAKE) --no-print-directory --keep-going --jobs $$(nproc) $(MODELS:models/%.yaml=target-%)
+
+target-%: models/%.yaml $(VENV)/installed
+	$(BIN)/symgen target $< --cpu all --quiet
 
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed
@@ -68,7 +71,7 @@ skipping: $(VENV)/installed
 FUZZ_SECONDS ?= 60
 fuzz: $(VENV)/installed
 	$(BIN)/symgen $(MODELS) --only c,proof --no-verify --quiet --out build/fuzz
-	$(BIN)/python tools/fuzz_campaign.py build/fuzz $(FUZZ_SECONDS) $(CAMPAIGN) --counted $(MECHANISMS:models/%.yaml=%)
+	$(BIN)/python tools/fuzz_campaign.py build/fuzz $(FUZZ_SECONDS) $(CAMPAIGN) --sums $(MECHANISMS:models/%.yaml=%)
 
 # u in float32 under Frama-C Eva and Gappa, every model: a table of what is proved, what was measured, what remains.
 proof: $(VENV)/installed

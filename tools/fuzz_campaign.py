@@ -1,20 +1,20 @@
-"""Every kernel of every model under libFuzzer and the sanitizers: FOLDER SECONDS MODEL... [--counted MODEL...].
+"""Every kernel of every model under libFuzzer and the sanitizers: FOLDER SECONDS MODEL... [--sums MODEL...].
 
-FOLDER is from `symgen --out`.  Of models that are `counted` float32 need not stay within the tolerance of float64 at
-every state however odd: mechanisms with loops lose more digits beside their singularities (docs/decisions/0021).
-Two models at a time, SECONDS each; proof/<model>_fuzz.c tells what must hold.  A model that fails does not stop the
-others; the exit status is 1 if one did.
+FOLDER is from `symgen --out`.  Models after `--sums` are held to the tolerance of float32 inside their ranges, and with
+what one rounding of a sum of angles does (docs/decisions/0021).  As many models at a time as there are processors,
+SECONDS each, always from the same seed; proof/<model>_fuzz.c tells what must hold.  A model that fails does not stop
+the others; the exit status is 1 if one did.
 """
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-WORKERS = 2
 COMPILE = ["clang", "-gline-tables-only", "-O1", "-std=c99", "-ffp-contract=off", "-fno-sanitize-recover=all", "-Ic",
            "-fsanitize=fuzzer,address,undefined,float-cast-overflow"]
 LENGTH = 1024  # bytes of one input
@@ -22,11 +22,11 @@ LENGTH = 1024  # bytes of one input
 
 def main(folder: Path, seconds: int, names: list[str]) -> int:
     """Print one line for each model and what went wrong; 1 if something did."""
-    held = names[: names.index("--counted")] if "--counted" in names else names
-    models = [name for name in names if name != "--counted"]
+    sums = names[names.index("--sums") + 1 :] if "--sums" in names else []
+    models = [name for name in names if name != "--sums"]
     failed = []
-    with ThreadPoolExecutor(WORKERS) as pool:
-        found = pool.map(lambda model: campaign(folder / model, model, seconds, model in held), models)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = pool.map(lambda model: campaign(folder / model, model, seconds, model in sums), models)
         for model, (runs, told) in zip(models, found, strict=True):
             print(f"{model}: {runs} inputs" if runs else f"{model}: failed\n{told}", flush=True)
             failed += [] if runs else [model]
@@ -35,16 +35,18 @@ def main(folder: Path, seconds: int, names: list[str]) -> int:
     return int(bool(failed))
 
 
-def campaign(folder: Path, model: str, seconds: int, held: bool) -> tuple[int, str]:
+def campaign(folder: Path, model: str, seconds: int, sums: bool) -> tuple[int, str]:
     """How many inputs were tried, 0 if one failed; and the end of what the tools say."""
     sources = [f"proof/{model}_fuzz.c"]
     sources += sorted(f"c/{path.name}" for path in (folder / "c").glob("*.c") if "_batch" not in path.name)
-    made = run([*COMPILE, *([] if held else ["-DCOUNTED"]), *sources, "-lm", "-o", "fuzz"], folder)
+    made = run([*COMPILE, *(["-DSUMS"] if sums else []), *sources, "-lm", "-o", "fuzz"], folder)
     if made.returncode:
         return 0, made.stderr[-4000:]
-    told = run(["./fuzz", f"-max_total_time={seconds}", f"-max_len={LENGTH}", "-print_final_stats=1"], folder)
+    limits = [f"-max_total_time={seconds}", f"-max_len={LENGTH}", "-seed=1"]
+    told = run(["./fuzz", *limits, "-print_final_stats=1"], folder)
     runs = re.search(r"number_of_executed_units: (\d+)", told.stderr)
-    return (int(runs[1]) if runs and not told.returncode else 0), told.stderr[-4000:]
+    found = told.stderr.partition("== ERROR: libFuzzer")[0]  # the rule and the state, without the stack
+    return (int(runs[1]) if runs and not told.returncode else 0), found[-4000:]
 
 
 def run(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:

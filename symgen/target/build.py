@@ -62,10 +62,10 @@ class Workshop:
         """The objects of driver and board; `watched` bytes of stack are painted before every call."""
         board = "board_host.c" if self.core is None else "board_bare.c"
         objects = []
-        for source, name in ((driver, f"{Path(driver).stem}_{watched}.o"), (board, f"{Path(board).stem}.o")):
+        for source, name in ((driver, f"{Path(driver).stem}.o"), (board, f"{Path(board).stem}_{watched}.o")):
             target = self.folder / name
-            flags = [*BOARD_FLAGS, f"-DPAINTED={watched}u"]
             if not target.exists():
+                flags = [*BOARD_FLAGS, f"-DWATCHED={watched}u"]
                 run([*self._command("gcc"), *flags, "-c", "-o", str(target), source], self.folder)
             objects.append(target)
         return tuple(objects)

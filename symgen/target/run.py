@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -45,10 +46,9 @@ FAST, SMALL = "-O2", "-Os"  # the levels at which instructions and stack are mea
 BASE: tuple[Compiler, str] = ("gcc", "-O2")
 # With these every kernel is built; elsewhere u and what has not more operations, for the time that compilers take.
 WITH_ALL: tuple[tuple[Compiler, str], ...] = (BASE, ("gcc", "-Os"), ("clang", "-O2"))
-MOST_OPERATIONS, MOST_OF_U = 300, 2000
+MOST_OPERATIONS, MOST_OF_U = 150, 2000
 BESIDE = 1024  # bytes of stack that a kernel may take beside its own frames, for functions of the libraries
 CHOICES = ("ratio_or_zero", "copysign")
-PROCESSES = 2
 PORTABLE, LIBM = "portable", "libm"
 WHOLE, PART = "whole", "part"  # of a model's kernels, with portable sine and cosine
 
@@ -201,7 +201,7 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
             progress(f"compiling and running, {done} of {len(builds)} builds")
             return found
 
-        with ThreadPoolExecutor(PROCESSES) as pool:
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
             made = list(pool.map(one, builds))
     failures = [failure for _, _, wrong in made for failure in wrong]
     if len(vectors.regular) < FEWEST:

@@ -1,6 +1,8 @@
 /* The board without an operating system: start-up, and files by semihosting (Arm; RISC-V calls the same services). */
 #include "board.h"
 
+const uint32_t board_watched = WATCHED;
+
 extern char board_stack_top[];
 
 int main(void);

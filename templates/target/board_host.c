@@ -4,6 +4,8 @@
 
 #include "board.h"
 
+const uint32_t board_watched = WATCHED;
+
 #define MOST_FILES 8
 
 static FILE *files[MOST_FILES];

@@ -99,7 +99,7 @@ def test_slices_cover_the_range_without_overlap(scalar: Scalar) -> None:
     assert found[0].low == -found[-1].high
 
 
-@pytest.mark.parametrize("name", ["front_car", "skate", "rolling_disc"])
+@pytest.mark.parametrize("name", ["front_car", "skate", "differential_drive"])
 def test_gappa_certifies_a_rounding_bound_above_the_measured_error(
     tool: Callable[[str], str], tmp_path: Path, name: str
 ) -> None:
