@@ -49,9 +49,10 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
             found += [] if pairs is one else [_improved(graph, factoring, pairs, _STEPS)]
     if short:
         found += [_improved(graph, factoring, one, (with_late_factors,)) for one in dict.fromkeys(found)]
-    last = _LAST_STEPS if short else _LAST_STEPS[1:]
+    last = (*_LAST_STEPS, _with_late_shared_factors) if short else _LAST_STEPS[1:]
     ended = (_improved(graph, factoring, one, last) for one in dict.fromkeys(found))
-    return list(min(ended, key=lambda one: one.weight).outputs)
+    best = min(ended, key=lambda one: one.weight)
+    return list(_improved(graph, factoring, best, (_with_quotients,)).outputs)
 
 
 def _improved(graph: Graph, factoring: Factoring, best: _Weighed, steps: Sequence[_Step]) -> _Weighed:
@@ -213,6 +214,10 @@ def _with_shared_products(graph: Graph, _: Factoring, outputs: Sequence[Scalar])
     return with_shared_products(graph, outputs)
 
 
+def _with_late_shared_factors(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    return with_late_factors(graph, factoring, outputs, with_shared_products)
+
+
 def _with_one_difference(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     return with_one_difference(graph, outputs)
 
@@ -220,4 +225,4 @@ def _with_one_difference(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) 
 _SIGNS_AND_NUMBERS = (_with_one_difference, _with_numbers_joined)
 _STEPS = (_with_numbers_moved, _with_parameters_joined)
 # what two sums held is found in more of them once those two are one: short outputs are gone through twice
-_LAST_STEPS = (_with_shared_sums, _with_shared_sums, _with_shared_products, _with_quotients)
+_LAST_STEPS = (_with_shared_sums, _with_shared_sums, _with_shared_products)

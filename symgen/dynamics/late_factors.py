@@ -5,18 +5,30 @@ that act on another become forces over both lengths' ratio.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 from symgen.dynamics.factoring import Factoring
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost, topological
 
 # Factors tried, those of most values first, and operations up to which graphs are gone through again for each.
-MOST_FACTORS = 4
+MOST_FACTORS = 8
 MOST_OPERATIONS = 2000
 
+Step: TypeAlias = Callable[[Graph, Sequence[Scalar]], list[Scalar]]
 
-def with_late_factors(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
-    """The outputs with factors multiplied in late, where that saves operations."""
+
+def _as_it_is(_: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+    return list(outputs)
+
+
+def with_late_factors(
+    graph: Graph, factoring: Factoring, outputs: Sequence[Scalar], finish: Step = _as_it_is
+) -> list[Scalar]:
+    """The outputs with factors multiplied in late, where that saves operations, counted after `finish`.
+
+    A factor that comes last in several products meets there what else they have in common.
+    """
     best = list(outputs)
     order = topological(best)
     if len(order) > MOST_OPERATIONS:
@@ -28,12 +40,12 @@ def with_late_factors(graph: Graph, factoring: Factoring, outputs: Sequence[Scal
                 if argument.constant is None and factoring.fixed(argument):
                     found[argument] = found.get(argument, 0) + 1
     several = sorted((factor for factor in found if found[factor] > 1), key=lambda factor: -found[factor])
-    weight = cost(best).weight if several else 0
+    weight = cost(finish(graph, best)).weight if several else 0
     for factor in several[:MOST_FACTORS]:
         changed = _later(graph, factoring, best, factor)
-        if (lighter := cost(changed).weight) < weight:
+        if (lighter := cost(finish(graph, changed)).weight) < weight:
             best, weight = changed, lighter
-    return best
+    return finish(graph, best)
 
 
 def _later(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar], factor: Scalar) -> list[Scalar]:

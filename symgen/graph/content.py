@@ -43,7 +43,8 @@ def _divided(graph: Graph, value: Scalar, number: Fraction, depth: int) -> Scala
         return value
     if value.op == "neg":
         return -_divided(graph, value.args[0], number, depth)
-    if value.op in ("add", "sub") and depth and _number(value, depth) == number:
+    # where one term holds the number, the other takes what would stand before the sum
+    if value.op in ("add", "sub") and depth and any(_number(part, depth - 1) == number for part in value.args):
         left, right = (_divided(graph, part, number, depth - 1) for part in value.args)
         return left + right if value.op == "add" else left - right
     if value.op == "mul" and depth:

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 
 import pytest
+from shipped import model
 
+from symgen.dynamics.factoring import Factoring
+from symgen.dynamics.guards import magnitude
+from symgen.dynamics.late_factors import with_late_factors
 from symgen.dynamics.opposites import with_one_difference
+from symgen.dynamics.select import derive_quantities
 from symgen.dynamics.shared_parts import with_shared_products, with_shared_sums
 from symgen.dynamics.sum_factors import with_common_factors
+from symgen.graph.content import divided
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost, reached
@@ -80,3 +87,39 @@ def test_parameters_are_taken_out_of_sums_that_share_them() -> None:
 
     assert cost(with_common_factors(graph, sums)).weight == 7
     taken(step, graph, sums, 6)
+
+
+def test_a_late_factor_meets_what_several_products_share() -> None:
+    graph = Graph()
+    a, b, c, d, e, f, p, q = symbols(graph, "abcdefpq")
+    share = graph.raw("div", (q, f))
+    outputs = [
+        graph.raw("sub", (base, graph.raw("mul", (graph.raw("mul", (p, x)), share)))) for base, x in ((a, b), (c, d))
+    ]
+    factoring = Factoring(graph, (p, q))
+
+    def late(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+        return with_late_factors(graph, factoring, outputs, with_shared_products)
+
+    assert with_late_factors(graph, factoring, outputs) == outputs
+    taken(late, graph, [*outputs, graph.raw("mul", (e, share))], 6 + 3 + 2 + 1)
+
+
+def test_a_number_is_divided_into_the_term_that_holds_it() -> None:
+    graph = Graph()
+    a, b, *_ = symbols(graph, "ab")
+    assert divided(graph, 2 * a - b, Fraction(2)) is a - b * Fraction(1, 2)
+    assert divided(graph, a - b, Fraction(2)) is (a - b) * Fraction(1, 2)
+
+
+def test_the_bound_of_a_square_core_is_that_of_its_determinant() -> None:
+    derivations = derive_quantities(model("delta"), ("inverse_dynamics",))
+    (guard,) = derivations.quantities[0].guards
+    assert guard.scale is not None
+    graph = derivations.mechanics.graph
+    assert cost([guard.scale]).weight <= 22
+    (whole,) = magnitude(graph, [guard.denominator])
+    names = [node.payload for node in reached([whole, guard.scale]) if node.op == "symbol"]
+    values = {str(name): 0.2 + 0.3 * k for k, name in enumerate(sorted(map(str, names)))}
+    found, given = Evaluator([guard.scale, whole])(values)
+    assert found == pytest.approx(given, rel=1e-13)

@@ -25,6 +25,7 @@ from symgen.dynamics.spaces import HouseholderSpace
 from symgen.graph.content import divided, usual_number
 from symgen.graph.matrix import Matrix, Vector, dot, transpose
 from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.transplant import transplanted
 from symgen.graph.traverse import cost, substitute
 from symgen.ir.kernel import Status
 
@@ -120,11 +121,11 @@ class _Core:
     def _bordered(self) -> tuple[Vector, list[Vector], Guard, Scalar]:
         """The solution of a square core as the null vector of [A, b].
 
-        All its determinants share the minors of the rows that are multiplied first; sparse ones have fewest.
+        All its determinants share the minors of the rows that are multiplied first; which row comes last is counted.
         """
-        rows = [(*row, right) for row, right in zip(self._core, self._right, strict=True)]
-        rows.sort(key=lambda row: sum(not entry.is_zero for entry in row))
-        *minors, denominator = cross_product(self._graph, tuple(rows), len(self._names) + 1)
+        rows = tuple((*row, right) for row, right in zip(self._core, self._right, strict=True))
+        orders = [(*rows[:k], *rows[k + 1 :], rows[k]) for k in reversed(range(len(rows)))]
+        *minors, denominator = cross_product(self._graph, min(orders, key=_null_vector_cost), len(rows) + 1)
         guard, measure = self._guarded(denominator, 1)
         inverse = 1 / denominator
         return tuple(-minor * inverse for minor in minors), [], guard, measure
@@ -203,6 +204,14 @@ class _Core:
         lengths = graph.sum(x * x for column in self._unit_columns() for x in column)
         scale = graph.product([lengths] * len(z))
         return space.project(u), Guard(Status.CONSTRAINT_RANK, measure.denominator, 2, scale=scale)
+
+
+def _null_vector_cost(rows: Matrix) -> int:
+    """What the null vector costs on a graph of its own: on the same one, orders would share each other's minors."""
+    graph, n = Graph(), len(rows) + 1
+    entries = transplanted(graph, [entry for row in rows for entry in row])
+    there = tuple(tuple(entries[n * k : n * k + n]) for k in range(len(rows)))
+    return cost(cross_product(graph, there, n)).weight
 
 
 def _symbols_back(mechanics: Mechanics, change: AbsoluteAngles | None) -> dict[Scalar, Scalar]:
