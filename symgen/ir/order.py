@@ -103,11 +103,13 @@ class _Body:
 
     def waiting(self, order: Sequence[int]) -> int:
         """The largest number of values that wait for their use at once."""
-        left = Counter(self.uses)
+        left = [self.uses[step] for step in range(len(self.sources))]
         alive = largest = 0
         for step in order:
-            left.subtract(self.sources[step])
-            alive += (left[step] > 0) - sum(left[source] == 0 for source in self.sources[step])
+            for source in self.sources[step]:
+                left[source] -= 1
+                alive -= not left[source]
+            alive += left[step] > 0
             largest = max(largest, alive)
         return largest
 
@@ -148,8 +150,10 @@ class _Body:
             order += reversed(trees[step])
             for source in reads[step]:
                 wait(source)
-            users.subtract(needs[step])
-            ready.update(need for need in needs[step] if not users[need])
+            for need in needs[step]:
+                users[need] -= 1
+                if not users[need]:
+                    ready.add(need)
         return order[::-1]
 
     def _checks_before(self, step: int) -> list[int]:
