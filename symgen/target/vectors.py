@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from math import inf, nan
 from typing import Literal, TypeAlias
 
@@ -15,6 +16,7 @@ from symgen.verify.reference import Reference, State
 from symgen.verify.states import sample_states
 
 FEWEST = 256
+CONFIGURATIONS = 64  # finding one on the constraints takes a mechanism of many links a tenth of a second
 # Zeros of determinants are looked for in models of so many coordinates; beyond, one determinant takes ten seconds.
 SEARCHED = 8
 MOST_DETERMINANTS = 2  # of each kind
@@ -42,8 +44,17 @@ class Vectors:
 
 def vectors_of(reference: Reference) -> Vectors:
     """Seeded and deterministic; raises VerificationError where hardly any state is found."""
-    regular = tuple(sample.state for sample in sample_states(reference, (), FEWEST, seed=2))
+    found = [sample.state for sample in sample_states(reference, (), CONFIGURATIONS, seed=2)]
+    regular = tuple(islice(_mixed(found), FEWEST))
     return Vectors(regular, (*_singular(reference), *_degenerate(regular[0])), tuple(_odd(regular[0])))
+
+
+def _mixed(states: Sequence[State]) -> Iterator[State]:
+    """Each configuration with its own rates, accelerations and inputs, then with those of its neighbours in turn."""
+    for shift in range(len(states)):
+        for place, state in enumerate(states):
+            other = states[(place + shift) % len(states)]
+            yield replace(state, qd=other.qd, qdd=other.qdd, u=other.u)
 
 
 def perturbed(states: tuple[State, ...], scalar: Scalar) -> tuple[State, ...]:
