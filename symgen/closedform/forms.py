@@ -25,8 +25,8 @@ from symgen.closedform.structured import (
     structured_pseudoinverse,
 )
 from symgen.closedform.substitution import substitute
-from symgen.model.energy_form import energy_form
-from symgen.model.expression import Expression
+from symgen.model.energy_form import energy_form, points_written
+from symgen.model.expression import Expression, Name
 from symgen.model.model import Allocation, Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
 from symgen.records import dataclass
 
@@ -78,15 +78,17 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     more than ten times that is given in named intermediates or not at all.  Raises ArithmeticError for a model that
     divides by something identically zero, TooLargeError when already B or M is too long to write out.
     """
-    model = energy_form(model)
-    translator = make_translator(model, published_expressions(model))
+    asked = not {"all", "point_position", "point_jacobian"}.isdisjoint(model.outputs)
+    model, places, velocities = points_written(model) if asked else (energy_form(model), (), ())
+    of_points = map(Name, (*places, *velocities))
+    translator = make_translator(model, (*published_expressions(model), *of_points))
     mechanics = Mechanics(model, translator)
     points = generic_points(model, mechanics, 3) or generic_points(model, mechanics, 3, on_constraints=False)
     structure = derive_structure(model, mechanics, points)
     exact = Exact(model, mechanics, structure)
     speller = Speller(exact.ring, dynamic_names(model))
     kernel = _short_kernel(exact)
-    writer = _Writer(model, exact, speller, straight_line_operations or {})
+    writer = _Writer(model, exact, speller, straight_line_operations or {}, places, velocities)
     return ClosedForms(
         model=model.name,
         forms={form.quantity: form for form in writer.all_forms()},
@@ -155,8 +157,17 @@ def published_expressions(model: Model) -> Iterable[Expression]:
 class _Writer:
     """Chooses the form of every quantity."""
 
-    def __init__(self, model: Model, exact: Exact, speller: Speller, operations: Mapping[str, int]) -> None:
+    def __init__(
+        self,
+        model: Model,
+        exact: Exact,
+        speller: Speller,
+        operations: Mapping[str, int],
+        places: tuple[str, ...],
+        velocities: tuple[str, ...],
+    ) -> None:
         self.model = model
+        self.places, self.velocities = places, velocities
         self.exact = exact
         self.speller = speller
         self.operations = operations
@@ -194,6 +205,9 @@ class _Writer:
             yield self._direct("orthogonal_complement", self._complement)
         if model.inputs:
             yield from self._actuation_forms(projector)
+        if self.places:
+            yield self._direct("point_position", lambda: mechanics.places(self.places))
+            yield self._direct("point_jacobian", lambda: mechanics.rate_coefficients(self.velocities))
 
     def _actuation_forms(self, projector: ClosedForm) -> Iterable[ClosedForm]:
         """M, N_B M, its pseudoinverse and u."""

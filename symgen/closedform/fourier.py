@@ -2,23 +2,59 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from operator import sub
 from typing import TypeAlias
 
 from sympy import QQ
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.ring import TrigRing
+from symgen.model.expression import Expression, Name
 
 # By the frequencies of the atoms, the coefficients of cosine and sine.
 Series: TypeAlias = dict[tuple[int, ...], tuple[PolyElement, PolyElement]]
 
 
-def least_length(series: Series) -> int:
-    """Operations that the sum of a Fourier series has at least: every term of a coefficient is one of a sum, every wave
-    is a function, and a multiplication where its coefficient is a sum."""
-    waves = [len(part) for frequencies, parts in series.items() if any(frequencies) for part in parts if part]
-    constant = sum([len(part) for frequencies, parts in series.items() if not any(frequencies) for part in parts])
-    return sum([length + 1 + (length > 1) for length in waves]) + constant - 1
+def least_length(ring: TrigRing, series: Series) -> int:
+    """Operations that the sum of a Fourier series has at least; 0 where squares of roots may cancel."""
+    if any(m[i] > 1 for parts in series.values() for part in parts for m in part for i in ring.opaque_position):
+        return 0
+    total = -1
+    for frequencies, parts in series.items():
+        for part in filter(None, parts):
+            if any(frequencies):
+                total += 2 + _operations_of_angle(ring, frequencies) + _operations_of_coefficient(part)
+            else:
+                total += len(part)
+    return total
+
+
+def _operations_of_angle(ring: TrigRing, frequencies: tuple[int, ...]) -> int:
+    """Additions, and multiplications with whole numbers; 0 where it is not a sum of names."""
+    sums: dict[Expression, Fraction] = {}
+    for frequency, atom in zip(frequencies, ring.basis.atoms, strict=True):
+        if frequency:
+            for base, factor in atom:
+                if not isinstance(base, Name):
+                    return 0
+                sums[base] = sums.get(base, Fraction(0)) + frequency * factor
+    factors = [factor for factor in sums.values() if factor]
+    return len(factors) - 1 + sum([abs(factor) != 1 for factor in factors])
+
+
+def _operations_of_coefficient(p: PolyElement) -> int:
+    """Those of its terms, after what they share was taken out, and of the product with a wave."""
+    common = tuple(map(min, *p)) if len(p) > 1 else next(iter(p))
+    outside = _factors_and_powers(common)
+    if len(p) == 1:
+        return outside
+    inside = [max(_factors_and_powers(tuple(map(sub, monomial, common))) - 1, 0) for monomial in p]
+    return outside + len(p) + sum(inside)
+
+
+def _factors_and_powers(monomial: tuple[int, ...]) -> int:
+    return sum([1 if exponent == 1 else 2 for exponent in monomial if exponent])
 
 
 def fourier_series(ring: TrigRing, p: PolyElement) -> Series:

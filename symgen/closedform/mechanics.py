@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import cached_property
 
@@ -11,7 +11,7 @@ from symgen.closedform.matrices import add, column, multiply, zero
 from symgen.closedform.quotient import Matrix, Quotient, polynomial
 from symgen.closedform.ring import TrigRing
 from symgen.closedform.translate import Translator
-from symgen.model.expression import Expression
+from symgen.model.expression import Expression, Name
 from symgen.model.model import Model
 
 
@@ -73,6 +73,18 @@ class Mechanics:
         rows = [row for row in self.model.constraints if row.kind == "geometric"]
         with self.ring.work.limited("the geometric constraints", LIMIT_OF_MODEL):
             return column([self.translator.value(row.expression) for row in rows])
+
+    def places(self, names: Sequence[str]) -> Matrix:
+        """Three named values in each row: the places of points."""
+        with self.ring.work.limited("the places of the points"):
+            values = [self.translator.value(Name(name)) for name in names]
+        return tuple(tuple(values[i : i + 3]) for i in range(0, len(values), 3))
+
+    def rate_coefficients(self, names: Sequence[str]) -> Matrix:
+        """The coefficients of the rates in named velocities, a row for each."""
+        with self.ring.work.limited("the Jacobians of the points"):
+            values = [self.translator.value(Name(name)) for name in names]
+            return tuple(tuple(self.translator.derivative(v, rate) for rate in self._rates) for v in values)
 
     @cached_property
     def jacobian(self) -> Matrix:
