@@ -47,7 +47,6 @@ class _Sharing:
         roots = [node for node in self._order if node.op in ops and node not in inside and node not in angles]
         self._terms = {node: _taken_apart(node, inside) for node in roots}
         self._long = {node for node in roots if len(self._terms[node]) > MOST_TERMS}
-        self._inside = inside
 
     def outputs(self) -> list[Scalar]:
         """The outputs rebuilt."""
