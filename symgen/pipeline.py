@@ -108,6 +108,8 @@ def explain(path: Path, quantity: str | None, progress: Progress, forms: Mapping
         raise _unknown_quantity(quantity)
     progress("reading the model")
     model = load_model(path)
+    if quantity is not None:
+        model = replace(model, outputs=(*model.outputs, quantity))
     progress("deriving")
     derived = _derive(model, ("all",), Options(scalars=("float64",), forms=forms or {}))
     progress("closed forms")

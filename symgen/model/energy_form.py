@@ -31,9 +31,18 @@ def energy_form(model: Model) -> Model:
     return _Writer(model).written()
 
 
+def points_written(model: Model) -> tuple[Model, tuple[str, ...], tuple[str, ...]]:
+    """`energy_form` with places and velocities of all points as definitions, and the names of these: x, y, z of each
+    point in the order of the file, then vx, vy, vz."""
+    points = model.mechanism.points
+    places = tuple(f"{point.name}.{axis}" for point in points for axis in "xyz")
+    velocities = tuple(f"{point.name}.v{axis}" for point in points for axis in "xyz")
+    return (_Writer(model, (*places, *velocities)).written() if points else energy_form(model)), places, velocities
+
+
 class _Writer:
-    def __init__(self, model: Model) -> None:
-        self.model = model
+    def __init__(self, model: Model, more: tuple[str, ...] = ()) -> None:
+        self.model, self.more = model, more
         self.before = definitions_before_frames(model)
         self.formulas = Formulas(model.coordinates, {d.name: d.value for d in self.before})
         self.kinematics: Kinematics[Formula, Form] = Kinematics(model.mechanism, self.formulas)
@@ -95,7 +104,7 @@ class _Writer:
 
     def _components(self) -> tuple[str, ...]:
         """Components in the motion equations, in printed formulas and in paths."""
-        found = dict.fromkeys(components_in(self.model))
+        found = dict.fromkeys((*components_in(self.model), *self.more))
         for path in self.model.paths:
             for _, condition in path.conditions:
                 found |= dict.fromkeys(name.name for name in names_in(condition) if is_component(name.name))

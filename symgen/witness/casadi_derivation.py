@@ -7,6 +7,7 @@ import casadi
 from symgen.model.model import Model
 from symgen.model.quantities import QUANTITIES, Quantity
 from symgen.witness.lagrange import Lagrange, differentiate
+from symgen.witness.points import point_quantities
 from symgen.witness.quantities import derive
 from symgen.witness.ranks import generic_ranks
 
@@ -19,7 +20,7 @@ def witness_functions(model: Model) -> dict[str, casadi.Function]:
     ValueError where no admissible configuration is found.
     """
     lagrange = differentiate(model)
-    quantities = derive(model, lagrange, generic_ranks(model, lagrange))
+    quantities = derive(model, lagrange, generic_ranks(model, lagrange)) | point_quantities(model, lagrange)
     return {
         quantity.name: _function(quantity, quantities[quantity.name], lagrange)
         for quantity in QUANTITIES

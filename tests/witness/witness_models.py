@@ -31,4 +31,26 @@ applied_forces: {x: -y*x_dot}
 outputs: all
 """
 
-EXTRA = {"cranks": CRANKS, "under_actuated": UNDER_ACTUATED}
+# A turning crane whose jib slides: places and Jacobians of points, one of them on a part that others move along.
+CRANE = """
+model: crane
+joints:
+  tower: {type: revolute, axis: z, coordinate: a}
+  jib: {type: revolute, parent: tower, axis: y, at: [0.1, 0, 0.6], rotation: [[x, 0.3]], coordinate: b}
+  trolley: {type: prismatic, parent: jib, axis: x, coordinate: s}
+parameters: {l: 0.5, m: 2, J: 0.05}
+gravity: [0, 0, -9.81]
+bodies:
+  tower: {mass: m, com: [0.02, 0, 0.3], inertia: {xx: J, yy: J, zz: J}}
+  jib: {mass: m, com: [l/2, 0, 0], inertia: {xx: J, yy: J, zz: J, xy: 0.001}}
+  trolley: {mass: m, inertia: {xx: J, yy: J, zz: J}}
+points:
+  hook: {frame: trolley, at: [0, 0.1, -l]}
+  below: {frame: jib, at: [s, 0, -0.1], moves_with: trolley}
+constraints: {geometric: {level: hook.z - 0.2}}
+inputs: {turn: {joint: a}, slide: {joint: s}}
+configuration: {a: 0.3, b: 0.1, s: 0.4}
+outputs: all
+"""
+
+EXTRA = {"crane": CRANE, "cranks": CRANKS, "under_actuated": UNDER_ACTUATED}
