@@ -9,6 +9,7 @@ import pytest
 from shipped import ROOT
 
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.select import derive_quantities
 from symgen.graph.evaluate import Evaluator
 from symgen.model.load import load_text
 from symgen.model.mechanics import default_values
@@ -17,11 +18,11 @@ DISC = (ROOT / "models" / "rolling_disc.yaml").read_text(encoding="utf-8")
 TURNS = "rotation: [[z, psi], [x, beta]]}\n  disc: {parent: fork, rotation: [[y, phi]]}"
 
 
-def rows(text: str, lean: float) -> np.ndarray:
-    """B at some heading and spin."""
+def rows(text: str, lean: float, heading: float = 0.7) -> np.ndarray:
+    """B at some spin."""
     model = load_text(text, "disc.yaml")
     B = Mechanics(model).constraint_jacobian
-    values = default_values(model.parameters) | {"x": 0.1, "y": 0.2, "z": 0.3, "psi": 0.7, "beta": lean, "phi": 2.1}
+    values = default_values(model.parameters) | {"x": 0.1, "y": 0.2, "z": 0.3, "psi": heading, "beta": lean, "phi": 2.1}
     return np.array(Evaluator([entry for row in B for entry in row])(values)).reshape(3, 6)
 
 
@@ -49,3 +50,32 @@ def test_the_spin_may_hide_in_the_wheels_own_frame() -> None:
     assert TURNS in DISC
     other = DISC.replace(TURNS, "rotation: [[z, psi]]}\n  disc: {parent: fork, rotation: [[x, beta], [y, phi]]}")
     assert rows(other, 0.4) == pytest.approx(rows(DISC, 0.4), rel=1e-13, abs=1e-15)
+
+
+def test_a_disc_stays_upright_above_the_published_speed() -> None:
+    """A thin homogeneous disc rolls straight on in a stable way for spins beyond sqrt(g/(3 R)): there the growth of a
+    small lean changes its sign (Neimark and Fufaev, Dynamics of Nonholonomic Systems, 1972)."""
+    model = load_text(DISC, "disc.yaml")
+    (quantity,) = derive_quantities(model, ["forward_dynamics"]).quantities
+    evaluator, parameters = Evaluator(quantity.outputs), default_values(model.parameters)
+    small = 1e-5
+
+    def lean_and_turn(spin: float, beta: float = 0, beta_dot: float = 0, psi_dot: float = 0) -> np.ndarray:
+        """The accelerations of lean and heading of the disc that rolls freely."""
+        turning = np.array([psi_dot, beta_dot, spin])
+        z_dot, x_dot, y_dot = -rows(DISC, beta, heading=0)[:, 3:] @ turning
+        values = {"x": 0, "y": 0, "z": 0.4 * math.cos(beta), "psi": 0, "beta": beta, "phi": 0}
+        values |= {"x_dot": x_dot, "y_dot": y_dot, "z_dot": z_dot, "psi_dot": psi_dot, "beta_dot": beta_dot}
+        values |= {"phi_dot": spin, "drive": 0, "steer": 0, "tilt": 0}
+        return np.array(evaluator(parameters | values))[[4, 3]]
+
+    def growth(spin: float) -> float:
+        """The square of the exponent with which a lean grows."""
+        by_lean = (lean_and_turn(spin, beta=small) - lean_and_turn(spin, beta=-small))[0] / (2 * small)
+        by_turn = (lean_and_turn(spin, psi_dot=small) - lean_and_turn(spin, psi_dot=-small))[0] / (2 * small)
+        turned = (lean_and_turn(spin, beta_dot=small) - lean_and_turn(spin, beta_dot=-small))[1] / (2 * small)
+        return float(by_lean + by_turn * turned)
+
+    critical = math.sqrt(9.81 / (3 * 0.4))
+    assert abs(growth(critical)) < 1e-6 * abs(growth(0))
+    assert growth(0.9 * critical) > 0 > growth(1.1 * critical)
