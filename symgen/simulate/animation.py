@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from html import escape
+from typing import TypeAlias
 
 from symgen.emit.render import render
-from symgen.simulate.scene import Scene
+from symgen.simulate.scene import Place, Scene
 
 SMALLEST_RADIUS = 1e-6
+FAR = 6  # times the machine at the start
+
+Box: TypeAlias = tuple[Place, Place]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,17 +31,15 @@ class AnimationView:
 def animation(title: str, times: tuple[float, ...], shown: Scene) -> str:
     """The page; a scene that stays in one plane z = constant is drawn in that plane."""
     room = max((hoop.radius for hoop in shown.hoops), default=0.0)
-    every = [place for moment in shown.places for place in moment]
-    lower = [min(place[k] for place in every) - room for k in range(3)]
-    upper = [max(place[k] for place in every) + room for k in range(3)]
-    centre = [(a + b) / 2 for a, b in zip(lower, upper, strict=True)]
-    radius = max(SMALLEST_RADIUS, math.dist(lower, upper) / 2)
+    boxes = [_box(moment, room) for moment in shown.places]
+    whole = _box([corner for box in boxes for corner in box], 0)
+    centres, radius = _view(boxes, whole)
     data = asdict(shown) | {
         "times": [round(time, 6) for time in times],
         "places": [[[round(x, 5) for x in place] for place in moment] for moment in shown.places],
         "axes": [[[round(x, 4) for x in rows] for rows in moment] for moment in shown.axes],
-        "planar": upper[2] - lower[2] < SMALLEST_RADIUS,
-        "centre": centre,
+        "planar": whole[1][2] - whole[0][2] < SMALLEST_RADIUS,
+        "centres": [[round(x, 5) for x in centre] for centre in centres],
         "radius": radius,
     }
     view = AnimationView(
@@ -46,6 +49,34 @@ def animation(title: str, times: tuple[float, ...], shown: Scene) -> str:
         data=json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
     )
     return render("simulate/animation.html.jinja", view)
+
+
+def _box(places: Sequence[Place], room: float) -> Box:
+    """The lower and the upper corner around some places."""
+    lower = tuple(min(place[k] for place in places) - room for k in range(3))
+    upper = tuple(max(place[k] for place in places) + room for k in range(3))
+    return (lower[0], lower[1], lower[2]), (upper[0], upper[1], upper[2])
+
+
+def _view(boxes: Sequence[Box], whole: Box) -> tuple[list[Place], float]:
+    """The place in the middle of the picture at each moment, and half its width.
+
+    All of the motion, unless the machine would be a dot in it: a machine that goes far is followed, of one that falls
+    apart the beginning is shown.
+    """
+    middles = [(_middle(box), math.dist(*box) / 2) for box in boxes]
+    (middle, start), largest = middles[0], max(size for _, size in middles)
+    radius = max(SMALLEST_RADIUS, math.dist(*whole) / 2)
+    if radius <= FAR * start or start < SMALLEST_RADIUS:
+        return [_middle(whole)] * len(boxes), radius
+    if largest <= FAR / 2 * start:
+        return [place for place, _ in middles], largest * FAR / 2
+    return [middle] * len(boxes), start * FAR / 2
+
+
+def _middle(box: Box) -> Place:
+    (a, b, c), (d, e, f) = box
+    return (a + d) / 2, (b + e) / 2, (c + f) / 2
 
 
 def _caption(shown: Scene) -> str:

@@ -13,6 +13,8 @@ import pytest
 from shipped import ROOT
 
 from symgen.cli import main
+from symgen.simulate.animation import animation
+from symgen.simulate.scene import Scene
 
 MODELS = ROOT / "models"
 
@@ -135,6 +137,24 @@ springs: {pull: {between: [post, body], stiffness: 10, length: 3}}
     way = math.dist(data["places"][0][1], data["places"][-1][1])
     assert math.isclose(math.atan2(last[2], last[8]), way / 0.2, abs_tol=2e-4)
     assert way > 0.01
+
+
+def drawn(places: tuple[tuple[tuple[float, float, float], ...], ...]) -> tuple[list[list[float]], float]:
+    """The centres and the size of the picture of a rod that goes through those places."""
+    shown = Scene(("a", "b"), ((0, 1),), (), (), (), (), (), places, tuple(() for _ in places))
+    page = animation("rod", tuple(map(float, range(len(places)))), shown)
+    data = json.loads(page.split('id="motion">')[1].split("</script>")[0])
+    return data["centres"], data["radius"]
+
+
+def test_a_machine_that_goes_far_stays_visible() -> None:
+    start = ((0.0, 0.0, 0.0), (2.0, 0.0, 0.0))
+    near = drawn((start, ((3.0, 0.0, 0.0), (5.0, 0.0, 0.0))))
+    assert near == ([[2.5, 0, 0]] * 2, 2.5)
+    followed = drawn((start, ((100.0, 0.0, 0.0), (102.0, 0.0, 0.0))))
+    assert followed == ([[1, 0, 0], [101, 0, 0]], 3)
+    falling_apart = drawn((start, ((0.0, 0.0, 0.0), (0.0, 0.0, -100.0))))
+    assert falling_apart == ([[1, 0, 0]] * 2, 3)
 
 
 @pytest.mark.parametrize("name", ["../x", "1a", "for", "x_dot", ""])
