@@ -17,9 +17,9 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      38     57      2      0      3      0
- * forward_dynamics     143    264      1      0      3      0
- * multipliers          126    195     20      4      3      0
- * singularity           14     29      8      2      3      0
+ * forward_dynamics     136    248      1      0      3      0
+ * multipliers          124    190     20      4      3      0
+ * singularity           16     29      8      2      3      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

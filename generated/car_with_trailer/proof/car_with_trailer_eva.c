@@ -64,7 +64,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t93. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t90. */
 void eva_forward_dynamics(void) {
     double q[5];
     double qd[5];
@@ -101,7 +101,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t93, t112, t222, t119, t218, t289, t321, t291, t317. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t91, t110, t217, t117, t283, t213, t285, t315, t311. */
 void eva_multipliers(void) {
     double q[5];
     double qd[5];

@@ -41,9 +41,9 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     337    409      2      0     16      0
- * forward_dynamics    1195   1497     50      3     16      0
- * multipliers         1027   1305     52      3     16      0
- * singularity          193    175     34      3     16      0
+ * forward_dynamics    1177   1437     50      3     16      0
+ * multipliers         1009   1245     52      3     16      0
+ * singularity          191    175     34      3     16      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

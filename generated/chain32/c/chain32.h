@@ -73,8 +73,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     705    841      2      0     32      0
- * forward_dynamics    2507   3081     98      3     32      0
- * multipliers         2147   2681    100      3     32      0
+ * forward_dynamics    2477   2957     98      3     32      0
+ * multipliers         2117   2557    100      3     32      0
  * singularity          401    351     66      3     32      0
  * (changes of sign are not counted)
  *

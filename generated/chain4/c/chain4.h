@@ -16,10 +16,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      61     82      2      0      4      0
- * forward_dynamics     211    309     14      3      4      0
- * multipliers          187    273     16      3      4      0
- * singularity           32     35      9      2      4      0
+ * inverse_dynamics      59     82      2      0      4      0
+ * forward_dynamics     205    297     14      3      4      0
+ * multipliers          181    261     16      3      4      0
+ * singularity           26     35      9      2      4      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -24,10 +24,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics     153    186      2      0      8      0
- * forward_dynamics     539    705     26      3      8      0
- * multipliers          467    617     28      3      8      0
- * singularity           89     87     18      3      8      0
+ * inverse_dynamics     147    186      2      0      8      0
+ * forward_dynamics     529    677     26      3      8      0
+ * multipliers          457    589     28      3      8      0
+ * singularity           85     87     18      3      8      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

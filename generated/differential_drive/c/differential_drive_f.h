@@ -19,10 +19,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      52     91      1      0      2      0
- * forward_dynamics     293    457     25      9      3      0
- * multipliers          272    410     30      9      3      0
- * singularity           43     89     14      3      2      0
+ * inverse_dynamics      46     82      1      0      2      0
+ * forward_dynamics     287    448     25      9      3      0
+ * multipliers          266    401     30      9      3      0
+ * singularity           42     86     14      3      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

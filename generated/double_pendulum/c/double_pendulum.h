@@ -12,9 +12,9 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           6     16      0      0      1      0
- * coriolis_matrix                       1      7      0      0      1      0
- * coriolis_force                        1      9      0      0      1      0
+ * mass_matrix                           6     12      0      0      1      0
+ * coriolis_matrix                       1      6      0      0      1      0
+ * coriolis_force                        1      8      0      0      1      0
  * potential_force                       3      7      0      0      2      0
  * applied_force                         0      2      0      0      0      0
  * nullspace_projector                   0      0      0      0      0      0
@@ -24,25 +24,25 @@
  * projected_control_matrix              0      0      0      0      0      0
  * projected_control_pseudoinverse       0      0      0      0      0      0
  * orthogonal_complement                 0      0      0      0      0      0
- * projected_mass_matrix                 6     16      0      0      1      0
- * projected_coriolis_matrix             1      7      0      0      1      0
+ * projected_mass_matrix                 6     12      0      0      1      0
+ * projected_coriolis_matrix             1      6      0      0      1      0
  * projected_potential_force             3      7      0      0      2      0
  * projected_applied_force               0      2      0      0      0      0
- * minimal_mass_matrix                   6     16      0      0      1      0
- * minimal_coriolis_matrix               1      7      0      0      1      0
+ * minimal_mass_matrix                   6     12      0      0      1      0
+ * minimal_coriolis_matrix               1      6      0      0      1      0
  * minimal_potential_force               3      7      0      0      2      0
  * minimal_applied_force                 0      2      0      0      0      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                   0      0      0      0      0      0
  * admissible_acceleration               0      0      0      0      0      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                     20     36      0      0      2      0
+ * inverse_dynamics                     19     31      0      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                  6     16      0      0      1      0
+ * actuator_mass_matrix                  6     12      0      0      1      0
  * actuator_bias                         9     21      0      0      2      0
- * forward_dynamics                     29     56      1      0      2      0
- * energy                                9     24      0      0      2      0
+ * forward_dynamics                     27     53      1      0      2      0
+ * energy                                9     23      0      0      2      0
  * singularity                           0      0      0      0      0      0
  * (changes of sign are not counted)
  *

@@ -19,10 +19,10 @@ typedef struct {
 
 double_pendulum_prepared_f double_pendulum_prepare_f(const double_pendulum_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 41 operations instead of 60 */
+/* u: the smallest inputs that produce the motion, (27); 39 operations instead of 54 */
 double_pendulum_status double_pendulum_inverse_dynamics_prepared_f(const float q[2], const float qd[2], const float qdd[2], const double_pendulum_prepared_f *p, float u[2]);
 
-/* q̈: accelerations under the inputs, (15); 54 operations instead of 99 */
+/* q̈: accelerations under the inputs, (15); 51 operations instead of 94 */
 double_pendulum_status double_pendulum_forward_dynamics_prepared_f(const float q[2], const float qd[2], const float u[2], const double_pendulum_prepared_f *p, float qdd[2]);
 
 #ifdef __cplusplus

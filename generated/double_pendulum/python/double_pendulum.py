@@ -10,9 +10,9 @@ Inputs u:
   u[1] elbow [N*m] torque at the second joint
 
 Operations                          + -      *      /   sqrt sincos  other
-mass_matrix                           6     16      0      0      1      0
-coriolis_matrix                       1      7      0      0      1      0
-coriolis_force                        1      9      0      0      1      0
+mass_matrix                           6     12      0      0      1      0
+coriolis_matrix                       1      6      0      0      1      0
+coriolis_force                        1      8      0      0      1      0
 potential_force                       3      7      0      0      2      0
 applied_force                         0      2      0      0      0      0
 nullspace_projector                   0      0      0      0      0      0
@@ -22,25 +22,25 @@ control_matrix                        0      0      0      0      0      0
 projected_control_matrix              0      0      0      0      0      0
 projected_control_pseudoinverse       0      0      0      0      0      0
 orthogonal_complement                 0      0      0      0      0      0
-projected_mass_matrix                 6     16      0      0      1      0
-projected_coriolis_matrix             1      7      0      0      1      0
+projected_mass_matrix                 6     12      0      0      1      0
+projected_coriolis_matrix             1      6      0      0      1      0
 projected_potential_force             3      7      0      0      2      0
 projected_applied_force               0      2      0      0      0      0
-minimal_mass_matrix                   6     16      0      0      1      0
-minimal_coriolis_matrix               1      7      0      0      1      0
+minimal_mass_matrix                   6     12      0      0      1      0
+minimal_coriolis_matrix               1      6      0      0      1      0
 minimal_potential_force               3      7      0      0      2      0
 minimal_applied_force                 0      2      0      0      0      0
 minimal_control_matrix                0      0      0      0      0      0
 admissible_velocity                   0      0      0      0      0      0
 admissible_acceleration               0      0      0      0      0      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                     20     36      0      0      2      0
+inverse_dynamics                     19     31      0      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     0      0      0      0      0      0
-actuator_mass_matrix                  6     16      0      0      1      0
+actuator_mass_matrix                  6     12      0      0      1      0
 actuator_bias                         9     21      0      0      2      0
-forward_dynamics                     29     56      1      0      2      0
-energy                                9     24      0      0      2      0
+forward_dynamics                     27     53      1      0      2      0
+energy                                9     23      0      0      2      0
 singularity                           0      0      0      0      0      0
 (changes of sign are not counted)
 
@@ -209,33 +209,29 @@ def mass_matrix(q, p=PARAMETERS):
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(q_2)
-        t4 = c_1 * c_1
-        t5 = m_1 * t4
-        t6 = J_1 + t5
-        t7 = 0.5 * t6
-        t8 = l_1 * l_1
-        t9 = m_2 * t8
+        t4 = l_1 * m_2
+        t5 = c_2 * t4
+        t6 = t3 * t5
+        t7 = c_2 * c_2
+        t8 = m_2 * t7
+        t9 = J_2 + t8
         t10 = 0.5 * t9
-        t11 = t7 + t10
-        t12 = 2.0 * t11
-        t13 = 0.5 * J_2
-        t14 = c_2 * c_2
-        t15 = m_2 * t14
+        t11 = c_1 * c_1
+        t12 = m_1 * t11
+        t13 = J_1 + t12
+        t14 = l_1 * t4
+        t15 = t13 + t14
         t16 = 0.5 * t15
-        t17 = t13 + t16
-        t18 = 2.0 * t17
-        t19 = l_1 * c_2
-        t20 = t19 * t3
-        t21 = m_2 * t20
-        t22 = 2.0 * t21
-        t23 = t18 + t22
-        t24 = t12 + t23
-        t25 = t21 + t18
+        t17 = t10 + t16
+        t18 = t6 + t17
+        t19 = 2.0 * t18
+        t20 = 2.0 * t10
+        t21 = t20 + t6
         entries = (
-            t24,
-            t25,
-            t25,
-            t18,
+            t19,
+            t21,
+            t21,
+            t20,
         )
         return _result("mass_matrix", status, batch, (2, 2), entries)
 
@@ -263,14 +259,13 @@ def coriolis_matrix(q, qd, p=PARAMETERS):
         t7 = q_2_dot * t6
         t8 = -t7
         turn_2 = q_1_dot + q_2_dot
-        t9 = turn_2 * t2
-        t10 = t5 * t9
-        t11 = -t10
-        t12 = q_1_dot * t6
+        t9 = turn_2 * t6
+        t10 = -t9
+        t11 = q_1_dot * t6
         entries = (
             t8,
+            t10,
             t11,
-            t12,
             0.0,
         )
         return _result("coriolis_matrix", status, batch, (2, 2), entries)
@@ -293,20 +288,19 @@ def coriolis_force(q, qd, p=PARAMETERS):
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(q_2)
-        t4 = l_1 * c_2
-        t5 = m_2 * t4
-        t6 = q_2_dot * t2
-        t7 = 2.0 * q_1_dot
-        t8 = q_2_dot + t7
-        t9 = t6 * t8
+        t4 = 2.0 * q_1_dot
+        t5 = q_2_dot + t4
+        t6 = l_1 * c_2
+        t7 = m_2 * t6
+        t8 = t7 * t2
+        t9 = q_2_dot * t8
         t10 = t5 * t9
         t11 = -t10
         t12 = q_1_dot * q_1_dot
-        t13 = t5 * t2
-        t14 = t12 * t13
+        t13 = t12 * t8
         entries = (
             t11,
-            t14,
+            t13,
         )
         return _result("coriolis_force", status, batch, (2,), entries)
 
@@ -503,33 +497,29 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(q_2)
-        t4 = c_1 * c_1
-        t5 = m_1 * t4
-        t6 = J_1 + t5
-        t7 = 0.5 * t6
-        t8 = l_1 * l_1
-        t9 = m_2 * t8
+        t4 = l_1 * m_2
+        t5 = c_2 * t4
+        t6 = t3 * t5
+        t7 = c_2 * c_2
+        t8 = m_2 * t7
+        t9 = J_2 + t8
         t10 = 0.5 * t9
-        t11 = t7 + t10
-        t12 = 2.0 * t11
-        t13 = 0.5 * J_2
-        t14 = c_2 * c_2
-        t15 = m_2 * t14
+        t11 = c_1 * c_1
+        t12 = m_1 * t11
+        t13 = J_1 + t12
+        t14 = l_1 * t4
+        t15 = t13 + t14
         t16 = 0.5 * t15
-        t17 = t13 + t16
-        t18 = 2.0 * t17
-        t19 = l_1 * c_2
-        t20 = t19 * t3
-        t21 = m_2 * t20
-        t22 = 2.0 * t21
-        t23 = t18 + t22
-        t24 = t12 + t23
-        t25 = t21 + t18
+        t17 = t10 + t16
+        t18 = t6 + t17
+        t19 = 2.0 * t18
+        t20 = 2.0 * t10
+        t21 = t20 + t6
         entries = (
-            t24,
-            t25,
-            t25,
-            t18,
+            t19,
+            t21,
+            t21,
+            t20,
         )
         return _result("projected_mass_matrix", status, batch, (2, 2), entries)
 
@@ -557,14 +547,13 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t7 = q_2_dot * t6
         t8 = -t7
         turn_2 = q_1_dot + q_2_dot
-        t9 = turn_2 * t2
-        t10 = t5 * t9
-        t11 = -t10
-        t12 = q_1_dot * t6
+        t9 = turn_2 * t6
+        t10 = -t9
+        t11 = q_1_dot * t6
         entries = (
             t8,
+            t10,
             t11,
-            t12,
             0.0,
         )
         return _result("projected_coriolis_matrix", status, batch, (2, 2), entries)
@@ -649,33 +638,29 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(q_2)
-        t4 = c_1 * c_1
-        t5 = m_1 * t4
-        t6 = J_1 + t5
-        t7 = 0.5 * t6
-        t8 = l_1 * l_1
-        t9 = m_2 * t8
+        t4 = l_1 * m_2
+        t5 = c_2 * t4
+        t6 = t3 * t5
+        t7 = c_2 * c_2
+        t8 = m_2 * t7
+        t9 = J_2 + t8
         t10 = 0.5 * t9
-        t11 = t7 + t10
-        t12 = 2.0 * t11
-        t13 = 0.5 * J_2
-        t14 = c_2 * c_2
-        t15 = m_2 * t14
+        t11 = c_1 * c_1
+        t12 = m_1 * t11
+        t13 = J_1 + t12
+        t14 = l_1 * t4
+        t15 = t13 + t14
         t16 = 0.5 * t15
-        t17 = t13 + t16
-        t18 = 2.0 * t17
-        t19 = l_1 * c_2
-        t20 = t19 * t3
-        t21 = m_2 * t20
-        t22 = 2.0 * t21
-        t23 = t18 + t22
-        t24 = t12 + t23
-        t25 = t21 + t18
+        t17 = t10 + t16
+        t18 = t6 + t17
+        t19 = 2.0 * t18
+        t20 = 2.0 * t10
+        t21 = t20 + t6
         entries = (
-            t24,
-            t25,
-            t25,
-            t18,
+            t19,
+            t21,
+            t21,
+            t20,
         )
         return _result("minimal_mass_matrix", status, batch, (2, 2), entries)
 
@@ -703,14 +688,13 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t7 = q_2_dot * t6
         t8 = -t7
         turn_2 = q_1_dot + q_2_dot
-        t9 = turn_2 * t2
-        t10 = t5 * t9
-        t11 = -t10
-        t12 = q_1_dot * t6
+        t9 = turn_2 * t6
+        t10 = -t9
+        t11 = q_1_dot * t6
         entries = (
             t8,
+            t10,
             t11,
-            t12,
             0.0,
         )
         return _result("minimal_coriolis_matrix", status, batch, (2, 2), entries)
@@ -869,71 +853,65 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         g = np.float64(p.g)
         d_1 = np.float64(p.d_1)
         d_2 = np.float64(p.d_2)
-        t1 = np.abs(q_1)
-        t2 = np.abs(q_2)
+        t1 = np.abs(q_2)
+        t2 = np.abs(q_1)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(q_1)
-        t5, t6 = _sincos(q_2)
-        t7 = q_1_dot * d_1
-        t8 = m_2 * g
-        t9 = l_1 * t8
-        t10 = c_1 * m_1
-        t11 = g * t10
-        t12 = t9 + t11
-        t13 = t12 * t3
-        t14 = c_2 * t8
-        t15 = t6 * t3
-        t16 = t5 * t4
-        t17 = t15 + t16
-        t18 = t14 * t17
-        t19 = t13 + t18
-        t20 = l_1 * l_1
-        t21 = m_2 * t20
-        t22 = 0.5 * t21
-        t23 = c_1 * t10
-        t24 = J_1 + t23
-        t25 = 0.5 * t24
-        t26 = t22 + t25
-        t27 = q_1_ddot * t26
-        t28 = l_1 * c_2
-        t29 = t28 * t6
-        t30 = q_1_ddot + q_2_ddot
-        t31 = m_2 * t30
-        t32 = t29 * t31
+        t3, t4 = _sincos(q_2)
+        t5, t6 = _sincos(q_1)
+        t7 = l_1 * m_2
+        t8 = l_1 * t7
+        t9 = c_1 * m_1
+        t10 = c_1 * t9
+        t11 = J_1 + t10
+        t12 = t8 + t11
+        t13 = 0.5 * t12
+        t14 = q_1_ddot * t13
+        t15 = l_1 * c_2
+        t16 = t15 * t4
+        t17 = q_1_ddot + q_2_ddot
+        t18 = m_2 * t17
+        t19 = t16 * t18
+        t20 = t9 + t7
+        t21 = g * t20
+        t22 = t5 * t21
+        t23 = q_1_dot * d_1
+        t24 = c_2 * m_2
+        t25 = c_2 * t24
+        t26 = J_2 + t25
+        t27 = 0.5 * t26
+        t28 = t17 * t27
+        t29 = q_1_ddot * t16
+        t30 = t15 * t3
+        t31 = q_2_dot * t30
+        t32 = q_1_dot * t31
+        t33 = t29 - t32
+        t34 = m_2 * t33
+        t35 = t34 + t28
+        t36 = t28 + t35
+        t37 = t4 * t5
+        t38 = t3 * t6
+        t39 = t37 + t38
+        t40 = g * t24
+        t41 = t39 * t40
+        t42 = t36 + t41
+        t43 = t23 + t42
+        t44 = t22 + t43
+        t45 = t14 + t44
+        t46 = t19 + t45
         turn_2 = q_1_dot + q_2_dot
-        t33 = m_2 * turn_2
-        t34 = q_2_dot * t5
-        t35 = t28 * t34
-        t36 = t33 * t35
-        t37 = t32 - t36
-        t38 = 0.5 * J_2
-        t39 = c_2 * c_2
-        t40 = m_2 * t39
-        t41 = 0.5 * t40
-        t42 = t38 + t41
-        t43 = t42 * t30
-        t44 = q_1_ddot * t29
-        t45 = q_1_dot * t35
-        t46 = t44 - t45
-        t47 = m_2 * t46
-        t48 = t43 + t47
-        t49 = t43 + t48
-        t50 = t37 + t49
-        t51 = t50 + t27
-        t52 = t27 + t51
-        t53 = t19 + t52
-        t54 = t7 + t53
-        t55 = q_2_dot * d_2
-        t56 = q_1_dot * t33
-        t57 = t28 * t56
-        t58 = t5 * t57
-        t59 = t58 + t49
-        t60 = t59 + t18
-        t61 = t55 + t60
+        t47 = m_2 * turn_2
+        t48 = t47 * t31
+        t49 = t46 - t48
+        t50 = t14 + t49
+        t51 = q_1_dot * t30
+        t52 = t47 * t51
+        t53 = q_2_dot * d_2
+        t54 = t53 + t42
+        t55 = t52 + t54
         entries = (
-            t54,
-            t61,
+            t50,
+            t55,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -989,33 +967,29 @@ def actuator_mass_matrix(q, p=PARAMETERS):
         t1 = np.abs(q_2)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(q_2)
-        t4 = c_1 * c_1
-        t5 = m_1 * t4
-        t6 = J_1 + t5
-        t7 = 0.5 * t6
-        t8 = l_1 * l_1
-        t9 = m_2 * t8
+        t4 = l_1 * m_2
+        t5 = c_2 * t4
+        t6 = t3 * t5
+        t7 = c_2 * c_2
+        t8 = m_2 * t7
+        t9 = J_2 + t8
         t10 = 0.5 * t9
-        t11 = t7 + t10
-        t12 = 2.0 * t11
-        t13 = 0.5 * J_2
-        t14 = c_2 * c_2
-        t15 = m_2 * t14
+        t11 = c_1 * c_1
+        t12 = m_1 * t11
+        t13 = J_1 + t12
+        t14 = l_1 * t4
+        t15 = t13 + t14
         t16 = 0.5 * t15
-        t17 = t13 + t16
-        t18 = 2.0 * t17
-        t19 = l_1 * c_2
-        t20 = t19 * t3
-        t21 = m_2 * t20
-        t22 = 2.0 * t21
-        t23 = t18 + t22
-        t24 = t12 + t23
-        t25 = t21 + t18
+        t17 = t10 + t16
+        t18 = t6 + t17
+        t19 = 2.0 * t18
+        t20 = 2.0 * t10
+        t21 = t20 + t6
         entries = (
-            t24,
-            t25,
-            t25,
-            t18,
+            t19,
+            t21,
+            t21,
+            t20,
         )
         return _result("actuator_mass_matrix", status, batch, (2, 2), entries)
 
@@ -1040,44 +1014,44 @@ def actuator_bias(q, qd, p=PARAMETERS):
         g = np.float64(p.g)
         d_1 = np.float64(p.d_1)
         d_2 = np.float64(p.d_2)
-        t1 = np.abs(q_1)
-        t2 = np.abs(q_2)
+        t1 = np.abs(q_2)
+        t2 = np.abs(q_1)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(q_1)
-        t5, t6 = _sincos(q_2)
-        t7 = q_1_dot * d_1
-        t8 = c_1 * m_1
-        t9 = l_1 * m_2
-        t10 = t8 + t9
-        t11 = g * t10
-        t12 = t3 * t11
-        t13 = t7 + t12
-        t14 = c_2 * m_2
-        t15 = g * t4
-        t16 = 2.0 * q_1_dot
-        t17 = q_2_dot + t16
-        t18 = l_1 * t17
-        t19 = q_2_dot * t18
-        t20 = t15 - t19
-        t21 = t5 * t20
-        t22 = t6 * t3
-        t23 = g * t22
-        t24 = t21 + t23
-        t25 = t14 * t24
-        t26 = t13 + t25
-        t27 = q_2_dot * d_2
-        t28 = q_1_dot * q_1_dot
-        t29 = t28 * t5
-        t30 = l_1 * t29
-        t31 = t5 * t4
-        t32 = t22 + t31
+        t3, t4 = _sincos(q_2)
+        t5, t6 = _sincos(q_1)
+        t7 = c_2 * m_2
+        t8 = g * t6
+        t9 = 2.0 * q_1_dot
+        t10 = q_2_dot + t9
+        t11 = l_1 * t10
+        t12 = q_2_dot * t11
+        t13 = t8 - t12
+        t14 = t3 * t13
+        t15 = g * t5
+        t16 = t4 * t15
+        t17 = t14 + t16
+        t18 = t7 * t17
+        t19 = q_1_dot * d_1
+        t20 = c_1 * m_1
+        t21 = l_1 * m_2
+        t22 = t20 + t21
+        t23 = t22 * t15
+        t24 = t19 + t23
+        t25 = t18 + t24
+        t26 = q_2_dot * d_2
+        t27 = q_1_dot * q_1_dot
+        t28 = t27 * t3
+        t29 = l_1 * t28
+        t30 = t4 * t5
+        t31 = t3 * t6
+        t32 = t30 + t31
         t33 = g * t32
-        t34 = t30 + t33
-        t35 = t14 * t34
-        t36 = t27 + t35
+        t34 = t29 + t33
+        t35 = t7 * t34
+        t36 = t26 + t35
         entries = (
-            t26,
+            t25,
             t36,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
@@ -1114,105 +1088,100 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(q_2)
         t5, t6 = _sincos(q_1)
-        t7 = l_1 * l_1
-        t8 = J_2 * t7
-        t9 = c_2 * c_2
-        t10 = m_2 * t7
-        t11 = t3 * t3
-        t12 = t10 * t11
-        t13 = c_1 * m_1
-        t14 = c_1 * t13
-        t15 = t12 + t14
-        t16 = J_1 + t15
-        t17 = t9 * t16
-        t18 = t8 + t17
-        t19 = m_2 * t18
-        t20 = J_1 + t14
-        t21 = J_2 * t20
-        t22 = t19 + t21
-        t23 = np.abs(t22)
-        t24 = np.abs(m_2)
-        t25 = np.abs(c_2)
-        t26 = np.abs(J_1)
-        t27 = np.abs(m_1)
-        t28 = np.abs(c_1)
-        t29 = t28 * t28
-        t30 = t27 * t29
-        t31 = np.abs(l_1)
-        t32 = t31 * t31
-        t33 = t24 * t32
-        t34 = t30 + t33
-        t35 = t26 + t34
-        t36 = t25 * t35
-        t37 = t25 * t36
-        t38 = np.abs(J_2)
-        t39 = t38 * t32
-        t40 = t37 + t39
-        t41 = t24 * t40
-        t42 = t26 + t30
-        t43 = t38 * t42
-        t44 = t41 + t43
-        t45 = t44 * 1.7763568394002505e-15
-        status = _first(status, ~np.asarray(t23 > t45), 5)
-        t46 = 1.0 / t22
-        t47 = l_1 * c_2
-        t48 = t47 * t4
-        t49 = m_2 * t48
-        t50 = 0.5 * J_2
-        t51 = m_2 * t9
-        t52 = 0.5 * t51
-        t53 = t50 + t52
-        t54 = 2.0 * t53
-        t55 = t49 + t54
-        t56 = q_2_dot * d_2
+        t7 = c_1 * m_1
+        t8 = c_1 * t7
+        t9 = J_1 + t8
+        t10 = J_2 * t9
+        t11 = l_1 * l_1
+        t12 = J_2 * t11
+        t13 = c_2 * c_2
+        t14 = m_2 * t11
+        t15 = t3 * t3
+        t16 = t14 * t15
+        t17 = t16 + t9
+        t18 = t13 * t17
+        t19 = t12 + t18
+        t20 = m_2 * t19
+        t21 = t10 + t20
+        t22 = np.abs(t21)
+        t23 = np.abs(J_2)
+        t24 = np.abs(J_1)
+        t25 = np.abs(m_1)
+        t26 = np.abs(c_1)
+        t27 = t26 * t26
+        t28 = t25 * t27
+        t29 = t24 + t28
+        t30 = t23 * t29
+        t31 = np.abs(m_2)
+        t32 = np.abs(l_1)
+        t33 = t32 * t32
+        t34 = t23 * t33
+        t35 = np.abs(c_2)
+        t36 = t31 * t33
+        t37 = t29 + t36
+        t38 = t35 * t37
+        t39 = t35 * t38
+        t40 = t34 + t39
+        t41 = t31 * t40
+        t42 = t30 + t41
+        t43 = t42 * 1.7763568394002505e-15
+        status = _first(status, ~np.asarray(t22 > t43), 5)
+        t44 = 1.0 / t21
+        t45 = l_1 * c_2
+        t46 = t45 * t4
+        t47 = m_2 * t46
+        t48 = m_2 * t13
+        t49 = J_2 + t48
+        t50 = 0.5 * t49
+        t51 = 2.0 * t50
+        t52 = t47 + t51
+        t53 = q_2_dot * d_2
+        t54 = elbow - t53
         turn_2 = q_1_dot + q_2_dot
-        t57 = m_2 * turn_2
-        t58 = q_1_dot * t57
-        t59 = t47 * t58
-        t60 = t3 * t59
-        t61 = q_2_dot * t3
-        t62 = t47 * t61
-        t63 = q_1_dot * t62
-        t64 = m_2 * t63
-        t65 = t60 - t64
-        t66 = m_2 * g
-        t67 = c_2 * t66
-        t68 = t4 * t5
-        t69 = t3 * t6
-        t70 = t68 + t69
-        t71 = t67 * t70
-        t72 = t65 + t71
-        t73 = t56 + t72
-        t74 = elbow - t73
-        t75 = t55 * t74
+        t55 = m_2 * turn_2
+        t56 = t45 * t3
+        t57 = q_1_dot * t56
+        t58 = t55 * t57
+        t59 = t54 - t58
+        t60 = q_2_dot * t56
+        t61 = q_1_dot * t60
+        t62 = m_2 * t61
+        t63 = m_2 * g
+        t64 = c_2 * t63
+        t65 = t4 * t5
+        t66 = t3 * t6
+        t67 = t65 + t66
+        t68 = t64 * t67
+        t69 = t62 - t68
+        t70 = t59 + t69
+        t71 = t52 * t70
+        t72 = l_1 * m_2
+        t73 = t7 + t72
+        t74 = g * t73
+        t75 = t5 * t74
         t76 = q_1_dot * d_1
-        t77 = l_1 * t66
-        t78 = g * t13
-        t79 = t77 + t78
-        t80 = t79 * t5
-        t81 = t80 + t71
-        t82 = t57 * t62
-        t83 = t82 + t64
-        t84 = t81 - t83
-        t85 = t76 + t84
-        t86 = t85 - shoulder
-        t87 = t54 * t86
-        t88 = t75 + t87
-        t89 = t46 * t88
-        t90 = -t89
-        t91 = t55 * t86
-        t92 = t49 + t55
-        t93 = 0.5 * t10
-        t94 = 0.5 * t20
-        t95 = t93 + t94
-        t96 = 2.0 * t95
-        t97 = t92 + t96
-        t98 = t74 * t97
-        t99 = t91 + t98
-        t100 = t46 * t99
+        t77 = t76 - t69
+        t78 = t75 + t77
+        t79 = t55 * t60
+        t80 = t78 - t79
+        t81 = t80 - shoulder
+        t82 = t51 * t81
+        t83 = t71 + t82
+        t84 = t44 * t83
+        t85 = -t84
+        t86 = t52 * t81
+        t87 = t47 + t47
+        t88 = t14 + t9
+        t89 = 0.5 * t88
+        t90 = t50 + t89
+        t91 = 2.0 * t90
+        t92 = t87 + t91
+        t93 = t92 * t70
+        t94 = t86 + t93
+        t95 = t44 * t94
         entries = (
-            t90,
-            t100,
+            t85,
+            t95,
         )
         return _result("forward_dynamics", status, batch, (2,), entries)
 
@@ -1245,41 +1214,40 @@ def energy(q, qd, p=PARAMETERS):
         t5, t6 = _sincos(q_1)
         turn_2 = q_1_dot + q_2_dot
         t7 = turn_2 * turn_2
-        t8 = J_2 * t7
-        t9 = 0.5 * t8
+        t8 = c_2 * c_2
+        t9 = t7 * t8
         t10 = q_1_dot * q_1_dot
-        t11 = c_1 * m_1
-        t12 = c_1 * t11
-        t13 = J_1 + t12
-        t14 = t10 * t13
-        t15 = 0.5 * t14
-        t16 = t9 + t15
-        t17 = c_2 * c_2
-        t18 = t7 * t17
-        t19 = q_1_dot * l_1
-        t20 = c_2 * turn_2
-        t21 = t4 * t20
-        t22 = 2.0 * t21
-        t23 = t19 + t22
-        t24 = t19 * t23
-        t25 = t18 + t24
-        t26 = m_2 * t25
+        t11 = l_1 * t10
+        t12 = c_2 * t4
+        t13 = q_1_dot * t12
+        t14 = turn_2 * t13
+        t15 = 2.0 * t14
+        t16 = t11 + t15
+        t17 = l_1 * t16
+        t18 = t9 + t17
+        t19 = m_2 * t18
+        t20 = J_2 * t7
+        t21 = c_1 * m_1
+        t22 = c_1 * t21
+        t23 = J_1 + t22
+        t24 = t10 * t23
+        t25 = t20 + t24
+        t26 = t19 + t25
         t27 = 0.5 * t26
-        t28 = t16 + t27
-        t29 = t11 * t6
-        t30 = l_1 * t6
-        t31 = t4 * t6
-        t32 = t3 * t5
-        t33 = t31 - t32
-        t34 = c_2 * t33
-        t35 = t30 + t34
-        t36 = m_2 * t35
-        t37 = t29 + t36
-        t38 = g * t37
-        t39 = -t38
+        t28 = t21 * t6
+        t29 = l_1 * t6
+        t30 = t4 * t6
+        t31 = t3 * t5
+        t32 = t30 - t31
+        t33 = c_2 * t32
+        t34 = t29 + t33
+        t35 = m_2 * t34
+        t36 = t28 + t35
+        t37 = g * t36
+        t38 = -t37
         entries = (
-            t28,
-            t39,
+            t27,
+            t38,
         )
         return _result("energy", status, batch, (2,), entries)
 

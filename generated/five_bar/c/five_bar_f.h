@@ -1,7 +1,8 @@
 /*
  * five_bar: Planar five-bar robot read from a URDF; the loop that a URDF cannot hold is closed here (single
  * precision)
- * Source: a textbook mechanism, the parallel SCARA with two drives; dimensions and masses invented
+ * Source: 5R mechanism as in X.-J. Liu, J. Wang, G. Pritschow, Kinematics, singularity and workspace of planar
+ * 5R symmetrical parallel mechanisms (2006); dimensions and masses invented
  *
  * Coordinates q (rates qd and accelerations qdd in the same order):
  *   q[0] left_motor [rad] of left_motor
@@ -14,10 +15,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      31     48      1      0      3      2
- * forward_dynamics     109    227      7      3      4      2
- * multipliers           96    193      9      3      4      2
- * singularity           39     60      9      2      4      0
+ * inverse_dynamics      31     41      1      0      3      2
+ * forward_dynamics     108    198      7      3      4      2
+ * multipliers           95    172      9      3      4      2
+ * singularity           37     57      9      2      4      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

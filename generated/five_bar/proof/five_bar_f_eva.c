@@ -57,7 +57,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t61, t154, t160, t226, t232. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t61, t151, t157, t214, t220. */
 void eva_forward_dynamics(void) {
     float q[4];
     float qd[4];
@@ -82,7 +82,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t61, t164, t160, t278, t274. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t59, t158, t154, t263, t259. */
 void eva_multipliers(void) {
     float q[4];
     float qd[4];

@@ -16,41 +16,41 @@
  * Operations                          + -      *      /   sqrt sincos  other
  * mass_matrix                           2      4      0      0      1      0
  * coriolis_matrix                       0      4      0      0      1      0
- * coriolis_force                        0      6      0      0      1      0
+ * coriolis_force                        0      5      0      0      1      0
  * potential_force                       0      0      0      0      0      0
  * applied_force                         0      0      0      0      0      0
  * constraint_jacobian                   2      5      0      0      2      0
  * constraint_jacobian_dot               3     10      0      0      2      0
  * constraint_pseudoinverse              7     23      2      0      2      0
- * nullspace_projector                   3     17      1      0      2      0
- * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     46      3      0      2      0
- * weighted_nullspace_projector         14     51      4      0      2      0
+ * nullspace_projector                   3     16      1      0      2      0
+ * nullspace_projector_dot              14     52      2      0      2      0
+ * weighted_pseudoinverse               16     45      3      0      2      0
+ * weighted_nullspace_projector         15     50      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
- * projected_control_matrix              3     14      3      0      2      0
+ * projected_control_matrix              3     12      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 1      5      2      0      2      0
- * projected_mass_matrix                10     43      3      0      2      0
- * projected_coriolis_matrix            73    196      3      0      2      0
+ * projected_mass_matrix                10     32      3      0      2      0
+ * projected_coriolis_matrix            72    166      3      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     36      1      0      2      0
+ * minimal_coriolis_matrix              13     34      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
- * admissible_velocity                   5     20      2      0      2      0
- * admissible_acceleration              17     75      2      0      2      0
+ * admissible_velocity                   5     17      2      0      2      0
+ * admissible_acceleration              17     53      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
  * inverse_dynamics                      7     14      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
  * actuator_mass_matrix                  2      6      1      0      1      0
- * actuator_bias                        11     27      1      0      2      0
- * forward_dynamics                     36     88      1      0      2      0
- * multipliers                          39     88      1      0      2      0
- * energy                                7     15      0      0      1      0
- * singularity                          12     26      5      1      2      0
+ * actuator_bias                        11     26      1      0      2      0
+ * forward_dynamics                     34     83      1      0      2      0
+ * multipliers                          37     84      1      0      2      0
+ * energy                                7     14      0      0      1      0
+ * singularity                          12     23      5      1      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

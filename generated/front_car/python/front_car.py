@@ -15,41 +15,41 @@ Inputs u:
 Operations                          + -      *      /   sqrt sincos  other
 mass_matrix                           2      4      0      0      1      0
 coriolis_matrix                       0      4      0      0      1      0
-coriolis_force                        0      6      0      0      1      0
+coriolis_force                        0      5      0      0      1      0
 potential_force                       0      0      0      0      0      0
 applied_force                         0      0      0      0      0      0
 constraint_jacobian                   2      5      0      0      2      0
 constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
-nullspace_projector                   3     17      1      0      2      0
-nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     46      3      0      2      0
-weighted_nullspace_projector         14     51      4      0      2      0
+nullspace_projector                   3     16      1      0      2      0
+nullspace_projector_dot              14     52      2      0      2      0
+weighted_pseudoinverse               16     45      3      0      2      0
+weighted_nullspace_projector         15     50      4      0      2      0
 control_matrix                        1      1      0      0      2      0
-projected_control_matrix              3     14      3      0      2      0
+projected_control_matrix              3     12      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
 orthogonal_complement                 1      5      2      0      2      0
-projected_mass_matrix                10     43      3      0      2      0
-projected_coriolis_matrix            73    196      3      0      2      0
+projected_mass_matrix                10     32      3      0      2      0
+projected_coriolis_matrix            72    166      3      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
 minimal_mass_matrix                   3     11      1      0      2      0
-minimal_coriolis_matrix              13     36      1      0      2      0
+minimal_coriolis_matrix              13     34      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      6      1      0      2      0
-admissible_velocity                   5     20      2      0      2      0
-admissible_acceleration              17     75      2      0      2      0
+admissible_velocity                   5     17      2      0      2      0
+admissible_acceleration              17     53      2      0      2      0
 projected_configuration               0      0      0      0      0      0
 inverse_dynamics                      7     14      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
 actuator_mass_matrix                  2      6      1      0      1      0
-actuator_bias                        11     27      1      0      2      0
-forward_dynamics                     36     88      1      0      2      0
-multipliers                          39     88      1      0      2      0
-energy                                7     15      0      0      1      0
-singularity                          12     26      5      1      2      0
+actuator_bias                        11     26      1      0      2      0
+forward_dynamics                     34     83      1      0      2      0
+multipliers                          37     84      1      0      2      0
+energy                                7     14      0      0      1      0
+singularity                          12     23      5      1      2      0
 (changes of sign are not counted)
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -301,15 +301,14 @@ def coriolis_force(q, qd, p=PARAMETERS):
         t2, t3 = _sincos(theta)
         t4 = L * m_2
         t5 = theta_dot * t4
-        t6 = theta_dot * t3
-        t7 = t5 * t6
+        t6 = theta_dot * t5
+        t7 = t3 * t6
         t8 = -t7
-        t9 = theta_dot * t2
-        t10 = t5 * t9
-        t11 = -t10
+        t9 = t2 * t6
+        t10 = -t9
         entries = (
             t8,
-            t11,
+            t10,
             0.0,
             0.0,
         )
@@ -469,27 +468,27 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t23 = t3 * t22
         t24 = t19 - t23
         t25 = t18 * t24
-        t26 = t6 * t3
-        t27 = t18 * t26
+        t26 = t3 * t18
+        t27 = t6 * t26
         t28 = t8 * t12
         t29 = t5 * t4
-        t30 = t29 + t26
-        t31 = t3 * t30
-        t32 = t28 + t31
-        t33 = t18 * t32
-        t34 = -t33
-        t35 = t18 * t21
-        t36 = L / t14
-        t37 = t4 * t4
-        t38 = t36 * t37
-        t39 = t4 * t36
-        t40 = -t39
+        t30 = t6 * t3
+        t31 = t29 + t30
+        t32 = t3 * t31
+        t33 = t28 + t32
+        t34 = t18 * t33
+        t35 = -t34
+        t36 = t5 * t26
+        t37 = L / t14
+        t38 = t4 * t37
+        t39 = t4 * t38
+        t40 = -t38
         entries = (
             t25,
             t27,
-            t34,
             t35,
-            t38,
+            t36,
+            t39,
             t40,
             0.0,
             0.0,
@@ -529,12 +528,11 @@ def nullspace_projector(q, p=PARAMETERS):
         t19 = t13 * t18
         t20 = t9 * t12
         t21 = t18 * t20
-        t22 = t5 * t12
-        t23 = t18 * t22
+        t22 = t5 * t18
+        t23 = t12 * t22
         t24 = t10 * t18
-        t25 = t5 * t9
-        t26 = t18 * t25
-        t27 = t7 * t18
+        t25 = t9 * t22
+        t26 = t7 * t18
         entries = (
             t19,
             t21,
@@ -542,11 +540,11 @@ def nullspace_projector(q, p=PARAMETERS):
             0.0,
             t21,
             t24,
-            t26,
+            t25,
             0.0,
             t23,
+            t25,
             t26,
-            t27,
             0.0,
             0.0,
             0.0,
@@ -591,81 +589,72 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t19 = t14 * t14
         t20 = t18 / t19
         t21 = t6 * t4
-        t22 = t5 * t4
-        t23 = 2.0 * t15
-        t24 = 2.0 * t7
-        t25 = t23 + t24
-        t26 = t22 * t25
+        t22 = phi_dot * t6
+        t23 = t3 * t22
+        t24 = 2.0 * t23
+        t25 = t5 * t4
+        t26 = t7 + t15
         t27 = theta_dot * t26
-        t28 = phi_dot * t6
-        t29 = t3 * t28
-        t30 = 2.0 * t29
-        t31 = t27 + t30
-        t32 = t21 * t31
-        t33 = t20 * t32
-        t34 = -t33
-        t35 = 2.0 * t18
-        t36 = (-2.0) + t35
+        t28 = 2.0 * t27
+        t29 = t25 * t28
+        t30 = t24 + t29
+        t31 = t21 * t30
+        t32 = t20 * t31
+        t33 = -t32
+        t34 = 2.0 * t18
+        t35 = (-2.0) + t34
+        t36 = t4 * t35
         t37 = t4 * t36
-        t38 = t4 * t37
-        t39 = 2.0 + t38
+        t38 = 2.0 + t37
+        t39 = t6 * t38
         t40 = t6 * t39
-        t41 = t6 * t40
-        t42 = t7 + t15
-        t43 = t41 - t42
-        t44 = t4 * t43
-        t45 = theta_dot * t44
-        t46 = phi_dot * t5
-        t47 = t6 * t46
-        t48 = t3 * t47
-        t49 = 2.0 * t48
-        t50 = t45 - t49
-        t51 = t4 * t50
-        t52 = t20 * t51
-        t53 = t4 * t28
-        t54 = t18 * t53
-        t55 = t5 * t3
-        t56 = t55 * t42
-        t57 = theta_dot * t56
-        t58 = t54 - t57
-        t59 = t4 * t58
-        t60 = t3 * t29
-        t61 = t59 - t60
-        t62 = L / t19
-        t63 = t61 * t62
-        t64 = t21 * t25
-        t65 = theta_dot * t64
-        t66 = t3 * t46
-        t67 = 2.0 * t66
-        t68 = t65 - t67
-        t69 = t22 * t68
-        t70 = t20 * t69
-        t71 = t6 * t3
-        t72 = t71 * t42
-        t73 = theta_dot * t72
-        t74 = t4 * t46
-        t75 = t18 * t74
-        t76 = t73 + t75
-        t77 = t4 * t76
-        t78 = t3 * t66
-        t79 = t77 - t78
-        t80 = t62 * t79
-        t81 = phi_dot * t4
-        t82 = t3 * t81
-        t83 = t20 * t82
-        t84 = 2.0 * t83
+        t41 = t40 - t26
+        t42 = t4 * t41
+        t43 = theta_dot * t42
+        t44 = phi_dot * t5
+        t45 = 2.0 * t3
+        t46 = t6 * t45
+        t47 = t44 * t46
+        t48 = t43 - t47
+        t49 = t4 * t20
+        t50 = t48 * t49
+        t51 = L / t19
+        t52 = t4 * t18
+        t53 = t22 * t52
+        t54 = t3 * t27
+        t55 = t5 * t54
+        t56 = t53 - t55
+        t57 = t4 * t56
+        t58 = t3 * t23
+        t59 = t57 - t58
+        t60 = t51 * t59
+        t61 = t21 * t28
+        t62 = t3 * t44
+        t63 = 2.0 * t62
+        t64 = t61 - t63
+        t65 = t25 * t64
+        t66 = t20 * t65
+        t67 = t44 * t52
+        t68 = t6 * t54
+        t69 = t67 + t68
+        t70 = t4 * t69
+        t71 = t3 * t62
+        t72 = t70 - t71
+        t73 = t51 * t72
+        t74 = t45 * t49
+        t75 = phi_dot * t74
         entries = (
-            t34,
-            t52,
-            t63,
+            t33,
+            t50,
+            t60,
             0.0,
-            t52,
-            t70,
-            t80,
+            t50,
+            t66,
+            t73,
             0.0,
-            t63,
-            t80,
-            t84,
+            t60,
+            t73,
+            t75,
             0.0,
             0.0,
             0.0,
@@ -699,85 +688,83 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t8 = L * t4
         t9 = t5 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t6 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t20 = m_1 * t4
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_1)
-        t28 = np.abs(m_2)
-        t29 = np.abs(L)
-        t30 = t29 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = np.abs(Theta_2)
-        t34 = t32 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t28
-        t38 = t37 * t33
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = L * Theta_2
-        t45 = t5 * t4
-        t46 = m_1 * t45
-        t47 = t6 * t3
-        t48 = t45 + t47
-        t49 = m_2 * t48
-        t50 = t46 + t49
-        t51 = t44 * t50
-        t52 = t8 * t51
-        t53 = t6 * t4
-        t54 = t5 * t3
-        t55 = t53 - t54
-        t56 = m_2 * t19
-        t57 = Theta_1 + t56
-        t58 = Theta_2 * t57
-        t59 = t3 * t58
-        t60 = t55 * t59
-        t61 = t52 - t60
-        t62 = t43 * t61
-        t63 = t58 / t25
-        t64 = t47 * t63
-        t65 = m_1 * t53
-        t66 = m_2 * t55
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t29 = np.abs(m_2)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = 1.0 / t25
+        t42 = L * Theta_2
+        t43 = t8 * t42
+        t44 = t5 * t4
+        t45 = t6 * t3
+        t46 = t44 + t45
+        t47 = m_2 * t46
+        t48 = t5 * t20
+        t49 = t47 + t48
+        t50 = t43 * t49
+        t51 = t6 * t4
+        t52 = t5 * t3
+        t53 = t51 - t52
+        t54 = m_2 * t19
+        t55 = Theta_1 + t54
+        t56 = Theta_2 * t55
+        t57 = t3 * t56
+        t58 = t53 * t57
+        t59 = t50 - t58
+        t60 = t41 * t59
+        t61 = t56 / t25
+        t62 = t3 * t61
+        t63 = t6 * t62
+        t64 = t46 * t57
+        t65 = m_2 * t53
+        t66 = t6 * t20
         t67 = t65 + t66
-        t68 = t44 * t67
-        t69 = t8 * t68
-        t70 = t48 * t59
-        t71 = t69 + t70
-        t72 = t43 * t71
-        t73 = -t72
-        t74 = t54 * t63
-        t75 = t44 / t25
-        t76 = t22 * t75
-        t77 = m_1 + m_2
-        t78 = t4 * t77
-        t79 = t78 * t75
-        t80 = -t79
+        t68 = t43 * t67
+        t69 = t64 + t68
+        t70 = t41 * t69
+        t71 = -t70
+        t72 = t5 * t62
+        t73 = t42 / t25
+        t74 = t22 * t73
+        t75 = m_1 + m_2
+        t76 = t4 * t75
+        t77 = t76 * t73
+        t78 = -t77
         entries = (
-            t62,
-            t64,
-            t73,
+            t60,
+            t63,
+            t71,
+            t72,
             t74,
-            t76,
-            t80,
+            t78,
             0.0,
             0.0,
         )
@@ -808,89 +795,89 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t8 = L * t6
         t9 = t3 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t4 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t4 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t6 * t6
-        t21 = m_1 * t20
+        t20 = m_1 * t6
+        t21 = t6 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_1)
-        t28 = np.abs(m_2)
-        t29 = np.abs(L)
-        t30 = t29 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = np.abs(Theta_2)
-        t34 = t32 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t28
-        t38 = t37 * t33
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = t4 * t6
-        t44 = m_1 * t43
-        t45 = t3 * t5
-        t46 = t43 - t45
-        t47 = m_2 * t46
-        t48 = t44 + t47
-        t49 = t43 * t48
-        t50 = Theta_2 * t19
-        t51 = t50 / t25
-        t52 = t49 * t51
-        t53 = t3 * t6
-        t54 = m_1 * t53
-        t55 = t4 * t5
-        t56 = t53 + t55
-        t57 = m_2 * t56
-        t58 = t54 + t57
-        t59 = t43 * t58
-        t60 = t51 * t59
-        t61 = t5 * t43
-        t62 = m_2 * t19
-        t63 = Theta_1 + t62
-        t64 = L * Theta_2
-        t65 = t63 * t64
-        t66 = t65 / t25
-        t67 = t61 * t66
-        t68 = t53 * t48
-        t69 = t51 * t68
-        t70 = t53 * t58
-        t71 = t70 * t51
-        t72 = t5 * t53
-        t73 = t72 * t66
-        t74 = t64 / t25
-        t75 = t5 * t48
-        t76 = t74 * t75
-        t77 = t5 * t58
-        t78 = t74 * t77
-        t79 = Theta_2 * t63
-        t80 = t79 / t25
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t29 = np.abs(m_2)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = t4 * t6
+        t42 = m_1 * t41
+        t43 = t3 * t5
+        t44 = t41 - t43
+        t45 = m_2 * t44
+        t46 = t42 + t45
+        t47 = Theta_2 * t19
+        t48 = t6 * t6
+        t49 = m_1 * t48
+        t50 = m_2 + t49
+        t51 = t19 * t50
+        t52 = t18 + t51
+        t53 = Theta_2 * t52
+        t54 = t47 / t53
+        t55 = t41 * t54
+        t56 = t46 * t55
+        t57 = t3 * t6
+        t58 = m_1 * t57
+        t59 = t4 * t5
+        t60 = t57 + t59
+        t61 = m_2 * t60
+        t62 = t58 + t61
+        t63 = t62 * t55
+        t64 = m_2 * t19
+        t65 = Theta_1 + t64
+        t66 = L * Theta_2
+        t67 = t65 * t66
+        t68 = t67 / t53
+        t69 = t5 * t68
+        t70 = t41 * t69
+        t71 = t57 * t54
+        t72 = t46 * t71
+        t73 = t62 * t71
+        t74 = t57 * t69
+        t75 = t66 / t53
+        t76 = t5 * t75
+        t77 = t46 * t76
+        t78 = t62 * t76
+        t79 = Theta_2 * t65
+        t80 = t79 / t53
         t81 = t7 * t80
         entries = (
-            t52,
-            t60,
-            t67,
+            t56,
+            t63,
+            t70,
             0.0,
-            t69,
-            t71,
+            t72,
             t73,
+            t74,
             0.0,
-            t76,
+            t77,
             t78,
             t81,
             0.0,
@@ -943,39 +930,37 @@ def projected_control_matrix(q, p=PARAMETERS):
         theta = q[..., 2]
         phi = q[..., 3]
         L = np.float64(p.L)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = L * L
-        t19 = t6 * t18
-        t20 = t4 * t19
-        t21 = t20 / t14
-        t22 = t5 * t18
-        t23 = t4 * t22
+        t18 = L * t8
+        t19 = t4 * t18
+        t20 = t19 / t14
+        t21 = t3 * t18
+        t22 = t21 / t14
+        t23 = L * t5
         t24 = t23 / t14
-        t25 = L * t3
-        t26 = t25 / t14
         entries = (
-            t21,
+            t20,
+            0.0,
+            t22,
             0.0,
             t24,
-            0.0,
-            t26,
             0.0,
             0.0,
             1.0,
@@ -1053,23 +1038,15 @@ def orthogonal_complement(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t5 * t5
-            t14 = t3 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = t3 / t4
-        t19 = t5 / t8
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = t3 / t4
+        t14 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t18,
+            t13,
             0.0,
-            t19,
+            t14,
             0.0,
             0.0,
             1.0,
@@ -1091,18 +1068,18 @@ def projected_mass_matrix(q, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
@@ -1112,60 +1089,49 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t18 = L * L
         t19 = t14 * t14
         t20 = t18 / t19
-        t21 = t6 * t6
+        t21 = t6 * t20
         t22 = t4 * t21
-        t23 = t4 * t22
-        t24 = Theta_1 * t7
-        t25 = t4 * t4
-        t26 = m_1 * t25
-        t27 = m_2 + t26
-        t28 = t18 * t27
-        t29 = t24 + t28
-        t30 = t23 * t29
-        t31 = t20 * t30
-        t32 = t5 * t6
-        t33 = t4 * t32
-        t34 = t4 * t33
-        t35 = t34 * t29
-        t36 = t20 * t35
-        t37 = L / t19
-        t38 = t6 * t4
-        t39 = t3 * t38
-        t40 = t39 * t29
-        t41 = t37 * t40
-        t42 = t5 * t5
-        t43 = t4 * t42
-        t44 = t4 * t43
-        t45 = t44 * t29
-        t46 = t20 * t45
-        t47 = t5 * t4
-        t48 = t3 * t47
-        t49 = t48 * t29
-        t50 = t37 * t49
-        t51 = m_2 * t18
-        t52 = Theta_1 + t51
-        t53 = t25 + (-2.0)
-        t54 = t52 * t53
-        t55 = m_1 + m_2
-        t56 = t55 * t18
-        t57 = t7 * t56
-        t58 = t54 + t57
-        t59 = t4 * t58
-        t60 = t4 * t59
-        t61 = t52 + t60
-        t62 = t61 / t19
+        t23 = Theta_1 * t7
+        t24 = t6 * t6
+        t25 = m_1 * t24
+        t26 = m_2 + t25
+        t27 = t18 * t26
+        t28 = t23 + t27
+        t29 = t6 * t28
+        t30 = t4 * t29
+        t31 = t22 * t30
+        t32 = t3 * t29
+        t33 = t22 * t32
+        t34 = L / t19
+        t35 = t5 * t34
+        t36 = t30 * t35
+        t37 = t21 * t32
+        t38 = t3 * t37
+        t39 = t32 * t35
+        t40 = m_2 * t18
+        t41 = Theta_1 + t40
+        t42 = t24 + (-2.0)
+        t43 = t41 * t42
+        t44 = m_1 + m_2
+        t45 = t44 * t18
+        t46 = t7 * t45
+        t47 = t43 + t46
+        t48 = t6 * t47
+        t49 = t6 * t48
+        t50 = t41 + t49
+        t51 = t50 / t19
         entries = (
             t31,
+            t33,
             t36,
-            t41,
+            0.0,
+            t33,
+            t38,
+            t39,
             0.0,
             t36,
-            t46,
-            t50,
-            0.0,
-            t41,
-            t50,
-            t62,
+            t39,
+            t51,
             0.0,
             0.0,
             0.0,
@@ -1193,297 +1159,266 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         m_1 = np.float64(p.m_1)
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t15 = t8 * t8
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
-        t15 = t8 * t8
+        t34 = theta_dot * t5
+        t35 = x_dot * t4
+        t36 = y_dot * t3
+        t37 = t35 + t36
+        t38 = t8 * t37
+        t39 = t34 + t38
+        t19 = L * L
+        t27 = m_1 + m_2
+        t30 = phi_dot * t4
+        t31 = t5 * t30
+        t32 = t14 * t31
+        t25 = m_2 * t19
+        t26 = Theta_1 + t25
+        t28 = 2.0 * t27
+        t29 = t26 - t28
+        t33 = t29 * t32
+        t42 = t6 * t6
+        t43 = t42 + (-2.0)
+        t46 = m_2 * t4
+        t48 = t3 * t6
+        t49 = t5 * t48
+        t50 = t27 * t19
+        t54 = t3 * t5
+        t55 = t27 + t26
+        t56 = t54 * t55
+        t68 = t5 * t26
+        t69 = t14 * t30
+        t70 = 2.0 - t42
+        t77 = t26 * t39
+        t78 = t54 * t77
+        t40 = L * t5
+        t41 = t40 * t40
+        t44 = t14 + t43
+        t45 = t41 + t44
+        t47 = t45 * t46
+        t51 = t49 * t50
+        t52 = t47 - t51
+        t53 = t6 * t52
+        t57 = t5 * t56
+        t58 = t5 * t57
+        t59 = t53 - t58
+        t60 = t6 * t59
+        t61 = t7 + t15
+        t62 = 1.0 - t61
+        t63 = t62 * t46
+        t64 = t60 + t63
+        t65 = t39 * t64
+        t66 = t33 + t65
+        t67 = t19 * t66
+        t71 = t48 * t70
+        t72 = t39 * t71
+        t73 = t69 + t72
+        t74 = t68 * t73
+        t75 = t67 + t74
+        t76 = t6 * t75
+        t79 = t76 - t78
+        t80 = t6 * t79
+        t81 = t26 * t32
+        t82 = t80 - t81
+        t121 = t14 * t68
+        t162 = t5 * t31
+        t18 = t4 * t6
+        t97 = (-2.0) + t41
+        t104 = t7 * t14
+        t105 = 1.0 - t104
+        t139 = t70 * t77
+        t140 = t49 * t139
+        t141 = m_2 * t18
+        t142 = 1.0 - t19
+        t143 = t27 * t142
+        t144 = t26 + t143
+        t145 = t54 * t144
+        t146 = t141 + t145
+        t147 = t6 * t146
+        t148 = t97 * t46
+        t149 = t147 + t148
+        t150 = t6 * t149
+        t151 = t150 - t56
+        t152 = t6 * t151
+        t153 = t105 * t46
+        t154 = t152 + t153
+        t155 = t39 * t154
+        t156 = t33 + t155
+        t157 = t19 * t156
+        t158 = t140 + t157
+        t159 = t6 * t158
+        t160 = t159 - t78
+        t161 = t6 * t160
+        t163 = t162 * t121
+        t164 = t161 - t163
+        t106 = m_2 * t105
+        t112 = t14 * t29
+        t170 = t6 * t42
+        t171 = t6 * t170
+        t172 = 3.0 * t7
+        t173 = t171 + t172
+        t174 = t173 * t39
+        t84 = t4 * t5
+        t86 = t5 * t18
+        t98 = m_2 * t97
+        t127 = t6 * t14
+        t169 = 2.0 * t69
+        t175 = t3 * t174
+        t176 = t30 * t127
+        t177 = t175 - t176
+        t178 = t6 * t177
+        t179 = t169 + t178
+        t180 = t26 * t179
+        t181 = t162 * t112
+        t182 = t84 * t106
+        t183 = m_2 * t86
+        t184 = t26 * t70
+        t185 = t70 - t41
+        t186 = t27 * t185
+        t187 = t184 + t186
+        t188 = t3 * t187
+        t189 = t183 + t188
+        t190 = t6 * t189
+        t191 = t84 * t98
+        t192 = t190 + t191
+        t193 = t6 * t192
+        t194 = t3 * t55
+        t195 = t193 - t194
+        t196 = t6 * t195
+        t197 = t182 + t196
+        t198 = t39 * t197
+        t199 = t181 + t198
+        t200 = t19 * t199
+        t201 = t180 + t200
+        t202 = t6 * t201
+        t203 = t3 * t77
+        t204 = t202 - t203
+        t205 = t6 * t204
+        t206 = t26 * t69
+        t207 = t205 - t206
+        t110 = phi_dot * t3
+        t111 = t5 * t110
+        t120 = t5 * t111
+        t210 = t14 * t110
+        t209 = t4 * t77
+        t211 = 2.0 * t210
+        t212 = t4 * t174
+        t213 = t110 * t127
+        t214 = t212 + t213
+        t215 = t6 * t214
+        t216 = t211 - t215
+        t217 = t26 * t216
+        t218 = t4 * t55
+        t219 = t26 * t43
+        t220 = t42 + t97
+        t221 = t27 * t220
+        t222 = t219 + t221
+        t223 = t4 * t222
+        t224 = m_2 * t49
+        t225 = t223 + t224
+        t226 = t6 * t225
+        t227 = t54 * t98
+        t228 = t226 + t227
+        t229 = t6 * t228
+        t230 = t218 + t229
+        t231 = t6 * t230
+        t232 = t54 * t106
+        t233 = t231 + t232
+        t234 = t39 * t233
+        t235 = t120 * t112
+        t236 = t234 + t235
+        t237 = t19 * t236
+        t238 = t217 + t237
+        t239 = t6 * t238
+        t240 = t209 + t239
+        t241 = t6 * t240
+        t242 = t26 * t210
+        t243 = t241 - t242
+        t85 = t84 * t77
+        t87 = t43 * t77
+        t88 = t86 * t87
+        t89 = t84 * t55
+        t90 = m_2 * t48
+        t91 = (-1.0) + t19
+        t92 = t27 * t91
+        t93 = t92 - t26
+        t94 = t84 * t93
+        t95 = t90 + t94
+        t96 = t6 * t95
+        t99 = t3 * t98
+        t100 = t96 + t99
+        t101 = t6 * t100
+        t102 = t89 + t101
+        t103 = t6 * t102
+        t107 = t3 * t106
+        t108 = t103 + t107
+        t109 = t39 * t108
+        t113 = t111 * t112
+        t114 = t109 + t113
+        t115 = t19 * t114
+        t116 = t88 + t115
+        t117 = t6 * t116
+        t118 = t85 + t117
+        t119 = t6 * t118
+        t122 = t120 * t121
+        t123 = t119 - t122
+        t128 = t42 * t50
+        t129 = 2.0 * t26
+        t130 = t129 - t27
+        t131 = t5 * t130
+        t132 = t5 * t131
+        t133 = t128 + t132
+        t134 = phi_dot * t133
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = L * L
-        t19 = t14 * t14
-        t20 = t14 * t19
+        t20 = t14 * t14
         t21 = t14 * t20
-        t22 = t18 / t21
-        t23 = t6 * t4
-        t24 = m_2 * t18
-        t25 = Theta_1 + t24
-        t26 = t4 * t4
-        t27 = 2.0 - t26
-        t28 = x_dot * t6
-        t29 = y_dot * t5
-        t30 = t28 + t29
-        t31 = t4 * t30
-        t32 = L * t31
-        t33 = theta_dot * t3
-        t34 = t32 + t33
-        t35 = t4 * t34
-        t36 = t27 * t35
-        t37 = t5 * t36
-        t38 = phi_dot * t6
-        t39 = t14 * t38
-        t40 = t37 + t39
-        t41 = t3 * t40
-        t42 = t25 * t41
-        t43 = L * t3
-        t44 = t43 * t43
-        t45 = t26 + (-2.0)
-        t46 = t14 + t45
-        t47 = t44 + t46
-        t48 = t6 * t47
-        t49 = m_2 * t48
-        t50 = t5 * t4
-        t51 = t3 * t50
-        t52 = m_1 + m_2
-        t53 = t52 * t18
-        t54 = t51 * t53
-        t55 = t49 - t54
-        t56 = t4 * t55
-        t57 = t52 + t25
-        t58 = t5 * t3
-        t59 = t3 * t58
-        t60 = t3 * t59
-        t61 = t57 * t60
-        t62 = t56 - t61
-        t63 = t4 * t62
-        t64 = t7 + t15
-        t65 = 1.0 - t64
-        t66 = t6 * t65
-        t67 = m_2 * t66
-        t68 = t63 + t67
-        t69 = t34 * t68
-        t70 = 2.0 * t52
-        t71 = t25 - t70
-        t72 = t3 * t38
-        t73 = t14 * t72
-        t74 = t71 * t73
-        t75 = t69 + t74
-        t76 = t18 * t75
-        t77 = t42 + t76
-        t78 = t4 * t77
-        t79 = t34 * t58
-        t80 = t25 * t79
-        t81 = t78 - t80
-        t82 = t4 * t81
-        t83 = t25 * t73
-        t84 = t82 - t83
-        t85 = t23 * t84
-        t86 = t22 * t85
-        t87 = t6 * t3
-        t88 = t34 * t87
-        t89 = t25 * t88
-        t90 = t3 * t23
-        t91 = t34 * t90
-        t92 = t45 * t91
-        t93 = t25 * t92
-        t94 = (-1.0) + t18
-        t95 = t52 * t94
-        t96 = t95 - t25
-        t97 = t3 * t96
-        t98 = t6 * t97
-        t99 = m_2 * t50
-        t100 = t98 + t99
-        t101 = t4 * t100
-        t102 = (-2.0) + t44
-        t103 = t5 * t102
-        t104 = m_2 * t103
-        t105 = t101 + t104
-        t106 = t4 * t105
-        t107 = t87 * t57
-        t108 = t106 + t107
-        t109 = t4 * t108
-        t110 = t7 * t14
-        t111 = 1.0 - t110
-        t112 = t5 * t111
-        t113 = m_2 * t112
-        t114 = t109 + t113
-        t115 = t34 * t114
-        t116 = phi_dot * t5
-        t117 = t3 * t116
-        t118 = t14 * t117
-        t119 = t71 * t118
-        t120 = t115 + t119
-        t121 = t18 * t120
-        t122 = t93 + t121
-        t123 = t4 * t122
-        t124 = t89 + t123
-        t125 = t4 * t124
-        t126 = t3 * t117
-        t127 = t3 * t126
-        t128 = t14 * t127
-        t129 = t25 * t128
-        t130 = t125 - t129
-        t131 = t23 * t130
-        t132 = t22 * t131
-        t133 = L * t18
-        t134 = t133 / t21
-        t135 = t4 * t23
-        t136 = t26 * t53
-        t137 = 2.0 * t25
-        t138 = t137 - t52
-        t139 = t3 * t138
-        t140 = t3 * t139
-        t141 = t136 + t140
-        t142 = phi_dot * t14
-        t143 = t141 * t142
-        t144 = t135 * t143
-        t145 = t134 * t144
-        t146 = t34 * t51
-        t147 = t27 * t146
-        t148 = t25 * t147
-        t149 = 1.0 - t18
-        t150 = t52 * t149
-        t151 = t25 + t150
-        t152 = t3 * t151
-        t153 = t5 * t152
-        t154 = m_2 * t23
-        t155 = t153 + t154
-        t156 = t4 * t155
-        t157 = t6 * t102
-        t158 = m_2 * t157
-        t159 = t156 + t158
-        t160 = t4 * t159
-        t161 = t58 * t57
-        t162 = t160 - t161
-        t163 = t4 * t162
-        t164 = t6 * t111
-        t165 = m_2 * t164
-        t166 = t163 + t165
-        t167 = t34 * t166
-        t168 = t74 + t167
-        t169 = t18 * t168
-        t170 = t148 + t169
-        t171 = t4 * t170
-        t172 = t171 - t80
-        t173 = t4 * t172
-        t174 = t3 * t72
-        t175 = t3 * t174
-        t176 = t14 * t175
-        t177 = t25 * t176
-        t178 = t173 - t177
-        t179 = t50 * t178
-        t180 = t22 * t179
-        t181 = t50 * t130
-        t182 = t22 * t181
-        t183 = t4 * t50
-        t184 = t183 * t143
-        t185 = t134 * t184
-        t186 = L / t21
-        t187 = t4 * t26
-        t188 = t4 * t187
-        t189 = 3.0 * t7
-        t190 = t188 + t189
-        t191 = t34 * t190
-        t192 = t5 * t191
-        t193 = t4 * t38
-        t194 = t14 * t193
-        t195 = t192 - t194
-        t196 = t4 * t195
-        t197 = 2.0 * t39
-        t198 = t196 + t197
-        t199 = t25 * t198
-        t200 = 2.0 - t44
-        t201 = t200 - t26
-        t202 = t52 * t201
-        t203 = t25 * t27
-        t204 = t202 + t203
-        t205 = t5 * t204
-        t206 = m_2 * t90
-        t207 = t205 + t206
-        t208 = t4 * t207
-        t209 = t87 * t102
-        t210 = m_2 * t209
-        t211 = t208 + t210
-        t212 = t4 * t211
-        t213 = t5 * t57
-        t214 = t212 - t213
-        t215 = t4 * t214
-        t216 = t87 * t111
-        t217 = m_2 * t216
-        t218 = t215 + t217
-        t219 = t34 * t218
-        t220 = t14 * t174
-        t221 = t71 * t220
-        t222 = t219 + t221
-        t223 = t18 * t222
-        t224 = t199 + t223
-        t225 = t4 * t224
-        t226 = t5 * t34
-        t227 = t25 * t226
-        t228 = t225 - t227
-        t229 = t4 * t228
-        t230 = t25 * t39
-        t231 = t229 - t230
-        t232 = t186 * t231
-        t233 = t6 * t34
-        t234 = t25 * t233
-        t235 = t14 * t116
-        t236 = 2.0 * t235
-        t237 = t6 * t191
-        t238 = t4 * t116
-        t239 = t14 * t238
-        t240 = t237 + t239
-        t241 = t4 * t240
-        t242 = t236 - t241
-        t243 = t25 * t242
-        t244 = t25 * t45
-        t245 = t26 + t102
-        t246 = t52 * t245
-        t247 = t244 + t246
-        t248 = t6 * t247
-        t249 = m_2 * t51
-        t250 = t248 + t249
-        t251 = t4 * t250
-        t252 = t58 * t102
-        t253 = m_2 * t252
-        t254 = t251 + t253
-        t255 = t4 * t254
-        t256 = t6 * t57
-        t257 = t255 + t256
-        t258 = t4 * t257
-        t259 = t58 * t111
-        t260 = m_2 * t259
-        t261 = t258 + t260
-        t262 = t34 * t261
-        t263 = t14 * t126
-        t264 = t71 * t263
-        t265 = t262 + t264
-        t266 = t18 * t265
-        t267 = t243 + t266
-        t268 = t4 * t267
-        t269 = t234 + t268
-        t270 = t4 * t269
-        t271 = t25 * t235
-        t272 = t270 - t271
-        t273 = t186 * t272
-        t274 = phi_dot * t3
-        t275 = t14 * t274
-        t276 = t275 * t141
-        t277 = t4 * t276
-        t278 = t22 * t277
+        t22 = t14 * t21
+        t23 = t19 / t22
+        t135 = t127 * t134
+        t245 = t23 * t127
+        t246 = t134 * t245
+        t247 = t5 * t246
+        t24 = t18 * t23
+        t83 = t24 * t82
+        t124 = t24 * t123
+        t138 = t48 * t23
+        t165 = t138 * t164
+        t166 = t138 * t123
+        t125 = L * t19
+        t126 = t125 / t22
+        t136 = t126 * t135
+        t137 = t18 * t136
+        t167 = t48 * t136
+        t168 = L / t22
+        t208 = t168 * t207
+        t244 = t168 * t243
         entries = (
-            t86,
-            t132,
-            t145,
+            t83,
+            t124,
+            t137,
             0.0,
-            t180,
-            t182,
-            t185,
+            t165,
+            t166,
+            t167,
             0.0,
-            t232,
-            t273,
-            t278,
+            t208,
+            t244,
+            t247,
             0.0,
             0.0,
             0.0,
@@ -1552,26 +1487,18 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t3 * t3
-            t14 = t5 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = t3 * t3
-        t24 = Theta_1 * t23
-        t25 = t22 + t24
-        t26 = t25 / t9
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = t4 * t4
+        t14 = m_1 * t13
+        t15 = m_2 + t14
+        t16 = L * t15
+        t17 = L * t16
+        t18 = t3 * t3
+        t19 = Theta_1 * t18
+        t20 = t17 + t19
+        t21 = t20 / t9
         entries = (
-            t26,
+            t21,
             0.0,
             0.0,
             Theta_2,
@@ -1613,10 +1540,7 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        _failed_ = ~np.asarray(t13 > t17)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
-            status = _first(status, _failed_, 2)
+        status = _first(status, ~np.asarray(t13 > t17), 2)
         t18 = L * L
         t19 = m_2 * t18
         t20 = Theta_1 + t19
@@ -1626,38 +1550,36 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t24 = theta_dot * t5
         t25 = t20 * t24
         t26 = (-1.0) + t18
-        t27 = t22 * t26
-        t28 = t20 * t27
-        t29 = t5 * t4
-        t30 = t4 * t4
-        t31 = t30 + (-2.0)
-        t32 = t29 * t31
-        t33 = t20 * t32
-        t34 = m_1 + m_2
-        t35 = t34 * t18
-        t36 = t30 * t35
-        t37 = t34 + t20
-        t38 = t7 * t37
-        t39 = t36 + t38
-        t40 = t29 * t39
-        t41 = t18 * t40
-        t42 = t33 + t41
-        t43 = theta_dot * t42
-        t44 = t28 + t43
+        t27 = t26 * t23
+        t28 = t4 * t4
+        t29 = t28 + (-2.0)
+        t30 = t20 * t29
+        t31 = m_1 + m_2
+        t32 = t31 * t18
+        t33 = t28 * t32
+        t34 = t31 + t20
+        t35 = t3 * t34
+        t36 = t3 * t35
+        t37 = t33 + t36
+        t38 = t18 * t37
+        t39 = t30 + t38
+        t40 = t4 * t24
+        t41 = t39 * t40
+        t42 = t27 + t41
+        t43 = t4 * t42
+        t44 = t25 + t43
         t45 = t4 * t44
-        t46 = t25 + t45
-        t47 = t4 * t46
-        t48 = t23 + t47
-        t49 = t6 * t18
-        t50 = t6 * t49
-        t51 = t6 * t50
+        t46 = t23 + t45
+        t47 = t6 * t18
+        t48 = t6 * t47
+        t49 = t6 * t48
+        t50 = t4 * t49
+        t51 = t4 * t50
         t52 = t4 * t51
-        t53 = t4 * t52
-        t54 = t4 * t53
-        t55 = t14 * t54
-        t56 = t48 / t55
+        t53 = t14 * t52
+        t54 = t46 / t53
         entries = (
-            t56,
+            t54,
             0.0,
             0.0,
             0.0,
@@ -1716,19 +1638,11 @@ def minimal_control_matrix(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t5 * t5
-            t14 = t3 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = t4 * t6
-        t19 = 1.0 / t18
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = t4 * t6
+        t14 = 1.0 / t13
         entries = (
-            t19,
+            t14,
             0.0,
             0.0,
             1.0,
@@ -1751,18 +1665,18 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         theta_dot = qd[..., 2]
         phi_dot = qd[..., 3]
         L = np.float64(p.L)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
@@ -1770,25 +1684,22 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L / t14
-        t19 = x_dot * t6
-        t20 = y_dot * t5
-        t21 = t19 + t20
-        t22 = t4 * t21
-        t23 = L * t22
-        t24 = theta_dot * t3
-        t25 = t23 + t24
-        t26 = t6 * t4
-        t27 = t25 * t26
-        t28 = t18 * t27
-        t29 = t5 * t4
-        t30 = t25 * t29
-        t31 = t18 * t30
-        t32 = t3 * t25
-        t33 = t32 / t14
+        t19 = theta_dot * t5
+        t20 = x_dot * t4
+        t21 = y_dot * t3
+        t22 = t20 + t21
+        t23 = t8 * t22
+        t24 = t19 + t23
+        t25 = t6 * t24
+        t26 = t18 * t25
+        t27 = t4 * t26
+        t28 = t3 * t26
+        t29 = t5 * t24
+        t30 = t29 / t14
         entries = (
+            t27,
             t28,
-            t31,
-            t33,
+            t30,
             phi_dot,
         )
         return _result("admissible_velocity", status, batch, (4,), entries)
@@ -1832,93 +1743,71 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = y_ddot * t6
+        t18 = t14 * t14
         t19 = t14 * t18
-        t20 = t14 * t19
-        t21 = x_dot * t6
-        t22 = y_dot * t5
-        t23 = t21 + t22
-        t24 = t4 * t23
-        t25 = L * t24
-        t26 = theta_dot * t3
+        t20 = L / t19
+        t21 = t6 * t14
+        t22 = t14 * t21
+        t23 = y_ddot * t22
+        t24 = theta_dot * t3
+        t25 = x_dot * t6
+        t26 = y_dot * t5
         t27 = t25 + t26
-        t28 = t8 * t3
-        t29 = t27 * t28
-        t30 = t27 * t29
-        t31 = t20 - t30
-        t32 = t5 * t31
-        t33 = x_ddot * t6
-        t34 = t6 * t33
-        t35 = t14 * t34
-        t36 = t14 * t35
-        t37 = t32 + t36
-        t38 = t4 * t37
-        t39 = L * t38
-        t40 = theta_ddot * t6
-        t41 = t14 * t40
-        t42 = t14 * t41
-        t43 = t5 * t3
+        t28 = t8 * t27
+        t29 = t24 + t28
+        t30 = t3 * t29
+        t31 = t29 * t30
+        t32 = t8 * t31
+        t33 = t23 - t32
+        t34 = t5 * t33
+        t35 = x_ddot * t6
+        t36 = t35 * t22
+        t37 = t34 + t36
+        t38 = t8 * t37
+        t39 = theta_ddot * t14
+        t40 = t21 * t39
+        t41 = t5 * t31
+        t42 = t3 * t41
+        t43 = t40 - t42
         t44 = t3 * t43
-        t45 = t27 * t44
-        t46 = t27 * t45
-        t47 = t42 - t46
-        t48 = t3 * t47
-        t49 = t39 + t48
-        t50 = t4 * t49
-        t51 = phi_dot * t6
-        t52 = t3 * t51
-        t53 = t14 * t52
-        t54 = t27 * t53
-        t55 = t50 - t54
-        t56 = t14 * t14
-        t57 = t14 * t56
-        t58 = L / t57
-        t59 = t55 * t58
-        t60 = y_ddot * t5
-        t61 = t33 + t60
-        t62 = t56 * t61
-        t63 = t5 * t62
-        t64 = t6 * t4
-        t65 = t3 * t64
-        t66 = t27 * t65
-        t67 = t27 * t66
-        t68 = L * t67
-        t69 = t63 + t68
-        t70 = t4 * t69
-        t71 = L * t70
-        t72 = theta_ddot * t5
-        t73 = t14 * t72
-        t74 = t14 * t73
-        t75 = t6 * t3
+        t45 = t38 + t44
+        t46 = t4 * t45
+        t47 = phi_dot * t30
+        t48 = t21 * t47
+        t49 = t46 - t48
+        t50 = t20 * t49
+        t51 = y_ddot * t5
+        t52 = t35 + t51
+        t53 = t18 * t52
+        t54 = t5 * t53
+        t55 = t6 * t31
+        t56 = t8 * t55
+        t57 = t54 + t56
+        t58 = t8 * t57
+        t59 = t5 * t14
+        t60 = t39 * t59
+        t61 = t3 * t55
+        t62 = t60 + t61
+        t63 = t3 * t62
+        t64 = t58 + t63
+        t65 = t4 * t64
+        t66 = t47 * t59
+        t67 = t65 - t66
+        t68 = t20 * t67
+        t69 = t14 * t52
+        t70 = t3 * t69
+        t71 = phi_dot * t29
+        t72 = L * t71
+        t73 = t70 + t72
+        t74 = t8 * t73
+        t75 = t3 * t39
         t76 = t3 * t75
-        t77 = t27 * t76
-        t78 = t27 * t77
-        t79 = t74 + t78
-        t80 = t3 * t79
-        t81 = t71 + t80
-        t82 = t4 * t81
-        t83 = phi_dot * t5
-        t84 = t3 * t83
-        t85 = t14 * t84
-        t86 = t27 * t85
-        t87 = t82 - t86
-        t88 = t58 * t87
-        t89 = t14 * t61
-        t90 = t3 * t89
-        t91 = phi_dot * t27
-        t92 = L * t91
-        t93 = t90 + t92
-        t94 = t4 * t93
-        t95 = L * t94
-        t96 = theta_ddot * t3
-        t97 = t3 * t96
-        t98 = t14 * t97
-        t99 = t95 + t98
-        t100 = t99 / t56
+        t77 = t74 + t76
+        t78 = t77 / t18
         entries = (
-            t59,
-            t88,
-            t100,
+            t50,
+            t68,
+            t78,
             phi_ddot,
         )
         return _result("admissible_acceleration", status, batch, (4,), entries)
@@ -2153,31 +2042,30 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t21 = L * L
         t22 = m_2 * t21
         t23 = Theta_1 + t22
-        t24 = theta_dot * t3
-        t25 = t23 * t24
-        t26 = m_1 + m_2
-        t27 = L * t3
-        t28 = theta_dot * t27
-        t29 = t6 * t4
-        t30 = t5 * t3
-        t31 = t29 - t30
-        t32 = x_dot * t31
-        t33 = t5 * t4
-        t34 = t6 * t3
-        t35 = t33 + t34
-        t36 = y_dot * t35
-        t37 = t32 + t36
-        t38 = t28 + t37
-        t39 = t26 * t38
+        t24 = t6 * t4
+        t25 = t5 * t3
+        t26 = t24 - t25
+        t27 = x_dot * t26
+        t28 = t5 * t4
+        t29 = t6 * t3
+        t30 = t28 + t29
+        t31 = y_dot * t30
+        t32 = t27 + t31
+        t33 = t23 * t32
+        t34 = theta_dot * t3
+        t35 = t23 * t34
+        t36 = m_1 + m_2
+        t37 = L * t34
+        t38 = t32 + t37
+        t39 = t36 * t38
         t40 = L * t39
-        t41 = t25 - t40
+        t41 = t35 - t40
         t42 = L * t41
-        t43 = t23 * t37
-        t44 = t42 + t43
-        t45 = t20 * t44
-        t46 = t45 / t21
+        t43 = t33 + t42
+        t44 = t20 * t43
+        t45 = t44 / t21
         entries = (
-            t46,
+            t45,
             0.0,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
@@ -2211,144 +2099,137 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(phi)
         t5, t6 = _sincos(theta)
-        t7 = t3 * t3
         t8 = L * t4
         t9 = t5 * t8
+        t11 = t6 * t8
+        t42 = L * t3
+        t45 = L * m_2
+        t46 = theta_dot * t45
+        t47 = theta_dot * t6
+        t55 = theta_dot * t5
+        t49 = t6 * t4
+        t50 = t5 * t3
+        t51 = t49 - t50
+        t57 = t5 * t4
+        t58 = t6 * t3
+        t59 = t57 + t58
+        t43 = K_f * t42
+        t44 = t3 * t43
+        t48 = t46 * t47
+        t52 = K_f * t51
+        t53 = t48 + t52
+        t54 = t11 * t53
+        t56 = t46 * t55
+        t60 = K_f * t59
+        t61 = t56 + t60
+        t62 = t9 * t61
+        t63 = t54 + t62
+        t64 = t44 + t63
+        t65 = Theta_2 * t64
+        t67 = y_dot * t55
+        t68 = x_dot * t47
+        t69 = t67 + t68
+        t81 = theta_dot * t42
+        t82 = phi_dot * t81
+        t83 = theta_dot + phi_dot
+        t84 = x_dot * t51
+        t85 = y_dot * t59
+        t86 = t84 + t85
+        t87 = t83 * t86
+        t88 = t82 + t87
+        t89 = t6 * t88
+        t90 = t69 * t51
+        t91 = t89 - t90
+        t97 = t5 * t88
+        t98 = t69 * t59
+        t99 = t97 - t98
+        t20 = m_1 * t4
+        t71 = L * Theta_2
+        t72 = m_2 * t59
+        t73 = t5 * t20
+        t74 = t72 + t73
+        t75 = t71 * t74
+        t101 = m_2 * t51
+        t102 = t6 * t20
+        t103 = t101 + t102
+        t104 = t71 * t103
+        t70 = t8 * t69
+        t77 = L * t45
+        t78 = Theta_1 + t77
+        t79 = t3 * t78
+        t80 = Theta_2 * t79
+        t66 = t11 * t65
+        t76 = t70 * t75
+        t92 = t80 * t91
+        t93 = t76 + t92
+        t94 = t66 - t93
+        t96 = t9 * t65
+        t100 = t80 * t99
+        t105 = t70 * t104
+        t106 = t100 - t105
+        t107 = t96 - t106
+        t109 = t3 * t65
+        t110 = t75 * t99
+        t111 = t91 * t104
+        t112 = t110 + t111
+        t113 = t109 + t112
+        t118 = T * t3
+        t119 = t45 * t118
+        t115 = m_1 + m_2
+        t116 = T * t115
+        t117 = t11 * t116
+        t120 = t5 * t119
+        t121 = t117 - t120
+        t122 = t11 * t121
+        t123 = t9 * t116
+        t124 = t6 * t119
+        t125 = t123 + t124
+        t126 = t9 * t125
+        t127 = t122 + t126
+        t128 = t118 * t79
+        t129 = t127 + t128
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t12 = t11 * t11
+        t13 = t10 + t12
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        t7 = t3 * t3
+        t14 = t7 + t13
         status = _first(status, ~np.asarray(t14 > t17), 2)
+        t29 = np.abs(m_2)
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_1)
-        t28 = np.abs(m_2)
-        t29 = np.abs(L)
-        t30 = t29 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = np.abs(Theta_2)
-        t34 = t32 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t28
-        t38 = t37 * t33
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = L * t3
-        t45 = K_f * t44
-        t46 = t3 * t45
-        t47 = L * m_2
-        t48 = theta_dot * t47
-        t49 = theta_dot * t6
-        t50 = t48 * t49
-        t51 = t6 * t4
-        t52 = t5 * t3
-        t53 = t51 - t52
-        t54 = K_f * t53
-        t55 = t50 + t54
-        t56 = t12 * t55
-        t57 = theta_dot * t5
-        t58 = t48 * t57
-        t59 = t5 * t4
-        t60 = t6 * t3
-        t61 = t59 + t60
-        t62 = K_f * t61
-        t63 = t58 + t62
-        t64 = t9 * t63
-        t65 = t56 + t64
-        t66 = t46 + t65
-        t67 = Theta_2 * t66
-        t68 = t12 * t67
-        t69 = y_dot * t57
-        t70 = x_dot * t49
-        t71 = t69 + t70
-        t72 = t8 * t71
-        t73 = L * Theta_2
-        t74 = m_1 * t59
-        t75 = m_2 * t61
-        t76 = t74 + t75
-        t77 = t73 * t76
-        t78 = t72 * t77
-        t79 = L * t47
-        t80 = Theta_1 + t79
-        t81 = t3 * t80
-        t82 = Theta_2 * t81
-        t83 = phi_dot * t3
-        t84 = L * t83
-        t85 = theta_dot * t84
-        t86 = theta_dot + phi_dot
-        t87 = x_dot * t53
-        t88 = y_dot * t61
-        t89 = t87 + t88
-        t90 = t86 * t89
-        t91 = t85 + t90
-        t92 = t6 * t91
-        t93 = t71 * t53
-        t94 = t92 - t93
-        t95 = t82 * t94
-        t96 = t78 + t95
-        t97 = t68 - t96
-        t98 = t43 * t97
-        t99 = t9 * t67
-        t100 = t5 * t91
-        t101 = t71 * t61
-        t102 = t100 - t101
-        t103 = t82 * t102
-        t104 = m_1 * t51
-        t105 = m_2 * t53
-        t106 = t104 + t105
-        t107 = t73 * t106
-        t108 = t72 * t107
-        t109 = t103 - t108
-        t110 = t99 - t109
-        t111 = t43 * t110
-        t112 = t3 * t67
-        t113 = t93 - t92
-        t114 = t107 * t113
-        t115 = t77 * t102
-        t116 = t114 - t115
-        t117 = t112 - t116
-        t118 = t43 * t117
-        t119 = m_1 + m_2
-        t120 = T * t12
-        t121 = t119 * t120
-        t122 = t5 * t47
-        t123 = T * t3
-        t124 = t122 * t123
-        t125 = t121 - t124
-        t126 = t12 * t125
-        t127 = T * t9
-        t128 = t119 * t127
-        t129 = t6 * t47
-        t130 = t129 * t123
-        t131 = t128 + t130
-        t132 = t9 * t131
-        t133 = t126 + t132
-        t134 = t123 * t80
-        t135 = t3 * t134
-        t136 = t133 + t135
-        t137 = t43 * t136
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = 1.0 / t25
+        t95 = t41 * t94
+        t108 = t41 * t107
+        t114 = t41 * t113
+        t130 = t41 * t129
         entries = (
-            t98,
-            t111,
-            t118,
-            t137,
+            t95,
+            t108,
+            t114,
+            t130,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2385,141 +2266,135 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t8 = L * t4
         t9 = t5 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t6 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
+        t29 = np.abs(m_2)
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
+        t20 = m_1 * t4
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_1)
-        t28 = np.abs(m_2)
-        t29 = np.abs(L)
-        t30 = t29 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = np.abs(Theta_2)
-        t34 = t32 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t28
-        t38 = t37 * t33
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = L * Theta_2
-        t45 = t5 * t4
-        t46 = m_1 * t45
-        t47 = t6 * t3
-        t48 = t45 + t47
-        t49 = m_2 * t48
-        t50 = t46 + t49
-        t51 = t44 * t50
-        t52 = L * m_2
-        t53 = theta_dot * t52
-        t54 = theta_dot * t6
-        t55 = t53 * t54
-        t56 = t6 * t4
-        t57 = t5 * t3
-        t58 = t56 - t57
-        t59 = K_f * t58
-        t60 = t55 + t59
-        t61 = m_1 + m_2
-        t62 = theta_dot * t5
-        t63 = y_dot * t62
-        t64 = x_dot * t54
-        t65 = t63 + t64
-        t66 = t8 * t65
-        t67 = t66 * t51
-        t68 = L * t52
-        t69 = Theta_1 + t68
-        t70 = t3 * t69
-        t71 = Theta_2 * t70
-        t72 = phi_dot * t3
-        t73 = L * t72
-        t74 = theta_dot * t73
-        t75 = theta_dot + phi_dot
-        t76 = x_dot * t58
-        t77 = y_dot * t48
-        t78 = t76 + t77
-        t79 = t75 * t78
-        t80 = t74 + t79
-        t81 = t6 * t80
-        t82 = t65 * t58
-        t83 = t81 - t82
-        t84 = t71 * t83
-        t85 = t67 + t84
-        t86 = t43 * t85
-        t87 = t61 * t86
-        t88 = t5 * t52
-        t89 = m_1 * t56
-        t90 = m_2 * t58
-        t91 = t89 + t90
-        t92 = t44 * t91
-        t93 = t82 - t81
-        t94 = t92 * t93
-        t95 = t5 * t80
-        t96 = t65 * t48
-        t97 = t95 - t96
-        t98 = t51 * t97
-        t99 = t94 - t98
-        t100 = t43 * t99
-        t101 = t88 * t100
-        t102 = t87 - t101
-        t103 = t60 + t102
-        t104 = t51 * t103
-        t105 = t53 * t62
-        t106 = K_f * t48
-        t107 = t105 + t106
-        t108 = t71 * t97
-        t109 = t66 * t92
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t42 = L * Theta_2
+        t43 = t5 * t4
+        t44 = t6 * t3
+        t45 = t43 + t44
+        t54 = t6 * t4
+        t55 = t5 * t3
+        t56 = t54 - t55
+        t46 = m_2 * t45
+        t47 = t5 * t20
+        t48 = t46 + t47
+        t49 = t42 * t48
+        t90 = m_2 * t56
+        t91 = t6 * t20
+        t92 = t90 + t91
+        t93 = t42 * t92
+        t41 = 1.0 / t25
+        t52 = theta_dot * t6
+        t61 = theta_dot * t5
+        t71 = L * t3
+        t62 = y_dot * t61
+        t63 = x_dot * t52
+        t64 = t62 + t63
+        t72 = theta_dot * t71
+        t73 = phi_dot * t72
+        t74 = theta_dot + phi_dot
+        t75 = x_dot * t56
+        t76 = y_dot * t45
+        t77 = t75 + t76
+        t78 = t74 * t77
+        t79 = t73 + t78
+        t80 = t6 * t79
+        t81 = t64 * t56
+        t82 = t80 - t81
+        t86 = t5 * t79
+        t87 = t64 * t45
+        t88 = t86 - t87
+        t89 = t49 * t88
+        t94 = t82 * t93
+        t95 = t89 + t94
+        t96 = t41 * t95
+        t116 = K_f * t71
+        t50 = L * m_2
+        t117 = t50 * t64
+        t67 = L * t50
+        t68 = Theta_1 + t67
+        t118 = t68 * t96
+        t119 = t117 + t118
+        t120 = t116 - t119
+        t97 = t50 * t96
+        t51 = theta_dot * t50
+        t53 = t51 * t52
+        t57 = K_f * t56
+        t58 = t53 + t57
+        t102 = t51 * t61
+        t103 = K_f * t45
+        t104 = t102 + t103
+        t65 = t8 * t64
+        t69 = t3 * t68
+        t70 = Theta_2 * t69
+        t66 = t65 * t49
+        t83 = t70 * t82
+        t84 = t66 + t83
+        t105 = t70 * t88
+        t106 = t65 * t93
+        t107 = t105 - t106
+        t59 = m_1 + m_2
+        t60 = t59 * t41
+        t85 = t60 * t84
+        t98 = t5 * t97
+        t99 = t85 + t98
+        t100 = t58 + t99
+        t108 = t60 * t107
+        t109 = t6 * t97
         t110 = t108 - t109
-        t111 = t43 * t110
-        t112 = t61 * t111
-        t113 = t6 * t52
-        t114 = t113 * t100
-        t115 = t112 + t114
-        t116 = t107 + t115
-        t117 = t92 * t116
-        t118 = t104 - t117
-        t119 = t8 * t118
-        t120 = t71 * t103
-        t121 = L * t3
-        t122 = K_f * t121
-        t123 = t69 * t100
-        t124 = t52 * t65
-        t125 = t123 - t124
-        t126 = t122 + t125
-        t127 = t92 * t126
-        t128 = t120 - t127
-        t129 = t58 * t128
-        t130 = t119 - t129
-        t131 = t71 * t116
-        t132 = t51 * t126
-        t133 = t131 - t132
-        t134 = t48 * t133
-        t135 = t130 - t134
-        t136 = t43 * t135
-        t137 = t6 * t128
-        t138 = t5 * t133
-        t139 = t137 + t138
-        t140 = t43 * t139
+        t111 = t104 + t110
+        t115 = t70 * t100
+        t121 = t93 * t120
+        t122 = t115 - t121
+        t125 = t70 * t111
+        t126 = t49 * t120
+        t127 = t125 - t126
+        t101 = t49 * t100
+        t112 = t93 * t111
+        t113 = t101 - t112
+        t114 = t8 * t113
+        t123 = t56 * t122
+        t124 = t114 - t123
+        t128 = t45 * t127
+        t129 = t124 - t128
+        t130 = t41 * t129
+        t131 = t6 * t122
+        t132 = t5 * t127
+        t133 = t131 + t132
+        t134 = t41 * t133
         entries = (
-            t136,
-            t140,
+            t130,
+            t134,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2550,25 +2425,24 @@ def energy(q, qd, p=PARAMETERS):
         t6 = y_dot * y_dot
         t7 = t5 + t6
         t8 = t4 * t7
-        t9 = 0.5 * t8
-        t10 = phi_dot * phi_dot
-        t11 = Theta_2 * t10
+        t9 = phi_dot * phi_dot
+        t10 = Theta_2 * t9
+        t11 = t8 + t10
         t12 = 0.5 * t11
-        t13 = t9 + t12
-        t14 = L * m_2
-        t15 = y_dot * t3
-        t16 = x_dot * t2
-        t17 = t15 - t16
-        t18 = t14 * t17
-        t19 = L * t14
-        t20 = Theta_1 + t19
-        t21 = theta_dot * t20
-        t22 = 0.5 * t21
-        t23 = t18 + t22
-        t24 = theta_dot * t23
-        t25 = t13 + t24
+        t13 = L * m_2
+        t14 = y_dot * t3
+        t15 = x_dot * t2
+        t16 = t14 - t15
+        t17 = t13 * t16
+        t18 = L * t13
+        t19 = Theta_1 + t18
+        t20 = theta_dot * t19
+        t21 = 0.5 * t20
+        t22 = t17 + t21
+        t23 = theta_dot * t22
+        t24 = t12 + t23
         entries = (
-            t25,
+            t24,
             0.0,
         )
         return _result("energy", status, batch, (2,), entries)
@@ -2601,44 +2475,41 @@ def singularity(q, p=PARAMETERS):
         t15 = t6 * t3
         t16 = t14 + t15
         t17 = _ratio_or_zero(t16, t11)
-        t18 = t6 * t6
-        t19 = t18 * t17
-        t20 = t17 * t19
-        t21 = t13 + t20
-        t22 = t6 * t4
-        t23 = t5 * t3
-        t24 = t22 - t23
-        t25 = -t24
-        t26 = _ratio_or_zero(t25, t11)
-        t27 = t5 * t26
-        t28 = t6 * t17
-        t29 = 2.0 * t28
-        t30 = t27 + t29
-        t31 = t26 * t30
-        t32 = t5 * t31
-        t33 = t21 + t32
-        t34 = L * t3
-        t35 = t27 + t28
-        t36 = t34 * t35
-        t37 = t5 * t12
-        t38 = t16 * t37
+        t18 = t6 * t17
+        t19 = t18 * t18
+        t20 = t13 + t19
+        t21 = t6 * t4
+        t22 = t5 * t3
+        t23 = t21 - t22
+        t24 = -t23
+        t25 = _ratio_or_zero(t24, t11)
+        t26 = t5 * t25
+        t27 = 2.0 * t18
+        t28 = t26 + t27
+        t29 = t26 * t28
+        t30 = t20 + t29
+        t31 = L * t3
+        t32 = t26 + t18
+        t33 = t31 * t32
+        t34 = t5 * t12
+        t35 = t16 * t34
+        t36 = t33 - t35
+        t37 = t6 * t12
+        t38 = t23 * t37
         t39 = t36 - t38
-        t40 = t6 * t12
-        t41 = t24 * t40
-        t42 = t39 - t41
-        t43 = t42 * t42
-        t44 = t40 * t40
-        t45 = t37 * t37
-        t46 = t35 * t35
-        t47 = t45 + t46
-        t48 = t44 + t47
-        t49 = _ratio_or_zero(t43, t48)
-        t50 = t34 * t34
-        t51 = 1.0 + t50
-        t52 = _ratio_or_zero(t49, t51)
+        t40 = t39 * t39
+        t41 = t37 * t37
+        t42 = t34 * t34
+        t43 = t32 * t32
+        t44 = t42 + t43
+        t45 = t41 + t44
+        t46 = _ratio_or_zero(t40, t45)
+        t47 = t31 * t31
+        t48 = 1.0 + t47
+        t49 = _ratio_or_zero(t46, t48)
         entries = (
-            t33,
-            t52,
+            t30,
+            t49,
         )
         return _result("singularity", status, batch, (2,), entries)
 

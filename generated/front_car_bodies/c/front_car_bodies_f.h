@@ -16,9 +16,9 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics       7     14      1      0      2      0
- * forward_dynamics      38     94      1      0      2      0
- * multipliers           42     95      1      0      2      0
- * singularity           12     26      5      1      2      0
+ * forward_dynamics      36     89      1      0      2      0
+ * multipliers           40     93      1      0      2      0
+ * singularity           12     23      5      1      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -14,19 +14,13 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[11];
+    double value[5];
 } front_car_bodies_prepared;
 
 front_car_bodies_prepared front_car_bodies_prepare(const front_car_bodies_params *p);
 
 /* u: the smallest inputs that produce the motion, (27); 22 operations instead of 26 */
 front_car_bodies_status front_car_bodies_inverse_dynamics_prepared(const double q[4], const double qd[4], const double qdd[4], const front_car_bodies_prepared *p, double u[2]);
-
-/* q̈: accelerations under the inputs, (15); 128 operations instead of 143 */
-front_car_bodies_status front_car_bodies_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_bodies_prepared *p, double qdd[4]);
-
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 133 operations instead of 148 */
-front_car_bodies_status front_car_bodies_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_bodies_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus
 }

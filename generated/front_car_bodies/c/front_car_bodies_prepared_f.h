@@ -14,19 +14,13 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[11];
+    float value[5];
 } front_car_bodies_prepared_f;
 
 front_car_bodies_prepared_f front_car_bodies_prepare_f(const front_car_bodies_params_f *p);
 
 /* u: the smallest inputs that produce the motion, (27); 22 operations instead of 26 */
 front_car_bodies_status front_car_bodies_inverse_dynamics_prepared_f(const float q[4], const float qd[4], const float qdd[4], const front_car_bodies_prepared_f *p, float u[2]);
-
-/* q̈: accelerations under the inputs, (15); 128 operations instead of 143 */
-front_car_bodies_status front_car_bodies_forward_dynamics_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_bodies_prepared_f *p, float qdd[4]);
-
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 133 operations instead of 148 */
-front_car_bodies_status front_car_bodies_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_bodies_prepared_f *p, float lambda_B[2]);
 
 #ifdef __cplusplus
 }

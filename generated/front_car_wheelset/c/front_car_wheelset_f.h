@@ -17,41 +17,41 @@
  * Operations                          + -      *      /   sqrt sincos  other
  * mass_matrix                           3      4      0      0      1      0
  * coriolis_matrix                       0      4      0      0      1      0
- * coriolis_force                        0      6      0      0      1      0
+ * coriolis_force                        0      5      0      0      1      0
  * potential_force                       0      0      0      0      0      0
  * applied_force                         0      0      0      0      0      0
  * constraint_jacobian                   2      5      0      0      2      0
  * constraint_jacobian_dot               3     10      0      0      2      0
  * constraint_pseudoinverse              7     23      2      0      2      0
- * nullspace_projector                   3     17      1      0      2      0
- * nullspace_projector_dot              15     60      2      0      2      0
- * weighted_pseudoinverse               17     46      3      0      2      0
- * weighted_nullspace_projector         15     53      4      0      2      0
+ * nullspace_projector                   3     16      1      0      2      0
+ * nullspace_projector_dot              14     52      2      0      2      0
+ * weighted_pseudoinverse               16     45      3      0      2      0
+ * weighted_nullspace_projector         16     52      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
- * projected_control_matrix              3     14      3      0      2      0
+ * projected_control_matrix              3     12      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 1      5      2      0      2      0
- * projected_mass_matrix                12     48      5      0      2      0
- * projected_coriolis_matrix            80    216      5      0      2      0
+ * projected_mass_matrix                12     41      5      0      2      0
+ * projected_coriolis_matrix            79    186      5      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   6     11      2      0      2      0
- * minimal_coriolis_matrix              17     46      2      0      2      0
+ * minimal_coriolis_matrix              17     41      2      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
- * admissible_velocity                   5     20      2      0      2      0
- * admissible_acceleration              17     75      2      0      2      0
+ * admissible_velocity                   5     17      2      0      2      0
+ * admissible_acceleration              17     53      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
  * inverse_dynamics                     10     15      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
  * actuator_mass_matrix                  4      7      1      0      1      0
- * actuator_bias                        12     29      2      0      2      0
- * forward_dynamics                     41     89      1      0      2      0
- * multipliers                          43     90      1      0      2      0
- * energy                                8     15      0      0      1      0
- * singularity                          12     26      5      1      2      0
+ * actuator_bias                        12     28      2      0      2      0
+ * forward_dynamics                     38     86      1      0      2      0
+ * multipliers                          42     88      1      0      2      0
+ * energy                                8     14      0      0      1      0
+ * singularity                          12     23      5      1      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

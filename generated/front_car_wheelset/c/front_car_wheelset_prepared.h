@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[13];
+    double value[15];
 } front_car_wheelset_prepared;
 
 front_car_wheelset_prepared front_car_wheelset_prepare(const front_car_wheelset_params *p);
@@ -22,10 +22,10 @@ front_car_wheelset_prepared front_car_wheelset_prepare(const front_car_wheelset_
 /* u: the smallest inputs that produce the motion, (27); 25 operations instead of 30 */
 front_car_wheelset_status front_car_wheelset_inverse_dynamics_prepared(const double q[4], const double qd[4], const double qdd[4], const front_car_wheelset_prepared *p, double u[2]);
 
-/* q̈: accelerations under the inputs, (15); 126 operations instead of 144 */
+/* q̈: accelerations under the inputs, (15); 122 operations instead of 138 */
 front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_prepared *p, double qdd[4]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 126 operations instead of 144 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 124 operations instead of 141 */
 front_car_wheelset_status front_car_wheelset_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus

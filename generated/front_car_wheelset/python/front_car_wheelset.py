@@ -15,41 +15,41 @@ Inputs u:
 Operations                          + -      *      /   sqrt sincos  other
 mass_matrix                           3      4      0      0      1      0
 coriolis_matrix                       0      4      0      0      1      0
-coriolis_force                        0      6      0      0      1      0
+coriolis_force                        0      5      0      0      1      0
 potential_force                       0      0      0      0      0      0
 applied_force                         0      0      0      0      0      0
 constraint_jacobian                   2      5      0      0      2      0
 constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
-nullspace_projector                   3     17      1      0      2      0
-nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     46      3      0      2      0
-weighted_nullspace_projector         15     53      4      0      2      0
+nullspace_projector                   3     16      1      0      2      0
+nullspace_projector_dot              14     52      2      0      2      0
+weighted_pseudoinverse               16     45      3      0      2      0
+weighted_nullspace_projector         16     52      4      0      2      0
 control_matrix                        1      1      0      0      2      0
-projected_control_matrix              3     14      3      0      2      0
+projected_control_matrix              3     12      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
 orthogonal_complement                 1      5      2      0      2      0
-projected_mass_matrix                12     48      5      0      2      0
-projected_coriolis_matrix            80    216      5      0      2      0
+projected_mass_matrix                12     41      5      0      2      0
+projected_coriolis_matrix            79    186      5      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
 minimal_mass_matrix                   6     11      2      0      2      0
-minimal_coriolis_matrix              17     46      2      0      2      0
+minimal_coriolis_matrix              17     41      2      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      6      1      0      2      0
-admissible_velocity                   5     20      2      0      2      0
-admissible_acceleration              17     75      2      0      2      0
+admissible_velocity                   5     17      2      0      2      0
+admissible_acceleration              17     53      2      0      2      0
 projected_configuration               0      0      0      0      0      0
 inverse_dynamics                     10     15      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
 actuator_mass_matrix                  4      7      1      0      1      0
-actuator_bias                        12     29      2      0      2      0
-forward_dynamics                     41     89      1      0      2      0
-multipliers                          43     90      1      0      2      0
-energy                                8     15      0      0      1      0
-singularity                          12     26      5      1      2      0
+actuator_bias                        12     28      2      0      2      0
+forward_dynamics                     38     86      1      0      2      0
+multipliers                          42     88      1      0      2      0
+energy                                8     14      0      0      1      0
+singularity                          12     23      5      1      2      0
 (changes of sign are not counted)
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -302,15 +302,14 @@ def coriolis_force(q, qd, p=PARAMETERS):
         t2, t3 = _sincos(theta)
         t4 = L * m_2
         t5 = theta_dot * t4
-        t6 = theta_dot * t3
-        t7 = t5 * t6
+        t6 = theta_dot * t5
+        t7 = t3 * t6
         t8 = -t7
-        t9 = theta_dot * t2
-        t10 = t5 * t9
-        t11 = -t10
+        t9 = t2 * t6
+        t10 = -t9
         entries = (
             t8,
-            t11,
+            t10,
             0.0,
             0.0,
         )
@@ -470,27 +469,27 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t23 = t3 * t22
         t24 = t19 - t23
         t25 = t18 * t24
-        t26 = t6 * t3
-        t27 = t18 * t26
+        t26 = t3 * t18
+        t27 = t6 * t26
         t28 = t8 * t12
         t29 = t5 * t4
-        t30 = t29 + t26
-        t31 = t3 * t30
-        t32 = t28 + t31
-        t33 = t18 * t32
-        t34 = -t33
-        t35 = t18 * t21
-        t36 = L / t14
-        t37 = t4 * t4
-        t38 = t36 * t37
-        t39 = t4 * t36
-        t40 = -t39
+        t30 = t6 * t3
+        t31 = t29 + t30
+        t32 = t3 * t31
+        t33 = t28 + t32
+        t34 = t18 * t33
+        t35 = -t34
+        t36 = t5 * t26
+        t37 = L / t14
+        t38 = t4 * t37
+        t39 = t4 * t38
+        t40 = -t38
         entries = (
             t25,
             t27,
-            t34,
             t35,
-            t38,
+            t36,
+            t39,
             t40,
             0.0,
             0.0,
@@ -530,12 +529,11 @@ def nullspace_projector(q, p=PARAMETERS):
         t19 = t13 * t18
         t20 = t9 * t12
         t21 = t18 * t20
-        t22 = t5 * t12
-        t23 = t18 * t22
+        t22 = t5 * t18
+        t23 = t12 * t22
         t24 = t10 * t18
-        t25 = t5 * t9
-        t26 = t18 * t25
-        t27 = t7 * t18
+        t25 = t9 * t22
+        t26 = t7 * t18
         entries = (
             t19,
             t21,
@@ -543,11 +541,11 @@ def nullspace_projector(q, p=PARAMETERS):
             0.0,
             t21,
             t24,
-            t26,
+            t25,
             0.0,
             t23,
+            t25,
             t26,
-            t27,
             0.0,
             0.0,
             0.0,
@@ -592,81 +590,72 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t19 = t14 * t14
         t20 = t18 / t19
         t21 = t6 * t4
-        t22 = t5 * t4
-        t23 = 2.0 * t15
-        t24 = 2.0 * t7
-        t25 = t23 + t24
-        t26 = t22 * t25
+        t22 = phi_dot * t6
+        t23 = t3 * t22
+        t24 = 2.0 * t23
+        t25 = t5 * t4
+        t26 = t7 + t15
         t27 = theta_dot * t26
-        t28 = phi_dot * t6
-        t29 = t3 * t28
-        t30 = 2.0 * t29
-        t31 = t27 + t30
-        t32 = t21 * t31
-        t33 = t20 * t32
-        t34 = -t33
-        t35 = 2.0 * t18
-        t36 = (-2.0) + t35
+        t28 = 2.0 * t27
+        t29 = t25 * t28
+        t30 = t24 + t29
+        t31 = t21 * t30
+        t32 = t20 * t31
+        t33 = -t32
+        t34 = 2.0 * t18
+        t35 = (-2.0) + t34
+        t36 = t4 * t35
         t37 = t4 * t36
-        t38 = t4 * t37
-        t39 = 2.0 + t38
+        t38 = 2.0 + t37
+        t39 = t6 * t38
         t40 = t6 * t39
-        t41 = t6 * t40
-        t42 = t7 + t15
-        t43 = t41 - t42
-        t44 = t4 * t43
-        t45 = theta_dot * t44
-        t46 = phi_dot * t5
-        t47 = t6 * t46
-        t48 = t3 * t47
-        t49 = 2.0 * t48
-        t50 = t45 - t49
-        t51 = t4 * t50
-        t52 = t20 * t51
-        t53 = t4 * t28
-        t54 = t18 * t53
-        t55 = t5 * t3
-        t56 = t55 * t42
-        t57 = theta_dot * t56
-        t58 = t54 - t57
-        t59 = t4 * t58
-        t60 = t3 * t29
-        t61 = t59 - t60
-        t62 = L / t19
-        t63 = t61 * t62
-        t64 = t21 * t25
-        t65 = theta_dot * t64
-        t66 = t3 * t46
-        t67 = 2.0 * t66
-        t68 = t65 - t67
-        t69 = t22 * t68
-        t70 = t20 * t69
-        t71 = t6 * t3
-        t72 = t71 * t42
-        t73 = theta_dot * t72
-        t74 = t4 * t46
-        t75 = t18 * t74
-        t76 = t73 + t75
-        t77 = t4 * t76
-        t78 = t3 * t66
-        t79 = t77 - t78
-        t80 = t62 * t79
-        t81 = phi_dot * t4
-        t82 = t3 * t81
-        t83 = t20 * t82
-        t84 = 2.0 * t83
+        t41 = t40 - t26
+        t42 = t4 * t41
+        t43 = theta_dot * t42
+        t44 = phi_dot * t5
+        t45 = 2.0 * t3
+        t46 = t6 * t45
+        t47 = t44 * t46
+        t48 = t43 - t47
+        t49 = t4 * t20
+        t50 = t48 * t49
+        t51 = L / t19
+        t52 = t4 * t18
+        t53 = t22 * t52
+        t54 = t3 * t27
+        t55 = t5 * t54
+        t56 = t53 - t55
+        t57 = t4 * t56
+        t58 = t3 * t23
+        t59 = t57 - t58
+        t60 = t51 * t59
+        t61 = t21 * t28
+        t62 = t3 * t44
+        t63 = 2.0 * t62
+        t64 = t61 - t63
+        t65 = t25 * t64
+        t66 = t20 * t65
+        t67 = t44 * t52
+        t68 = t6 * t54
+        t69 = t67 + t68
+        t70 = t4 * t69
+        t71 = t3 * t62
+        t72 = t70 - t71
+        t73 = t51 * t72
+        t74 = t45 * t49
+        t75 = phi_dot * t74
         entries = (
-            t34,
-            t52,
-            t63,
+            t33,
+            t50,
+            t60,
             0.0,
-            t52,
-            t70,
-            t80,
+            t50,
+            t66,
+            t73,
             0.0,
-            t63,
-            t80,
-            t84,
+            t60,
+            t73,
+            t75,
             0.0,
             0.0,
             0.0,
@@ -700,18 +689,18 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t8 = L * t4
         t9 = t5 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t6 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t20 = m_1 * t4
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
@@ -724,64 +713,62 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t31 = t30 * t30
         t32 = t29 * t31
         t33 = t28 + t32
-        t34 = t27 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t29
-        t38 = t37 * t27
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = L * Theta_2
-        t45 = t5 * t4
-        t46 = m_1 * t45
-        t47 = t6 * t3
-        t48 = t45 + t47
-        t49 = m_2 * t48
-        t50 = t46 + t49
-        t51 = t44 * t50
-        t52 = t8 * t51
-        t53 = t6 * t4
-        t54 = t5 * t3
-        t55 = t53 - t54
-        t56 = m_2 * t19
-        t57 = Theta_1 + t56
-        t58 = Theta_2 * t57
-        t59 = t3 * t58
-        t60 = t55 * t59
-        t61 = t52 - t60
-        t62 = t43 * t61
-        t63 = t58 / t25
-        t64 = t47 * t63
-        t65 = m_1 * t53
-        t66 = m_2 * t55
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = 1.0 / t25
+        t42 = L * Theta_2
+        t43 = t8 * t42
+        t44 = t5 * t4
+        t45 = t6 * t3
+        t46 = t44 + t45
+        t47 = m_2 * t46
+        t48 = t5 * t20
+        t49 = t47 + t48
+        t50 = t43 * t49
+        t51 = t6 * t4
+        t52 = t5 * t3
+        t53 = t51 - t52
+        t54 = m_2 * t19
+        t55 = Theta_1 + t54
+        t56 = Theta_2 * t55
+        t57 = t3 * t56
+        t58 = t53 * t57
+        t59 = t50 - t58
+        t60 = t41 * t59
+        t61 = t56 / t25
+        t62 = t3 * t61
+        t63 = t6 * t62
+        t64 = t46 * t57
+        t65 = m_2 * t53
+        t66 = t6 * t20
         t67 = t65 + t66
-        t68 = t44 * t67
-        t69 = t8 * t68
-        t70 = t48 * t59
-        t71 = t69 + t70
-        t72 = t43 * t71
-        t73 = -t72
-        t74 = t54 * t63
-        t75 = t44 / t25
-        t76 = t22 * t75
-        t77 = m_1 + m_2
-        t78 = t4 * t77
-        t79 = t78 * t75
-        t80 = -t79
-        t81 = -t76
+        t68 = t43 * t67
+        t69 = t64 + t68
+        t70 = t41 * t69
+        t71 = -t70
+        t72 = t5 * t62
+        t73 = t42 / t25
+        t74 = t22 * t73
+        t75 = m_1 + m_2
+        t76 = t4 * t75
+        t77 = t76 * t73
+        t78 = -t77
+        t79 = -t74
         entries = (
-            t62,
-            t64,
-            t73,
+            t60,
+            t63,
+            t71,
+            t72,
             t74,
-            t76,
-            t80,
-            t81,
+            t78,
             t79,
+            t77,
         )
         return _result("weighted_pseudoinverse", status, batch, (4, 2), entries)
 
@@ -800,28 +787,28 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t4 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t20 = m_1 * t6
+        t21 = t6 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
@@ -834,70 +821,70 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t31 = t30 * t30
         t32 = t29 * t31
         t33 = t28 + t32
-        t34 = t27 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t29
-        t38 = t37 * t27
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = Theta_2 * t19
-        t44 = t43 / t25
-        t45 = t6 * t4
-        t46 = m_1 * t45
-        t47 = t5 * t3
-        t48 = t45 - t47
-        t49 = m_2 * t48
-        t50 = t46 + t49
-        t51 = t45 * t50
-        t52 = t44 * t51
-        t53 = t5 * t4
-        t54 = m_1 * t53
-        t55 = t6 * t3
-        t56 = t53 + t55
-        t57 = m_2 * t56
-        t58 = t54 + t57
-        t59 = t45 * t58
-        t60 = t44 * t59
-        t61 = t3 * t45
-        t62 = m_2 * t19
-        t63 = Theta_1 + t62
-        t64 = L * Theta_2
-        t65 = t63 * t64
-        t66 = t65 / t25
-        t67 = t61 * t66
-        t68 = t53 * t50
-        t69 = t44 * t68
-        t70 = t53 * t58
-        t71 = t44 * t70
-        t72 = t3 * t53
-        t73 = t72 * t66
-        t74 = t64 / t25
-        t75 = t3 * t50
-        t76 = t74 * t75
-        t77 = t3 * t58
-        t78 = t74 * t77
-        t79 = Theta_2 * t63
-        t80 = t79 / t25
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = t4 * t6
+        t42 = m_1 * t41
+        t43 = t3 * t5
+        t44 = t41 - t43
+        t45 = m_2 * t44
+        t46 = t42 + t45
+        t47 = Theta_2 * t19
+        t48 = t6 * t6
+        t49 = m_1 * t48
+        t50 = m_2 + t49
+        t51 = t19 * t50
+        t52 = t18 + t51
+        t53 = Theta_2 * t52
+        t54 = t47 / t53
+        t55 = t41 * t54
+        t56 = t46 * t55
+        t57 = t3 * t6
+        t58 = m_1 * t57
+        t59 = t4 * t5
+        t60 = t57 + t59
+        t61 = m_2 * t60
+        t62 = t58 + t61
+        t63 = t62 * t55
+        t64 = m_2 * t19
+        t65 = Theta_1 + t64
+        t66 = L * Theta_2
+        t67 = t65 * t66
+        t68 = t67 / t53
+        t69 = t5 * t68
+        t70 = t41 * t69
+        t71 = t57 * t54
+        t72 = t46 * t71
+        t73 = t62 * t71
+        t74 = t57 * t69
+        t75 = t66 / t53
+        t76 = t5 * t75
+        t77 = t46 * t76
+        t78 = t62 * t76
+        t79 = Theta_2 * t65
+        t80 = t79 / t53
         t81 = t7 * t80
-        t82 = -t76
+        t82 = -t77
         t83 = -t78
         t84 = m_1 + m_2
-        t85 = t84 * t20
-        t86 = t85 * t44
+        t85 = t84 * t48
+        t86 = t85 * t54
         entries = (
-            t52,
-            t60,
-            t67,
+            t56,
+            t63,
+            t70,
             0.0,
-            t69,
-            t71,
+            t72,
             t73,
+            t74,
             0.0,
-            t76,
+            t77,
             t78,
             t81,
             0.0,
@@ -950,39 +937,37 @@ def projected_control_matrix(q, p=PARAMETERS):
         theta = q[..., 2]
         phi = q[..., 3]
         L = np.float64(p.L)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = L * L
-        t19 = t6 * t18
-        t20 = t4 * t19
-        t21 = t20 / t14
-        t22 = t5 * t18
-        t23 = t4 * t22
+        t18 = L * t8
+        t19 = t4 * t18
+        t20 = t19 / t14
+        t21 = t3 * t18
+        t22 = t21 / t14
+        t23 = L * t5
         t24 = t23 / t14
-        t25 = L * t3
-        t26 = t25 / t14
         entries = (
-            t21,
+            t20,
+            0.0,
+            t22,
             0.0,
             t24,
-            0.0,
-            t26,
             0.0,
             0.0,
             1.0,
@@ -1060,23 +1045,15 @@ def orthogonal_complement(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t5 * t5
-            t14 = t3 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = t3 / t4
-        t19 = t5 / t8
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = t3 / t4
+        t14 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t18,
+            t13,
             0.0,
-            t19,
+            t14,
             0.0,
             0.0,
             1.0,
@@ -1098,94 +1075,87 @@ def projected_mass_matrix(q, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = L * L
-        t19 = t14 * t14
-        t20 = t18 / t19
-        t21 = t6 * t6
-        t22 = t4 * t21
-        t23 = t4 * t22
-        t24 = m_2 * t18
-        t25 = Theta_1 + t24
-        t26 = Theta_2 + t25
-        t27 = m_1 + m_2
-        t28 = t27 * t18
-        t29 = t28 - t26
-        t30 = t4 * t29
-        t31 = t4 * t30
-        t32 = t26 + t31
-        t33 = t23 * t32
-        t34 = t20 * t33
-        t35 = t5 * t6
-        t36 = t4 * t35
-        t37 = t4 * t36
-        t38 = t4 * t4
-        t39 = t38 * t28
-        t40 = t7 * t26
-        t41 = t39 + t40
-        t42 = t37 * t41
-        t43 = t20 * t42
-        t44 = L / t19
-        t45 = t6 * t4
-        t46 = t3 * t45
-        t47 = t46 * t41
-        t48 = t44 * t47
-        t49 = L * Theta_2
-        t50 = t49 / t14
-        t51 = t46 * t50
-        t52 = t5 * t5
-        t53 = t4 * t52
-        t54 = t4 * t53
-        t55 = t54 * t32
-        t56 = t20 * t55
-        t57 = t5 * t4
-        t58 = t3 * t57
-        t59 = t58 * t41
-        t60 = t44 * t59
-        t61 = t58 * t50
-        t62 = t38 + (-2.0)
-        t63 = t26 * t62
-        t64 = t7 * t28
-        t65 = t63 + t64
-        t66 = t4 * t65
-        t67 = t4 * t66
-        t68 = t26 + t67
-        t69 = t68 / t19
-        t70 = Theta_2 / t14
-        t71 = t7 * t70
+        t18 = t4 * t6
+        t19 = L * L
+        t20 = m_2 * t19
+        t21 = Theta_1 + t20
+        t22 = Theta_2 + t21
+        t23 = m_1 + m_2
+        t24 = t23 * t19
+        t25 = t24 - t22
+        t26 = t6 * t25
+        t27 = t6 * t26
+        t28 = t22 + t27
+        t29 = t14 * t14
+        t30 = t19 / t29
+        t31 = t6 * t30
+        t32 = t28 * t31
+        t33 = t18 * t32
+        t34 = t4 * t33
+        t35 = t6 * t6
+        t36 = t35 * t24
+        t37 = t7 * t22
+        t38 = t36 + t37
+        t39 = t3 * t6
+        t40 = t39 * t30
+        t41 = t18 * t40
+        t42 = t38 * t41
+        t43 = t5 * t18
+        t44 = L / t29
+        t45 = t44 * t38
+        t46 = t43 * t45
+        t47 = L * Theta_2
+        t48 = t47 / t14
+        t49 = t43 * t48
+        t50 = t39 * t32
+        t51 = t3 * t50
+        t52 = t5 * t39
+        t53 = t52 * t45
+        t54 = t52 * t48
+        t55 = t35 + (-2.0)
+        t56 = t22 * t55
+        t57 = t7 * t24
+        t58 = t56 + t57
+        t59 = t6 * t58
+        t60 = t6 * t59
+        t61 = t22 + t60
+        t62 = t61 / t29
+        t63 = Theta_2 / t14
+        t64 = t7 * t63
         entries = (
             t34,
-            t43,
-            t48,
+            t42,
+            t46,
+            t49,
+            t42,
             t51,
-            t43,
-            t56,
-            t60,
-            t61,
-            t48,
-            t60,
-            t69,
-            t71,
-            t51,
-            t61,
-            t71,
+            t53,
+            t54,
+            t46,
+            t53,
+            t62,
+            t64,
+            t49,
+            t54,
+            t64,
             Theta_2,
         )
         return _result("projected_mass_matrix", status, batch, (4, 4), entries)
@@ -1210,330 +1180,299 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t31 = phi_dot * t4
+        t32 = t5 * t31
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
+        t33 = t14 * t32
+        t121 = t5 * t14
+        t163 = t32 * t121
         t15 = t8 * t8
+        t35 = theta_dot * t5
+        t36 = x_dot * t4
+        t37 = y_dot * t3
+        t38 = t36 + t37
+        t39 = t8 * t38
+        t40 = t35 + t39
+        t19 = L * L
+        t28 = m_1 + m_2
+        t25 = m_2 * t19
+        t26 = Theta_1 + t25
+        t27 = Theta_2 + t26
+        t29 = 2.0 * t28
+        t30 = t27 - t29
+        t34 = t30 * t33
+        t43 = t6 * t6
+        t44 = t43 + (-2.0)
+        t47 = m_2 * t4
+        t49 = t3 * t6
+        t50 = t5 * t49
+        t51 = t28 * t19
+        t55 = t3 * t5
+        t56 = t28 + t27
+        t57 = t55 * t56
+        t69 = t5 * t27
+        t70 = t14 * t31
+        t71 = 2.0 - t43
+        t78 = t27 * t40
+        t79 = t55 * t78
+        t41 = L * t5
+        t42 = t41 * t41
+        t45 = t14 + t44
+        t46 = t42 + t45
+        t48 = t46 * t47
+        t52 = t50 * t51
+        t53 = t48 - t52
+        t54 = t6 * t53
+        t58 = t5 * t57
+        t59 = t5 * t58
+        t60 = t54 - t59
+        t61 = t6 * t60
+        t62 = t7 + t15
+        t63 = 1.0 - t62
+        t64 = t63 * t47
+        t65 = t61 + t64
+        t66 = t40 * t65
+        t67 = t34 + t66
+        t68 = t19 * t67
+        t72 = t49 * t71
+        t73 = t40 * t72
+        t74 = t70 + t73
+        t75 = t69 * t74
+        t76 = t68 + t75
+        t77 = t6 * t76
+        t80 = t77 - t79
+        t81 = t6 * t80
+        t82 = t27 * t33
+        t83 = t81 - t82
+        t18 = t4 * t6
+        t102 = (-2.0) + t42
+        t109 = t7 * t14
+        t110 = 1.0 - t109
+        t140 = t71 * t78
+        t141 = t50 * t140
+        t142 = m_2 * t18
+        t143 = 1.0 - t19
+        t144 = t28 * t143
+        t145 = t27 + t144
+        t146 = t55 * t145
+        t147 = t142 + t146
+        t148 = t6 * t147
+        t149 = t102 * t47
+        t150 = t148 + t149
+        t151 = t6 * t150
+        t152 = t151 - t57
+        t153 = t6 * t152
+        t154 = t110 * t47
+        t155 = t153 + t154
+        t156 = t40 * t155
+        t157 = t34 + t156
+        t158 = t19 * t157
+        t159 = t141 + t158
+        t160 = t6 * t159
+        t161 = t160 - t79
+        t162 = t6 * t161
+        t164 = t69 * t163
+        t165 = t162 - t164
+        t111 = m_2 * t110
+        t90 = phi_dot * t3
+        t91 = t5 * t90
+        t122 = t91 * t121
+        t85 = t4 * t5
+        t87 = t5 * t18
+        t103 = m_2 * t102
+        t86 = t85 * t78
+        t88 = t44 * t78
+        t89 = t87 * t88
+        t92 = t14 * t91
+        t93 = t30 * t92
+        t94 = t85 * t56
+        t95 = m_2 * t49
+        t96 = (-1.0) + t19
+        t97 = t28 * t96
+        t98 = t97 - t27
+        t99 = t85 * t98
+        t100 = t95 + t99
+        t101 = t6 * t100
+        t104 = t3 * t103
+        t105 = t101 + t104
+        t106 = t6 * t105
+        t107 = t94 + t106
+        t108 = t6 * t107
+        t112 = t3 * t111
+        t113 = t108 + t112
+        t114 = t40 * t113
+        t115 = t93 + t114
+        t116 = t19 * t115
+        t117 = t89 + t116
+        t118 = t6 * t117
+        t119 = t86 + t118
+        t120 = t6 * t119
+        t123 = t69 * t122
+        t124 = t120 - t123
+        t128 = t6 * t14
+        t177 = t31 * t128
+        t185 = t71 - t42
+        t171 = t6 * t43
+        t172 = t6 * t171
+        t173 = 3.0 * t7
+        t174 = t172 + t173
+        t175 = t174 * t40
+        t170 = 2.0 * t70
+        t176 = t3 * t175
+        t178 = t176 - t177
+        t179 = t6 * t178
+        t180 = t170 + t179
+        t181 = t27 * t180
+        t182 = t85 * t111
+        t183 = m_2 * t87
+        t184 = t27 * t71
+        t186 = t28 * t185
+        t187 = t184 + t186
+        t188 = t3 * t187
+        t189 = t183 + t188
+        t190 = t6 * t189
+        t191 = t85 * t103
+        t192 = t190 + t191
+        t193 = t6 * t192
+        t194 = t3 * t56
+        t195 = t193 - t194
+        t196 = t6 * t195
+        t197 = t182 + t196
+        t198 = t40 * t197
+        t199 = t30 * t163
+        t200 = t198 + t199
+        t201 = t19 * t200
+        t202 = t181 + t201
+        t203 = t6 * t202
+        t204 = t3 * t78
+        t205 = t203 - t204
+        t206 = t6 * t205
+        t207 = t27 * t70
+        t208 = t206 - t207
+        t211 = t14 * t90
+        t214 = t90 * t128
+        t221 = t43 + t102
+        t210 = t4 * t78
+        t212 = 2.0 * t211
+        t213 = t4 * t175
+        t215 = t213 + t214
+        t216 = t6 * t215
+        t217 = t212 - t216
+        t218 = t27 * t217
+        t219 = t4 * t56
+        t220 = t27 * t44
+        t222 = t28 * t221
+        t223 = t220 + t222
+        t224 = t4 * t223
+        t225 = m_2 * t50
+        t226 = t224 + t225
+        t227 = t6 * t226
+        t228 = t55 * t103
+        t229 = t227 + t228
+        t230 = t6 * t229
+        t231 = t219 + t230
+        t232 = t6 * t231
+        t233 = t55 * t111
+        t234 = t232 + t233
+        t235 = t40 * t234
+        t236 = t30 * t122
+        t237 = t235 + t236
+        t238 = t19 * t237
+        t239 = t218 + t238
+        t240 = t6 * t239
+        t241 = t210 + t240
+        t242 = t6 * t241
+        t243 = t27 * t211
+        t244 = t242 - t243
+        t129 = t43 * t51
+        t130 = 2.0 * t27
+        t131 = t130 - t28
+        t132 = t5 * t131
+        t133 = t5 * t132
+        t134 = t129 + t133
+        t252 = t19 * t177
+        t253 = t6 * t185
+        t254 = t6 * t253
+        t255 = (-1.0) + t254
+        t256 = t255 * t40
+        t257 = t3 * t256
+        t258 = t252 + t257
+        t259 = t6 * t258
+        t260 = t259 - t163
+        t262 = t6 * t221
+        t263 = t6 * t262
+        t264 = 1.0 + t263
+        t265 = t264 * t40
+        t266 = t4 * t265
+        t267 = t19 * t214
+        t268 = t266 + t267
+        t269 = t6 * t268
+        t270 = t269 - t122
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = L * L
-        t19 = t14 * t14
-        t20 = t14 * t19
+        t20 = t14 * t14
+        t246 = phi_dot * t5
+        t272 = Theta_2 * t19
+        t274 = 2.0 * t246
+        t275 = t6 * t274
+        t273 = t272 / t20
+        t276 = t273 * t275
         t21 = t14 * t20
-        t22 = t18 / t21
-        t23 = t6 * t4
-        t24 = m_2 * t18
-        t25 = Theta_1 + t24
-        t26 = Theta_2 + t25
-        t27 = t4 * t4
-        t28 = 2.0 - t27
-        t29 = x_dot * t6
-        t30 = y_dot * t5
-        t31 = t29 + t30
-        t32 = t4 * t31
-        t33 = L * t32
-        t34 = theta_dot * t3
-        t35 = t33 + t34
-        t36 = t4 * t35
-        t37 = t28 * t36
-        t38 = t5 * t37
-        t39 = phi_dot * t6
-        t40 = t14 * t39
-        t41 = t38 + t40
-        t42 = t3 * t41
-        t43 = t26 * t42
-        t44 = L * t3
-        t45 = t44 * t44
-        t46 = t27 + (-2.0)
-        t47 = t14 + t46
-        t48 = t45 + t47
-        t49 = t6 * t48
-        t50 = m_2 * t49
-        t51 = t5 * t4
-        t52 = t3 * t51
-        t53 = m_1 + m_2
-        t54 = t53 * t18
-        t55 = t52 * t54
-        t56 = t50 - t55
-        t57 = t4 * t56
-        t58 = t53 + t26
-        t59 = t5 * t3
-        t60 = t3 * t59
-        t61 = t3 * t60
-        t62 = t58 * t61
-        t63 = t57 - t62
-        t64 = t4 * t63
-        t65 = t7 + t15
-        t66 = 1.0 - t65
-        t67 = t6 * t66
-        t68 = m_2 * t67
-        t69 = t64 + t68
-        t70 = t35 * t69
-        t71 = 2.0 * t53
-        t72 = t26 - t71
-        t73 = t3 * t39
-        t74 = t14 * t73
-        t75 = t72 * t74
-        t76 = t70 + t75
-        t77 = t18 * t76
-        t78 = t43 + t77
-        t79 = t4 * t78
-        t80 = t35 * t59
-        t81 = t26 * t80
-        t82 = t79 - t81
-        t83 = t4 * t82
-        t84 = t26 * t74
-        t85 = t83 - t84
-        t86 = t23 * t85
-        t87 = t22 * t86
-        t88 = t6 * t3
-        t89 = t35 * t88
-        t90 = t26 * t89
-        t91 = t3 * t23
-        t92 = t35 * t91
-        t93 = t46 * t92
-        t94 = t26 * t93
-        t95 = (-1.0) + t18
-        t96 = t53 * t95
-        t97 = t96 - t26
-        t98 = t3 * t97
-        t99 = t6 * t98
-        t100 = m_2 * t51
-        t101 = t99 + t100
-        t102 = t4 * t101
-        t103 = (-2.0) + t45
-        t104 = t5 * t103
-        t105 = m_2 * t104
-        t106 = t102 + t105
-        t107 = t4 * t106
-        t108 = t88 * t58
-        t109 = t107 + t108
-        t110 = t4 * t109
-        t111 = t7 * t14
-        t112 = 1.0 - t111
-        t113 = t5 * t112
-        t114 = m_2 * t113
-        t115 = t110 + t114
-        t116 = t35 * t115
-        t117 = phi_dot * t5
-        t118 = t3 * t117
-        t119 = t14 * t118
-        t120 = t72 * t119
-        t121 = t116 + t120
-        t122 = t18 * t121
-        t123 = t94 + t122
-        t124 = t4 * t123
-        t125 = t90 + t124
-        t126 = t4 * t125
-        t127 = t3 * t118
-        t128 = t3 * t127
-        t129 = t14 * t128
-        t130 = t26 * t129
-        t131 = t126 - t130
-        t132 = t23 * t131
-        t133 = t22 * t132
-        t134 = L * t18
-        t135 = t134 / t21
-        t136 = t4 * t23
-        t137 = t27 * t54
-        t138 = 2.0 * t26
-        t139 = t138 - t53
-        t140 = t3 * t139
-        t141 = t3 * t140
-        t142 = t137 + t141
-        t143 = phi_dot * t14
-        t144 = t142 * t143
-        t145 = t136 * t144
-        t146 = t135 * t145
-        t147 = t35 * t52
-        t148 = t28 * t147
-        t149 = t26 * t148
-        t150 = 1.0 - t18
-        t151 = t53 * t150
-        t152 = t26 + t151
-        t153 = t3 * t152
-        t154 = t5 * t153
-        t155 = m_2 * t23
-        t156 = t154 + t155
-        t157 = t4 * t156
-        t158 = t6 * t103
-        t159 = m_2 * t158
-        t160 = t157 + t159
-        t161 = t4 * t160
-        t162 = t59 * t58
-        t163 = t161 - t162
-        t164 = t4 * t163
-        t165 = t6 * t112
-        t166 = m_2 * t165
-        t167 = t164 + t166
-        t168 = t35 * t167
-        t169 = t75 + t168
-        t170 = t18 * t169
-        t171 = t149 + t170
-        t172 = t4 * t171
-        t173 = t172 - t81
-        t174 = t4 * t173
-        t175 = t3 * t73
-        t176 = t3 * t175
-        t177 = t14 * t176
-        t178 = t26 * t177
-        t179 = t174 - t178
-        t180 = t51 * t179
-        t181 = t22 * t180
-        t182 = t51 * t131
-        t183 = t22 * t182
-        t184 = t4 * t51
-        t185 = t184 * t144
-        t186 = t135 * t185
-        t187 = L / t21
-        t188 = t4 * t27
-        t189 = t4 * t188
-        t190 = 3.0 * t7
-        t191 = t189 + t190
-        t192 = t35 * t191
-        t193 = t5 * t192
-        t194 = t4 * t39
-        t195 = t14 * t194
-        t196 = t193 - t195
-        t197 = t4 * t196
-        t198 = 2.0 * t40
-        t199 = t197 + t198
-        t200 = t26 * t199
-        t201 = 2.0 - t45
-        t202 = t201 - t27
-        t203 = t53 * t202
-        t204 = t26 * t28
-        t205 = t203 + t204
-        t206 = t5 * t205
-        t207 = m_2 * t91
-        t208 = t206 + t207
-        t209 = t4 * t208
-        t210 = t88 * t103
-        t211 = m_2 * t210
-        t212 = t209 + t211
-        t213 = t4 * t212
-        t214 = t5 * t58
-        t215 = t213 - t214
-        t216 = t4 * t215
-        t217 = t88 * t112
-        t218 = m_2 * t217
-        t219 = t216 + t218
-        t220 = t35 * t219
-        t221 = t14 * t175
-        t222 = t72 * t221
-        t223 = t220 + t222
-        t224 = t18 * t223
-        t225 = t200 + t224
-        t226 = t4 * t225
-        t227 = t5 * t35
-        t228 = t26 * t227
-        t229 = t226 - t228
-        t230 = t4 * t229
-        t231 = t26 * t40
-        t232 = t230 - t231
-        t233 = t187 * t232
-        t234 = t6 * t35
-        t235 = t26 * t234
-        t236 = t14 * t117
-        t237 = 2.0 * t236
-        t238 = t6 * t192
-        t239 = t4 * t117
-        t240 = t14 * t239
-        t241 = t238 + t240
-        t242 = t4 * t241
-        t243 = t237 - t242
-        t244 = t26 * t243
-        t245 = t26 * t46
-        t246 = t27 + t103
-        t247 = t53 * t246
-        t248 = t245 + t247
-        t249 = t6 * t248
-        t250 = m_2 * t52
-        t251 = t249 + t250
-        t252 = t4 * t251
-        t253 = t59 * t103
-        t254 = m_2 * t253
-        t255 = t252 + t254
-        t256 = t4 * t255
-        t257 = t6 * t58
-        t258 = t256 + t257
-        t259 = t4 * t258
-        t260 = t59 * t112
-        t261 = m_2 * t260
-        t262 = t259 + t261
-        t263 = t35 * t262
-        t264 = t14 * t127
-        t265 = t72 * t264
-        t266 = t263 + t265
-        t267 = t18 * t266
-        t268 = t244 + t267
-        t269 = t4 * t268
-        t270 = t235 + t269
-        t271 = t4 * t270
-        t272 = t26 * t236
-        t273 = t271 - t272
-        t274 = t187 * t273
-        t275 = phi_dot * t3
-        t276 = t14 * t275
-        t277 = t276 * t142
-        t278 = t4 * t277
-        t279 = t22 * t278
-        t280 = t4 * t202
-        t281 = t4 * t280
-        t282 = (-1.0) + t281
-        t283 = t35 * t282
-        t284 = t5 * t283
-        t285 = t18 * t195
-        t286 = t284 + t285
-        t287 = t4 * t286
-        t288 = t287 - t221
-        t289 = L * Theta_2
-        t290 = t289 / t20
-        t291 = t288 * t290
-        t292 = t4 * t246
-        t293 = t4 * t292
-        t294 = 1.0 + t293
-        t295 = t35 * t294
-        t296 = t6 * t295
-        t297 = t18 * t240
-        t298 = t296 + t297
-        t299 = t4 * t298
-        t300 = t299 - t264
-        t301 = t290 * t300
-        t302 = phi_dot * t4
-        t303 = t3 * t302
-        t304 = Theta_2 * t18
-        t305 = t304 / t19
-        t306 = t303 * t305
-        t307 = 2.0 * t306
+        t22 = t14 * t21
+        t23 = t19 / t22
+        t24 = t18 * t23
+        t84 = t24 * t83
+        t125 = t24 * t124
+        t139 = t49 * t23
+        t166 = t139 * t165
+        t167 = t139 * t124
+        t247 = t23 * t128
+        t248 = t246 * t247
+        t249 = t134 * t248
+        t135 = phi_dot * t134
+        t136 = t128 * t135
+        t126 = L * t19
+        t127 = t126 / t22
+        t137 = t127 * t136
+        t138 = t18 * t137
+        t168 = t49 * t137
+        t169 = L / t22
+        t209 = t169 * t208
+        t245 = t169 * t244
+        t250 = L * Theta_2
+        t251 = t250 / t21
+        t261 = t251 * t260
+        t271 = t251 * t270
         entries = (
-            t87,
-            t133,
-            t146,
+            t84,
+            t125,
+            t138,
             0.0,
-            t181,
-            t183,
-            t186,
+            t166,
+            t167,
+            t168,
             0.0,
-            t233,
-            t274,
-            t279,
+            t209,
+            t245,
+            t249,
             0.0,
-            t291,
-            t301,
-            t307,
+            t261,
+            t271,
+            t276,
             0.0,
         )
         return _result("projected_coriolis_matrix", status, batch, (4, 4), entries)
@@ -1598,32 +1537,24 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t3 * t3
-            t14 = t5 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = L * L
-        t19 = m_2 * t18
-        t20 = Theta_1 + t19
-        t21 = Theta_2 + t20
-        t22 = m_1 + m_2
-        t23 = t22 * t18
-        t24 = t23 - t21
-        t25 = t4 * t24
-        t26 = t4 * t25
-        t27 = t21 + t26
-        t28 = t27 / t9
-        t29 = t3 / t8
-        t30 = Theta_2 * t29
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = L * L
+        t14 = m_2 * t13
+        t15 = Theta_1 + t14
+        t16 = Theta_2 + t15
+        t17 = m_1 + m_2
+        t18 = t17 * t13
+        t19 = t18 - t16
+        t20 = t4 * t19
+        t21 = t4 * t20
+        t22 = t16 + t21
+        t23 = t22 / t9
+        t24 = t3 / t8
+        t25 = Theta_2 * t24
         entries = (
-            t28,
-            t30,
-            t30,
+            t23,
+            t25,
+            t25,
             Theta_2,
         )
         return _result("minimal_mass_matrix", status, batch, (2, 2), entries)
@@ -1664,10 +1595,7 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        _failed_ = ~np.asarray(t13 > t17)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
-            status = _first(status, _failed_, 2)
+        status = _first(status, ~np.asarray(t13 > t17), 2)
         t18 = L * L
         t19 = m_2 * t18
         t20 = Theta_1 + t19
@@ -1677,55 +1605,50 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t24 = t21 * t23
         t25 = theta_dot * t5
         t26 = t21 * t25
-        t27 = (-1.0) + t18
-        t28 = t23 * t27
-        t29 = t21 * t28
-        t30 = t5 * t4
-        t31 = t4 * t4
-        t32 = t31 + (-2.0)
-        t33 = t30 * t32
-        t34 = t21 * t33
-        t35 = m_1 + m_2
-        t36 = t35 * t18
-        t37 = t31 * t36
-        t38 = t35 + t21
-        t39 = t7 * t38
-        t40 = t37 + t39
-        t41 = t30 * t40
-        t42 = t18 * t41
-        t43 = t34 + t42
-        t44 = theta_dot * t43
-        t45 = t29 + t44
-        t46 = t4 * t45
-        t47 = t26 + t46
-        t48 = t4 * t47
-        t49 = t24 + t48
-        t50 = t6 * t18
-        t51 = t6 * t50
+        t27 = t5 * t4
+        t28 = t4 * t4
+        t29 = t28 + (-2.0)
+        t30 = t27 * t29
+        t31 = t21 * t30
+        t32 = m_1 + m_2
+        t33 = t32 * t18
+        t34 = t28 * t33
+        t35 = t32 + t21
+        t36 = t7 * t35
+        t37 = t34 + t36
+        t38 = t27 * t37
+        t39 = t18 * t38
+        t40 = t31 + t39
+        t41 = theta_dot * t40
+        t42 = (-1.0) + t18
+        t43 = t42 * t24
+        t44 = t41 + t43
+        t45 = t4 * t44
+        t46 = t26 + t45
+        t47 = t4 * t46
+        t48 = t24 + t47
+        t49 = t6 * t4
+        t50 = t14 * t49
+        t51 = t18 * t49
         t52 = t6 * t51
         t53 = t4 * t52
-        t54 = t4 * t53
-        t55 = t4 * t54
-        t56 = t14 * t55
-        t57 = t49 / t56
-        t58 = t6 * t12
+        t54 = t50 * t53
+        t55 = t48 / t54
+        t56 = t12 * t50
+        t57 = Theta_2 / t56
+        t58 = t3 * t25
         t59 = t4 * t58
-        t60 = t14 * t59
-        t61 = Theta_2 / t60
-        t62 = t3 * t25
-        t63 = t4 * t25
-        t64 = t3 * t63
+        t60 = t22 + t59
+        t61 = t42 * t60
+        t62 = t4 * t61
+        t63 = t58 + t62
+        t64 = t4 * t63
         t65 = t22 + t64
-        t66 = t27 * t65
-        t67 = t4 * t66
-        t68 = t62 + t67
-        t69 = t4 * t68
-        t70 = t22 + t69
-        t71 = t61 * t70
+        t66 = t57 * t65
         entries = (
-            t57,
+            t55,
             0.0,
-            t71,
+            t66,
             0.0,
         )
         return _result("minimal_coriolis_matrix", status, batch, (2, 2), entries)
@@ -1782,19 +1705,11 @@ def minimal_control_matrix(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t5 * t5
-            t14 = t3 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = t4 * t6
-        t19 = 1.0 / t18
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = t4 * t6
+        t14 = 1.0 / t13
         entries = (
-            t19,
+            t14,
             0.0,
             0.0,
             1.0,
@@ -1817,18 +1732,18 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         theta_dot = qd[..., 2]
         phi_dot = qd[..., 3]
         L = np.float64(p.L)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
@@ -1836,25 +1751,22 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L / t14
-        t19 = x_dot * t6
-        t20 = y_dot * t5
-        t21 = t19 + t20
-        t22 = t4 * t21
-        t23 = L * t22
-        t24 = theta_dot * t3
-        t25 = t23 + t24
-        t26 = t6 * t4
-        t27 = t25 * t26
-        t28 = t18 * t27
-        t29 = t5 * t4
-        t30 = t25 * t29
-        t31 = t18 * t30
-        t32 = t3 * t25
-        t33 = t32 / t14
+        t19 = theta_dot * t5
+        t20 = x_dot * t4
+        t21 = y_dot * t3
+        t22 = t20 + t21
+        t23 = t8 * t22
+        t24 = t19 + t23
+        t25 = t6 * t24
+        t26 = t18 * t25
+        t27 = t4 * t26
+        t28 = t3 * t26
+        t29 = t5 * t24
+        t30 = t29 / t14
         entries = (
+            t27,
             t28,
-            t31,
-            t33,
+            t30,
             phi_dot,
         )
         return _result("admissible_velocity", status, batch, (4,), entries)
@@ -1898,93 +1810,71 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = y_ddot * t6
+        t18 = t14 * t14
         t19 = t14 * t18
-        t20 = t14 * t19
-        t21 = x_dot * t6
-        t22 = y_dot * t5
-        t23 = t21 + t22
-        t24 = t4 * t23
-        t25 = L * t24
-        t26 = theta_dot * t3
+        t20 = L / t19
+        t21 = t6 * t14
+        t22 = t14 * t21
+        t23 = y_ddot * t22
+        t24 = theta_dot * t3
+        t25 = x_dot * t6
+        t26 = y_dot * t5
         t27 = t25 + t26
-        t28 = t8 * t3
-        t29 = t27 * t28
-        t30 = t27 * t29
-        t31 = t20 - t30
-        t32 = t5 * t31
-        t33 = x_ddot * t6
-        t34 = t6 * t33
-        t35 = t14 * t34
-        t36 = t14 * t35
-        t37 = t32 + t36
-        t38 = t4 * t37
-        t39 = L * t38
-        t40 = theta_ddot * t6
-        t41 = t14 * t40
-        t42 = t14 * t41
-        t43 = t5 * t3
+        t28 = t8 * t27
+        t29 = t24 + t28
+        t30 = t3 * t29
+        t31 = t29 * t30
+        t32 = t8 * t31
+        t33 = t23 - t32
+        t34 = t5 * t33
+        t35 = x_ddot * t6
+        t36 = t35 * t22
+        t37 = t34 + t36
+        t38 = t8 * t37
+        t39 = theta_ddot * t14
+        t40 = t21 * t39
+        t41 = t5 * t31
+        t42 = t3 * t41
+        t43 = t40 - t42
         t44 = t3 * t43
-        t45 = t27 * t44
-        t46 = t27 * t45
-        t47 = t42 - t46
-        t48 = t3 * t47
-        t49 = t39 + t48
-        t50 = t4 * t49
-        t51 = phi_dot * t6
-        t52 = t3 * t51
-        t53 = t14 * t52
-        t54 = t27 * t53
-        t55 = t50 - t54
-        t56 = t14 * t14
-        t57 = t14 * t56
-        t58 = L / t57
-        t59 = t55 * t58
-        t60 = y_ddot * t5
-        t61 = t33 + t60
-        t62 = t56 * t61
-        t63 = t5 * t62
-        t64 = t6 * t4
-        t65 = t3 * t64
-        t66 = t27 * t65
-        t67 = t27 * t66
-        t68 = L * t67
-        t69 = t63 + t68
-        t70 = t4 * t69
-        t71 = L * t70
-        t72 = theta_ddot * t5
-        t73 = t14 * t72
-        t74 = t14 * t73
-        t75 = t6 * t3
+        t45 = t38 + t44
+        t46 = t4 * t45
+        t47 = phi_dot * t30
+        t48 = t21 * t47
+        t49 = t46 - t48
+        t50 = t20 * t49
+        t51 = y_ddot * t5
+        t52 = t35 + t51
+        t53 = t18 * t52
+        t54 = t5 * t53
+        t55 = t6 * t31
+        t56 = t8 * t55
+        t57 = t54 + t56
+        t58 = t8 * t57
+        t59 = t5 * t14
+        t60 = t39 * t59
+        t61 = t3 * t55
+        t62 = t60 + t61
+        t63 = t3 * t62
+        t64 = t58 + t63
+        t65 = t4 * t64
+        t66 = t47 * t59
+        t67 = t65 - t66
+        t68 = t20 * t67
+        t69 = t14 * t52
+        t70 = t3 * t69
+        t71 = phi_dot * t29
+        t72 = L * t71
+        t73 = t70 + t72
+        t74 = t8 * t73
+        t75 = t3 * t39
         t76 = t3 * t75
-        t77 = t27 * t76
-        t78 = t27 * t77
-        t79 = t74 + t78
-        t80 = t3 * t79
-        t81 = t71 + t80
-        t82 = t4 * t81
-        t83 = phi_dot * t5
-        t84 = t3 * t83
-        t85 = t14 * t84
-        t86 = t27 * t85
-        t87 = t82 - t86
-        t88 = t58 * t87
-        t89 = t14 * t61
-        t90 = t3 * t89
-        t91 = phi_dot * t27
-        t92 = L * t91
-        t93 = t90 + t92
-        t94 = t4 * t93
-        t95 = L * t94
-        t96 = theta_ddot * t3
-        t97 = t3 * t96
-        t98 = t14 * t97
-        t99 = t95 + t98
-        t100 = t99 / t56
+        t77 = t74 + t76
+        t78 = t77 / t18
         entries = (
-            t59,
-            t88,
-            t100,
+            t50,
+            t68,
+            t78,
             phi_ddot,
         )
         return _result("admissible_acceleration", status, batch, (4,), entries)
@@ -2228,35 +2118,34 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t22 = m_2 * t21
         t23 = Theta_1 + t22
         t24 = Theta_2 + t23
-        t25 = theta_dot * t3
-        t26 = t24 * t25
-        t27 = m_1 + m_2
-        t28 = L * t3
-        t29 = theta_dot * t28
-        t30 = t6 * t4
-        t31 = t5 * t3
-        t32 = t30 - t31
-        t33 = x_dot * t32
-        t34 = t5 * t4
-        t35 = t6 * t3
-        t36 = t34 + t35
-        t37 = y_dot * t36
-        t38 = t33 + t37
-        t39 = t29 + t38
-        t40 = t27 * t39
+        t25 = t6 * t4
+        t26 = t5 * t3
+        t27 = t25 - t26
+        t28 = x_dot * t27
+        t29 = t5 * t4
+        t30 = t6 * t3
+        t31 = t29 + t30
+        t32 = y_dot * t31
+        t33 = t28 + t32
+        t34 = t24 * t33
+        t35 = theta_dot * t3
+        t36 = t24 * t35
+        t37 = m_1 + m_2
+        t38 = L * t35
+        t39 = t33 + t38
+        t40 = t37 * t39
         t41 = L * t40
-        t42 = t26 - t41
+        t42 = t36 - t41
         t43 = L * t42
-        t44 = t24 * t38
-        t45 = t43 + t44
-        t46 = t20 * t45
-        t47 = t46 / t21
-        t48 = t19 / L
-        t49 = t48 * t39
-        t50 = Theta_2 * t49
+        t44 = t34 + t43
+        t45 = t20 * t44
+        t46 = t45 / t21
+        t47 = t19 / L
+        t48 = t47 * t39
+        t49 = Theta_2 * t48
         entries = (
-            t47,
-            t50,
+            t46,
+            t49,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
 
@@ -2289,153 +2178,147 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(phi)
         t5, t6 = _sincos(theta)
-        t7 = t3 * t3
+        t42 = T * t3
+        t47 = L * m_2
+        t48 = theta_dot * t47
+        t125 = t47 * t42
+        t70 = L * t47
+        t71 = Theta_1 + t70
         t8 = L * t4
         t9 = t5 * t8
+        t11 = t6 * t8
+        t44 = L * t3
+        t49 = theta_dot * t6
+        t57 = theta_dot * t5
+        t51 = t6 * t4
+        t52 = t5 * t3
+        t53 = t51 - t52
+        t59 = t5 * t4
+        t60 = t6 * t3
+        t61 = t59 + t60
+        t45 = K_f * t44
+        t46 = t3 * t45
+        t50 = t48 * t49
+        t54 = K_f * t53
+        t55 = t50 + t54
+        t56 = t11 * t55
+        t58 = t48 * t57
+        t62 = K_f * t61
+        t63 = t58 + t62
+        t64 = t9 * t63
+        t65 = t56 + t64
+        t66 = t46 + t65
+        t67 = Theta_2 * t66
+        t122 = m_1 + m_2
+        t123 = T * t122
+        t124 = t11 * t123
+        t126 = t5 * t125
+        t127 = t124 - t126
+        t128 = t11 * t127
+        t129 = t9 * t123
+        t130 = t6 * t125
+        t131 = t129 + t130
+        t132 = t9 * t131
+        t133 = t128 + t132
+        t134 = Theta_2 + t71
+        t135 = t42 * t134
+        t136 = t135 - t67
+        t137 = t3 * t136
+        t138 = t133 + t137
+        t43 = Theta_2 * t42
+        t68 = t43 - t67
+        t83 = y_dot * t57
+        t84 = x_dot * t49
+        t85 = t83 + t84
+        t74 = theta_dot * t44
+        t75 = phi_dot * t74
+        t76 = theta_dot + phi_dot
+        t77 = x_dot * t53
+        t78 = y_dot * t61
+        t79 = t77 + t78
+        t80 = t76 * t79
+        t81 = t75 + t80
+        t82 = t6 * t81
+        t86 = t85 * t53
+        t87 = t82 - t86
+        t101 = t5 * t81
+        t102 = t85 * t61
+        t103 = t101 - t102
+        t20 = m_1 * t4
+        t90 = L * Theta_2
+        t91 = m_2 * t61
+        t92 = t5 * t20
+        t93 = t91 + t92
+        t94 = t90 * t93
+        t105 = m_2 * t53
+        t106 = t6 * t20
+        t107 = t105 + t106
+        t108 = t90 * t107
+        t89 = t8 * t85
+        t72 = t3 * t71
+        t73 = Theta_2 * t72
+        t116 = t103 * t94
+        t117 = t87 * t108
+        t118 = t116 + t117
+        t69 = t11 * t68
+        t88 = t73 * t87
+        t95 = t89 * t94
+        t96 = t88 + t95
+        t97 = t69 + t96
+        t100 = t9 * t68
+        t104 = t73 * t103
+        t109 = t89 * t108
+        t110 = t104 - t109
+        t111 = t100 + t110
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t12 = t11 * t11
+        t13 = t10 + t12
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        t7 = t3 * t3
+        t14 = t7 + t13
         status = _first(status, ~np.asarray(t14 > t17), 2)
+        t29 = np.abs(m_2)
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_2)
-        t28 = np.abs(Theta_1)
-        t29 = np.abs(m_2)
-        t30 = np.abs(L)
-        t31 = t30 * t30
-        t32 = t29 * t31
-        t33 = t28 + t32
-        t34 = t27 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t29
-        t38 = t37 * t27
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = T * t3
-        t45 = Theta_2 * t44
-        t46 = L * t3
-        t47 = K_f * t46
-        t48 = t3 * t47
-        t49 = L * m_2
-        t50 = theta_dot * t49
-        t51 = theta_dot * t6
-        t52 = t50 * t51
-        t53 = t6 * t4
-        t54 = t5 * t3
-        t55 = t53 - t54
-        t56 = K_f * t55
-        t57 = t52 + t56
-        t58 = t12 * t57
-        t59 = theta_dot * t5
-        t60 = t50 * t59
-        t61 = t5 * t4
-        t62 = t6 * t3
-        t63 = t61 + t62
-        t64 = K_f * t63
-        t65 = t60 + t64
-        t66 = t9 * t65
-        t67 = t58 + t66
-        t68 = t48 + t67
-        t69 = Theta_2 * t68
-        t70 = t45 - t69
-        t71 = t12 * t70
-        t72 = y_dot * t59
-        t73 = x_dot * t51
-        t74 = t72 + t73
-        t75 = t8 * t74
-        t76 = L * Theta_2
-        t77 = m_1 * t61
-        t78 = m_2 * t63
-        t79 = t77 + t78
-        t80 = t76 * t79
-        t81 = t75 * t80
-        t82 = L * t49
-        t83 = Theta_1 + t82
-        t84 = t3 * t83
-        t85 = Theta_2 * t84
-        t86 = phi_dot * t3
-        t87 = L * t86
-        t88 = theta_dot * t87
-        t89 = theta_dot + phi_dot
-        t90 = x_dot * t55
-        t91 = y_dot * t63
-        t92 = t90 + t91
-        t93 = t89 * t92
-        t94 = t88 + t93
-        t95 = t6 * t94
-        t96 = t74 * t55
-        t97 = t95 - t96
-        t98 = t85 * t97
-        t99 = t81 + t98
-        t100 = t71 + t99
-        t101 = t43 * t100
-        t102 = -t101
-        t103 = t9 * t70
-        t104 = t5 * t94
-        t105 = t74 * t63
-        t106 = t104 - t105
-        t107 = t85 * t106
-        t108 = m_1 * t53
-        t109 = m_2 * t55
-        t110 = t108 + t109
-        t111 = t76 * t110
-        t112 = t75 * t111
-        t113 = t107 - t112
-        t114 = t103 + t113
-        t115 = t43 * t114
-        t116 = -t115
-        t117 = t3 * t70
-        t118 = t96 - t95
-        t119 = t111 * t118
-        t120 = t80 * t106
-        t121 = t119 - t120
-        t122 = t117 + t121
-        t123 = t43 * t122
-        t124 = -t123
-        t125 = m_1 + m_2
-        t126 = T * t12
-        t127 = t125 * t126
-        t128 = t5 * t49
-        t129 = t128 * t44
-        t130 = t127 - t129
-        t131 = t12 * t130
-        t132 = T * t9
-        t133 = t125 * t132
-        t134 = t6 * t49
-        t135 = t134 * t44
-        t136 = t133 + t135
-        t137 = t9 * t136
-        t138 = t131 + t137
-        t139 = Theta_2 + t83
-        t140 = t44 * t139
-        t141 = t140 - t69
-        t142 = t3 * t141
-        t143 = t138 + t142
-        t144 = t120 - t119
-        t145 = t143 - t144
-        t146 = t43 * t145
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = 1.0 / t25
+        t114 = t3 * t68
+        t119 = t41 * t118
+        t139 = t41 * t138
+        t140 = t139 - t119
+        t115 = t114 * t41
+        t120 = t115 - t119
+        t121 = -t120
+        t98 = t41 * t97
+        t99 = -t98
+        t112 = t41 * t111
+        t113 = -t112
         entries = (
-            t102,
-            t116,
-            t124,
-            t146,
+            t99,
+            t113,
+            t121,
+            t140,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2473,147 +2356,144 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t8 = L * t4
         t9 = t5 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t6 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
+        t29 = np.abs(m_2)
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t20 = m_1 * t4
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_2)
-        t28 = np.abs(Theta_1)
-        t29 = np.abs(m_2)
-        t30 = np.abs(L)
-        t31 = t30 * t30
-        t32 = t29 * t31
-        t33 = t28 + t32
-        t34 = t27 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t29
-        t38 = t37 * t27
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = L * Theta_2
-        t45 = t5 * t4
-        t46 = m_1 * t45
-        t47 = t6 * t3
-        t48 = t45 + t47
-        t49 = m_2 * t48
-        t50 = t46 + t49
-        t51 = t44 * t50
-        t52 = L * m_2
-        t53 = theta_dot * t52
-        t54 = theta_dot * t6
-        t55 = t53 * t54
-        t56 = t6 * t4
-        t57 = t5 * t3
-        t58 = t56 - t57
-        t59 = K_f * t58
-        t60 = t55 + t59
-        t61 = m_1 + m_2
-        t62 = theta_dot * t5
-        t63 = y_dot * t62
-        t64 = x_dot * t54
-        t65 = t63 + t64
-        t66 = t8 * t65
-        t67 = t66 * t51
-        t68 = L * t52
-        t69 = Theta_1 + t68
-        t70 = t3 * t69
-        t71 = Theta_2 * t70
-        t72 = phi_dot * t3
-        t73 = L * t72
-        t74 = theta_dot * t73
-        t75 = theta_dot + phi_dot
-        t76 = x_dot * t58
-        t77 = y_dot * t48
-        t78 = t76 + t77
-        t79 = t75 * t78
-        t80 = t74 + t79
-        t81 = t6 * t80
-        t82 = t65 * t58
-        t83 = t81 - t82
-        t84 = t71 * t83
-        t85 = t67 + t84
-        t86 = t43 * t85
-        t87 = t61 * t86
-        t88 = t5 * t52
-        t89 = m_1 * t56
-        t90 = m_2 * t58
-        t91 = t89 + t90
-        t92 = t44 * t91
-        t93 = t82 - t81
-        t94 = t92 * t93
-        t95 = t5 * t80
-        t96 = t65 * t48
-        t97 = t95 - t96
-        t98 = t51 * t97
-        t99 = t94 - t98
-        t100 = t43 * t99
-        t101 = t88 * t100
-        t102 = t87 - t101
-        t103 = t60 + t102
-        t104 = t51 * t103
-        t105 = t53 * t62
-        t106 = K_f * t48
-        t107 = t105 + t106
-        t108 = t71 * t97
-        t109 = t66 * t92
-        t110 = t108 - t109
-        t111 = t43 * t110
-        t112 = t61 * t111
-        t113 = t6 * t52
-        t114 = t113 * t100
-        t115 = t112 + t114
-        t116 = t107 + t115
-        t117 = t92 * t116
-        t118 = t104 - t117
-        t119 = t8 * t118
-        t120 = t71 * t103
-        t121 = L * t3
-        t122 = K_f * t121
-        t123 = Theta_2 + t69
-        t124 = t123 * t100
-        t125 = t52 * t65
-        t126 = t124 - t125
-        t127 = t98 - t94
-        t128 = t43 * t127
-        t129 = Theta_2 * t128
-        t130 = t126 + t129
-        t131 = t122 + t130
-        t132 = T - t131
-        t133 = t92 * t132
-        t134 = t120 + t133
-        t135 = t58 * t134
-        t136 = t119 - t135
-        t137 = t71 * t116
-        t138 = t51 * t132
-        t139 = t137 + t138
-        t140 = t48 * t139
-        t141 = t136 - t140
-        t142 = t43 * t141
-        t143 = t6 * t134
-        t144 = t5 * t139
-        t145 = t143 + t144
-        t146 = t43 * t145
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t56 = L * m_2
+        t57 = theta_dot * t56
+        t58 = theta_dot * t6
+        t60 = t6 * t4
+        t65 = theta_dot * t5
+        t61 = t5 * t3
+        t62 = t60 - t61
+        t59 = t57 * t58
+        t63 = K_f * t62
+        t64 = t59 + t63
+        t66 = y_dot * t65
+        t67 = x_dot * t58
+        t68 = t66 + t67
+        t49 = t5 * t4
+        t51 = t6 * t3
+        t52 = t49 + t51
+        t108 = t57 * t65
+        t109 = K_f * t52
+        t110 = t108 + t109
+        t48 = L * Theta_2
+        t50 = m_1 * t49
+        t53 = m_2 * t52
+        t54 = t50 + t53
+        t55 = t48 * t54
+        t96 = m_1 * t60
+        t97 = m_2 * t62
+        t98 = t96 + t97
+        t99 = t48 * t98
+        t75 = L * t3
+        t76 = theta_dot * t75
+        t77 = phi_dot * t76
+        t78 = theta_dot + phi_dot
+        t79 = x_dot * t62
+        t80 = y_dot * t52
+        t81 = t79 + t80
+        t82 = t78 * t81
+        t83 = t77 + t82
+        t84 = t6 * t83
+        t85 = t68 * t62
+        t86 = t84 - t85
+        t92 = t5 * t83
+        t93 = t68 * t52
+        t94 = t92 - t93
+        t69 = t8 * t68
+        t71 = L * t56
+        t72 = Theta_1 + t71
+        t73 = t3 * t72
+        t74 = Theta_2 * t73
+        t70 = t69 * t55
+        t87 = t74 * t86
+        t88 = t70 + t87
+        t95 = t55 * t94
+        t100 = t99 * t86
+        t101 = t95 + t100
+        t111 = t74 * t94
+        t112 = t69 * t99
+        t113 = t111 - t112
+        t41 = t4 * t4
+        t42 = m_1 * t41
+        t43 = m_2 + t42
+        t44 = t19 * t43
+        t45 = t18 + t44
+        t46 = Theta_2 * t45
+        t47 = 1.0 / t46
+        t89 = m_1 + m_2
+        t90 = t89 * t47
+        t102 = t47 * t101
+        t103 = t56 * t102
+        t91 = t88 * t90
+        t104 = t5 * t103
+        t105 = t91 + t104
+        t106 = t64 + t105
+        t114 = t90 * t113
+        t115 = t6 * t103
+        t116 = t114 - t115
+        t117 = t110 + t116
+        t127 = t56 * t68
+        t122 = K_f * t75
+        t123 = Theta_2 + t72
+        t124 = t123 - Theta_2
+        t125 = t124 * t102
+        t126 = t122 - t125
+        t128 = t126 - t127
+        t129 = T - t128
+        t121 = t74 * t106
+        t130 = t99 * t129
+        t131 = t121 + t130
+        t134 = t74 * t117
+        t135 = t55 * t129
+        t136 = t134 + t135
+        t107 = t55 * t106
+        t118 = t99 * t117
+        t119 = t107 - t118
+        t120 = t8 * t119
+        t132 = t62 * t131
+        t133 = t120 - t132
+        t137 = t52 * t136
+        t138 = t133 - t137
+        t139 = t47 * t138
+        t140 = t6 * t131
+        t141 = t5 * t136
+        t142 = t140 + t141
+        t143 = t47 * t142
         entries = (
-            t142,
-            t146,
+            t139,
+            t143,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2639,31 +2519,30 @@ def energy(q, qd, p=PARAMETERS):
         t1 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(theta)
-        t4 = theta_dot + phi_dot
-        t5 = t4 * t4
-        t6 = Theta_2 * t5
-        t7 = 0.5 * t6
-        t8 = m_1 + m_2
-        t9 = x_dot * x_dot
-        t10 = y_dot * y_dot
-        t11 = t9 + t10
-        t12 = t8 * t11
-        t13 = 0.5 * t12
-        t14 = L * m_2
-        t15 = y_dot * t3
-        t16 = x_dot * t2
-        t17 = t15 - t16
-        t18 = t14 * t17
-        t19 = L * t14
+        t4 = L * m_2
+        t5 = theta_dot * t4
+        t6 = y_dot * t3
+        t7 = x_dot * t2
+        t8 = t6 - t7
+        t9 = t5 * t8
+        t10 = theta_dot + phi_dot
+        t11 = t10 * t10
+        t12 = Theta_2 * t11
+        t13 = m_1 + m_2
+        t14 = x_dot * x_dot
+        t15 = y_dot * y_dot
+        t16 = t14 + t15
+        t17 = t13 * t16
+        t18 = theta_dot * theta_dot
+        t19 = L * t4
         t20 = Theta_1 + t19
-        t21 = theta_dot * t20
-        t22 = 0.5 * t21
-        t23 = t18 + t22
-        t24 = theta_dot * t23
-        t25 = t13 + t24
-        t26 = t7 + t25
+        t21 = t18 * t20
+        t22 = t17 + t21
+        t23 = t12 + t22
+        t24 = 0.5 * t23
+        t25 = t9 + t24
         entries = (
-            t26,
+            t25,
             0.0,
         )
         return _result("energy", status, batch, (2,), entries)
@@ -2696,44 +2575,41 @@ def singularity(q, p=PARAMETERS):
         t15 = t6 * t3
         t16 = t14 + t15
         t17 = _ratio_or_zero(t16, t11)
-        t18 = t6 * t6
-        t19 = t18 * t17
-        t20 = t17 * t19
-        t21 = t13 + t20
-        t22 = t6 * t4
-        t23 = t5 * t3
-        t24 = t22 - t23
-        t25 = -t24
-        t26 = _ratio_or_zero(t25, t11)
-        t27 = t5 * t26
-        t28 = t6 * t17
-        t29 = 2.0 * t28
-        t30 = t27 + t29
-        t31 = t26 * t30
-        t32 = t5 * t31
-        t33 = t21 + t32
-        t34 = L * t3
-        t35 = t27 + t28
-        t36 = t34 * t35
-        t37 = t5 * t12
-        t38 = t16 * t37
+        t18 = t6 * t17
+        t19 = t18 * t18
+        t20 = t13 + t19
+        t21 = t6 * t4
+        t22 = t5 * t3
+        t23 = t21 - t22
+        t24 = -t23
+        t25 = _ratio_or_zero(t24, t11)
+        t26 = t5 * t25
+        t27 = 2.0 * t18
+        t28 = t26 + t27
+        t29 = t26 * t28
+        t30 = t20 + t29
+        t31 = L * t3
+        t32 = t26 + t18
+        t33 = t31 * t32
+        t34 = t5 * t12
+        t35 = t16 * t34
+        t36 = t33 - t35
+        t37 = t6 * t12
+        t38 = t23 * t37
         t39 = t36 - t38
-        t40 = t6 * t12
-        t41 = t24 * t40
-        t42 = t39 - t41
-        t43 = t42 * t42
-        t44 = t40 * t40
-        t45 = t37 * t37
-        t46 = t35 * t35
-        t47 = t45 + t46
-        t48 = t44 + t47
-        t49 = _ratio_or_zero(t43, t48)
-        t50 = t34 * t34
-        t51 = 1.0 + t50
-        t52 = _ratio_or_zero(t49, t51)
+        t40 = t39 * t39
+        t41 = t37 * t37
+        t42 = t34 * t34
+        t43 = t32 * t32
+        t44 = t42 + t43
+        t45 = t41 + t44
+        t46 = _ratio_or_zero(t40, t45)
+        t47 = t31 * t31
+        t48 = 1.0 + t47
+        t49 = _ratio_or_zero(t46, t48)
         entries = (
-            t33,
-            t52,
+            t30,
+            t49,
         )
         return _result("singularity", status, batch, (2,), entries)
 

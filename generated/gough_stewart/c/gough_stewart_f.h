@@ -28,10 +28,10 @@
  *   gamma is gamma_
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics     418    591     11      6      5      0
- * forward_dynamics    1210   1906     39     12      5      0
- * multipliers         1142   1804     43     12      5      0
- * singularity          686    992     49     13      5      0
+ * inverse_dynamics     413    590     11      6      5      0
+ * forward_dynamics    1199   1833     39     12      5      0
+ * multipliers         1141   1752     48     12      5      0
+ * singularity          681    992     49     13      5      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -20,7 +20,7 @@ double Frama_C_double_interval(double min, double max);
 
 void eva_inverse_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t126, t314, t388, t548, t572, t158, t319, t390, t553, t574, t711. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t124, t309, t383, t543, t567, t237, t314, t385, t548, t569, t706. */
 void eva_inverse_dynamics(void) {
     static const double low_9[] = {-0x1.999999999999ap-2, -0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3};
     static const double high_9[] = {-0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3, 0x1.999999999999ap-2};
@@ -96,7 +96,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1070, t1081, t1323, t1328, t1537, t1668, t1822, t2000, t2204, t1540, t1671, t1825, t2003, t2207. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1047, t1058, t1296, t1301, t1504, t1630, t1779, t1952, t2151, t1507, t1633, t1782, t1955, t2154. */
 void eva_forward_dynamics(void) {
     static const double low_9[] = {-0x1.999999999999ap-2, -0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3};
     static const double high_9[] = {-0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3, 0x1.999999999999ap-2};
@@ -166,7 +166,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1070, t1081, t1146, t1143, t1576, t1701, t1849, t2021, t2087, t2092, t2123, t2153, t2183, t2083. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1047, t1079, t1123, t1145, t1142, t1567, t1687, t1830, t1997, t2060, t2065, t2096, t2126, t2156, t2056. */
 void eva_multipliers(void) {
     static const double low_9[] = {-0x1.999999999999ap-2, -0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3};
     static const double high_9[] = {-0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3, 0x1.999999999999ap-2};

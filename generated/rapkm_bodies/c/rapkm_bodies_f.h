@@ -18,10 +18,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      53     86      3      0      5      0
- * forward_dynamics     282    424     11      4      6      0
- * multipliers          230    373     22      7      6      0
- * singularity           60     99     17      4      6      0
+ * inverse_dynamics      53     83      3      0      5      0
+ * forward_dynamics     271    405     11      4      6      0
+ * multipliers          220    349     22      7      6      0
+ * singularity           55     91     17      4      6      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

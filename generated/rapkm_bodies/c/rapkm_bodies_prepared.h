@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[10];
+    double value[9];
 } rapkm_bodies_prepared;
 
 rapkm_bodies_prepared rapkm_bodies_prepare(const rapkm_bodies_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 127 operations instead of 152 */
+/* u: the smallest inputs that produce the motion, (27); 124 operations instead of 149 */
 rapkm_bodies_status rapkm_bodies_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const rapkm_bodies_prepared *p, double u[3]);
 
 #ifdef __cplusplus

@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[10];
+    float value[9];
 } rapkm_bodies_prepared_f;
 
 rapkm_bodies_prepared_f rapkm_bodies_prepare_f(const rapkm_bodies_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 127 operations instead of 152 */
+/* u: the smallest inputs that produce the motion, (27); 124 operations instead of 149 */
 rapkm_bodies_status rapkm_bodies_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_bodies_prepared_f *p, float u[3]);
 
 #ifdef __cplusplus

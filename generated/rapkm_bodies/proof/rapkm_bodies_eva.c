@@ -20,7 +20,7 @@ double Frama_C_double_interval(double min, double max);
 
 void eva_inverse_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t24, t67. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t24, t51. */
 void eva_inverse_dynamics(void) {
     double q[6];
     double qd[6];
@@ -66,7 +66,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t190, t326, t50, t88, t141, t186, t475. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t131, t186, t319, t50, t87, t140, t182, t463. */
 void eva_forward_dynamics(void) {
     double q[6];
     double qd[6];
@@ -109,7 +109,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t48, t92, t151, t248, t331, t209, t327, t431, t485, t265, t572, t433, t508, t568. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t81, t149, t240, t320, t204, t412, t464, t255, t316, t414, t485, t548, t544. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];

@@ -17,44 +17,44 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                          16     19      0      0      3      0
- * coriolis_matrix                       4     20      0      0      3      0
- * coriolis_force                        4     26      0      0      3      0
+ * mass_matrix                          15     18      0      0      3      0
+ * coriolis_matrix                       4     16      0      0      3      0
+ * coriolis_force                        4     24      0      0      3      0
  * potential_force                       0      0      0      0      0      0
  * applied_force                         0      0      0      0      0      0
  * constraint_residual                  23      8      0      0      6      0
  * constraint_jacobian                   9     12      0      0      6      0
- * constraint_jacobian_dot              12     24      0      0      6      0
- * constraint_pseudoinverse            138    210     14      4      6      0
- * nullspace_projector                 109    173      4      4      6      0
- * nullspace_projector_dot             391    549     14      4      6      0
- * weighted_pseudoinverse              374    541      1      0      6      0
- * weighted_nullspace_projector        206    321     17      4      6      0
+ * constraint_jacobian_dot              12     18      0      0      6      0
+ * constraint_pseudoinverse            134    206     14      4      6      0
+ * nullspace_projector                 105    172      4      4      6      0
+ * nullspace_projector_dot             375    537     14      4      6      0
+ * weighted_pseudoinverse              319    521      1      0      6      0
+ * weighted_nullspace_projector        202    318     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
- * projected_control_matrix            105    158      1      0      6      0
- * projected_control_pseudoinverse      39     95      3      0      6      0
- * orthogonal_complement                39     95      3      0      6      0
- * projected_mass_matrix               269    395      4      4      6      0
- * projected_coriolis_matrix           722   1012     14      4      6      0
+ * projected_control_matrix             88    157      1      0      6      0
+ * projected_control_pseudoinverse      37     92      3      0      6      0
+ * orthogonal_complement                37     92      3      0      6      0
+ * projected_mass_matrix               265    393      4      4      6      0
+ * projected_coriolis_matrix           706    976     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  75    132      1      0      6      0
- * minimal_coriolis_matrix             404    603      2      0      6      0
+ * minimal_mass_matrix                  73    128      1      0      6      0
+ * minimal_coriolis_matrix             364    570      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                0      0      0      0      0      0
- * admissible_velocity                  96    138      4      4      6      0
- * admissible_acceleration             189    266      8      4      6      0
- * projected_configuration             228    242     16      8     12      0
- * inverse_dynamics                     42     72      4      0      5      0
+ * admissible_velocity                  92    136      4      4      6      0
+ * admissible_acceleration             181    253      8      4      6      0
+ * projected_configuration             219    242     16      8     12      0
+ * inverse_dynamics                     42     71      4      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                 75    132      1      0      6      0
- * actuator_bias                       178    314      2      0      6      0
- * forward_dynamics                    252    372     11      4      6      0
- * multipliers                         214    320     24      7      6      0
- * energy                               18     38      0      0      3      0
- * singularity                          58     98     17      4      6      0
+ * actuator_mass_matrix                 73    128      1      0      6      0
+ * actuator_bias                       169    307      2      0      6      0
+ * forward_dynamics                    334    483     14      6      6      0
+ * multipliers                         207    299     24      7      6      0
+ * energy                               20     31      0      0      3      0
+ * singularity                          55     90     17      4      6      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[14];
+    double value[13];
 } rapkm_two_drives_prepared;
 
 rapkm_two_drives_prepared rapkm_two_drives_prepare(const rapkm_two_drives_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 107 operations instead of 129 */
+/* u: the smallest inputs that produce the motion, (27); 107 operations instead of 128 */
 rapkm_two_drives_status rapkm_two_drives_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const rapkm_two_drives_prepared *p, double u[2]);
 
 #ifdef __cplusplus

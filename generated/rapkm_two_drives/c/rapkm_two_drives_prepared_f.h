@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[14];
+    float value[13];
 } rapkm_two_drives_prepared_f;
 
 rapkm_two_drives_prepared_f rapkm_two_drives_prepare_f(const rapkm_two_drives_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 107 operations instead of 129 */
+/* u: the smallest inputs that produce the motion, (27); 107 operations instead of 128 */
 rapkm_two_drives_status rapkm_two_drives_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_two_drives_prepared_f *p, float u[2]);
 
 #ifdef __cplusplus

@@ -296,7 +296,7 @@ void eva_constraint_jacobian_dot(void) {
 
 void eva_constraint_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t174, t79, t126, t176. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t119, t196, t44, t78, t125, t191. */
 void eva_constraint_pseudoinverse(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -328,7 +328,7 @@ void eva_constraint_pseudoinverse(void) {
 
 void eva_nullspace_projector(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t175. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t118, t170. */
 void eva_nullspace_projector(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -360,7 +360,7 @@ void eva_nullspace_projector(void) {
 
 void eva_nullspace_projector_dot(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t174, t79, t126, t176. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t119, t195, t44, t78, t125, t191. */
 void eva_nullspace_projector_dot(void) {
     double q[6];
     double qd[6];
@@ -399,7 +399,7 @@ void eva_nullspace_projector_dot(void) {
 
 void eva_weighted_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t380. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t363. */
 void eva_weighted_pseudoinverse(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -431,7 +431,7 @@ void eva_weighted_pseudoinverse(void) {
 
 void eva_weighted_nullspace_projector(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t188, t288, t421. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t130, t183, t284, t416. */
 void eva_weighted_nullspace_projector(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -494,7 +494,7 @@ void eva_control_matrix(void) {
 
 void eva_projected_control_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t163. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t162. */
 void eva_projected_control_matrix(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -526,7 +526,7 @@ void eva_projected_control_matrix(void) {
 
 void eva_projected_control_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t235, t239. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t240, t233. */
 void eva_projected_control_pseudoinverse(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -558,7 +558,7 @@ void eva_projected_control_pseudoinverse(void) {
 
 void eva_orthogonal_complement(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t235, t250. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t127, t109. */
 void eva_orthogonal_complement(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -590,7 +590,7 @@ void eva_orthogonal_complement(void) {
 
 void eva_projected_mass_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t190. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t130, t185. */
 void eva_projected_mass_matrix(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -622,7 +622,7 @@ void eva_projected_mass_matrix(void) {
 
 void eva_projected_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t190, t50, t88, t141, t186. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t131, t186, t50, t89, t140, t182. */
 void eva_projected_coriolis_matrix(void) {
     double q[6];
     double qd[6];
@@ -762,7 +762,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t210, t178. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t207, t178. */
 void eva_minimal_coriolis_matrix(void) {
     double q[6];
     double qd[6];
@@ -901,7 +901,7 @@ void eva_minimal_control_matrix(void) {
 
 void eva_admissible_velocity(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t175. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t118, t170. */
 void eva_admissible_velocity(void) {
     double q[6];
     double qd[6];
@@ -940,7 +940,7 @@ void eva_admissible_velocity(void) {
 
 void eva_admissible_acceleration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t175, t44, t79, t126, t171. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t119, t204, t44, t78, t125, t206. */
 void eva_admissible_acceleration(void) {
     double q[6];
     double qd[6];
@@ -986,7 +986,7 @@ void eva_admissible_acceleration(void) {
 
 void eva_projected_configuration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t79, t126, t175, t214, t304, t340, t389, t307, t344, t395, t446, t489. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t79, t126, t176, t215, t305, t340, t389, t310, t344, t395, t441, t480. */
 void eva_projected_configuration(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -1179,7 +1179,7 @@ void eva_actuator_mass_matrix(void) {
 
 void eva_actuator_bias(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t210. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t208. */
 void eva_actuator_bias(void) {
     double q[6];
     double qd[6];
@@ -1218,7 +1218,7 @@ void eva_actuator_bias(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t84, t132, t188, t288, t50, t88, t141, t195, t421. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t131, t196, t229, t330, t50, t89, t140, t503, t501, t753, t849. */
 void eva_forward_dynamics(void) {
     double q[6];
     double qd[6];
@@ -1260,7 +1260,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t49, t93, t151, t203, t240, t249, t253, t258, t291, t288, t378, t263, t430, t503, t381, t437, t499. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t199, t235, t244, t248, t253, t286, t368, t258, t418, t283, t373, t425, t488, t484. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];

@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[13];
+    double value[14];
 } rear_car_prepared;
 
 rear_car_prepared rear_car_prepare(const rear_car_params *p);
@@ -22,10 +22,10 @@ rear_car_prepared rear_car_prepare(const rear_car_params *p);
 /* u: the smallest inputs that produce the motion, (27); 23 operations instead of 28 */
 rear_car_status rear_car_inverse_dynamics_prepared(const double q[4], const double qd[4], const double qdd[4], const rear_car_prepared *p, double u[2]);
 
-/* q̈: accelerations under the inputs, (15); 114 operations instead of 131 */
+/* q̈: accelerations under the inputs, (15); 110 operations instead of 125 */
 rear_car_status rear_car_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const rear_car_prepared *p, double qdd[4]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 118 operations instead of 135 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 115 operations instead of 130 */
 rear_car_status rear_car_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const rear_car_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus

@@ -15,41 +15,41 @@ Inputs u:
 Operations                          + -      *      /   sqrt sincos  other
 mass_matrix                           2      4      0      0      1      0
 coriolis_matrix                       0      4      0      0      1      0
-coriolis_force                        0      6      0      0      1      0
+coriolis_force                        0      5      0      0      1      0
 potential_force                       0      0      0      0      0      0
 applied_force                         0      0      0      0      0      0
 constraint_jacobian                   2      5      0      0      2      0
 constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
-nullspace_projector                   3     17      1      0      2      0
-nullspace_projector_dot              15     60      2      0      2      0
-weighted_pseudoinverse               17     46      3      0      2      0
-weighted_nullspace_projector         14     51      4      0      2      0
+nullspace_projector                   3     16      1      0      2      0
+nullspace_projector_dot              14     52      2      0      2      0
+weighted_pseudoinverse               16     45      3      0      2      0
+weighted_nullspace_projector         15     50      4      0      2      0
 control_matrix                        0      0      0      0      1      0
 projected_control_matrix              3     11      3      0      2      0
 projected_control_pseudoinverse       1      3      1      0      2      0
 orthogonal_complement                 1      5      2      0      2      0
-projected_mass_matrix                10     43      3      0      2      0
-projected_coriolis_matrix            73    195      3      0      2      0
+projected_mass_matrix                10     32      3      0      2      0
+projected_coriolis_matrix            72    165      3      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
 minimal_mass_matrix                   3     11      1      0      2      0
-minimal_coriolis_matrix              13     36      1      0      2      0
+minimal_coriolis_matrix              13     34      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      5      1      0      2      0
-admissible_velocity                   5     20      2      0      2      0
-admissible_acceleration              17     75      2      0      2      0
+admissible_velocity                   5     17      2      0      2      0
+admissible_acceleration              17     53      2      0      2      0
 projected_configuration               0      0      0      0      0      0
 inverse_dynamics                      7     15      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     1      2      0      0      1      0
 actuator_mass_matrix                  4      7      1      0      1      0
 actuator_bias                         5     16      1      0      2      0
-forward_dynamics                     35     85      1      0      2      0
-multipliers                          38     86      1      0      2      0
-energy                                7     15      0      0      1      0
-singularity                           9     20      4      1      2      0
+forward_dynamics                     33     81      1      0      2      0
+multipliers                          36     83      1      0      2      0
+energy                                7     14      0      0      1      0
+singularity                           9     17      4      1      2      0
 (changes of sign are not counted)
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -301,15 +301,14 @@ def coriolis_force(q, qd, p=PARAMETERS):
         t2, t3 = _sincos(theta)
         t4 = L * m_2
         t5 = theta_dot * t4
-        t6 = theta_dot * t3
-        t7 = t5 * t6
+        t6 = theta_dot * t5
+        t7 = t3 * t6
         t8 = -t7
-        t9 = theta_dot * t2
-        t10 = t5 * t9
-        t11 = -t10
+        t9 = t2 * t6
+        t10 = -t9
         entries = (
             t8,
-            t11,
+            t10,
             0.0,
             0.0,
         )
@@ -469,27 +468,27 @@ def constraint_pseudoinverse(q, p=PARAMETERS):
         t23 = t3 * t22
         t24 = t19 - t23
         t25 = t18 * t24
-        t26 = t6 * t3
-        t27 = t18 * t26
+        t26 = t3 * t18
+        t27 = t6 * t26
         t28 = t8 * t12
         t29 = t5 * t4
-        t30 = t29 + t26
-        t31 = t3 * t30
-        t32 = t28 + t31
-        t33 = t18 * t32
-        t34 = -t33
-        t35 = t18 * t21
-        t36 = L / t14
-        t37 = t4 * t4
-        t38 = t36 * t37
-        t39 = t4 * t36
-        t40 = -t39
+        t30 = t6 * t3
+        t31 = t29 + t30
+        t32 = t3 * t31
+        t33 = t28 + t32
+        t34 = t18 * t33
+        t35 = -t34
+        t36 = t5 * t26
+        t37 = L / t14
+        t38 = t4 * t37
+        t39 = t4 * t38
+        t40 = -t38
         entries = (
             t25,
             t27,
-            t34,
             t35,
-            t38,
+            t36,
+            t39,
             t40,
             0.0,
             0.0,
@@ -527,14 +526,13 @@ def nullspace_projector(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = 1.0 / t14
         t19 = t13 * t18
-        t20 = t9 * t12
-        t21 = t18 * t20
+        t20 = t9 * t18
+        t21 = t12 * t20
         t22 = t5 * t12
         t23 = t18 * t22
         t24 = t10 * t18
-        t25 = t9 * t5
-        t26 = t18 * t25
-        t27 = t7 * t18
+        t25 = t5 * t20
+        t26 = t7 * t18
         entries = (
             t19,
             t21,
@@ -542,11 +540,11 @@ def nullspace_projector(q, p=PARAMETERS):
             0.0,
             t21,
             t24,
-            t26,
+            t25,
             0.0,
             t23,
+            t25,
             t26,
-            t27,
             0.0,
             0.0,
             0.0,
@@ -591,81 +589,72 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t19 = t14 * t14
         t20 = t18 / t19
         t21 = t6 * t4
-        t22 = t5 * t4
-        t23 = 2.0 * t15
-        t24 = 2.0 * t7
-        t25 = t23 + t24
-        t26 = t22 * t25
+        t22 = phi_dot * t6
+        t23 = t3 * t22
+        t24 = 2.0 * t23
+        t25 = t5 * t4
+        t26 = t7 + t15
         t27 = theta_dot * t26
-        t28 = phi_dot * t6
-        t29 = t3 * t28
-        t30 = 2.0 * t29
-        t31 = t27 + t30
-        t32 = t21 * t31
-        t33 = t20 * t32
-        t34 = -t33
-        t35 = 2.0 * t18
-        t36 = (-2.0) + t35
+        t28 = 2.0 * t27
+        t29 = t25 * t28
+        t30 = t24 + t29
+        t31 = t21 * t30
+        t32 = t20 * t31
+        t33 = -t32
+        t34 = 2.0 * t18
+        t35 = (-2.0) + t34
+        t36 = t4 * t35
         t37 = t4 * t36
-        t38 = t4 * t37
-        t39 = 2.0 + t38
+        t38 = 2.0 + t37
+        t39 = t6 * t38
         t40 = t6 * t39
-        t41 = t6 * t40
-        t42 = t7 + t15
-        t43 = t41 - t42
-        t44 = t4 * t43
-        t45 = theta_dot * t44
-        t46 = phi_dot * t5
-        t47 = t6 * t46
-        t48 = t3 * t47
-        t49 = 2.0 * t48
-        t50 = t45 - t49
-        t51 = t4 * t50
-        t52 = t20 * t51
-        t53 = t4 * t28
-        t54 = t18 * t53
-        t55 = t5 * t3
-        t56 = t55 * t42
-        t57 = theta_dot * t56
-        t58 = t54 - t57
-        t59 = t4 * t58
-        t60 = t3 * t29
-        t61 = t59 - t60
-        t62 = L / t19
-        t63 = t61 * t62
-        t64 = t21 * t25
-        t65 = theta_dot * t64
-        t66 = t3 * t46
-        t67 = 2.0 * t66
-        t68 = t65 - t67
-        t69 = t22 * t68
-        t70 = t20 * t69
-        t71 = t6 * t3
-        t72 = t71 * t42
-        t73 = theta_dot * t72
-        t74 = t4 * t46
-        t75 = t18 * t74
-        t76 = t73 + t75
-        t77 = t4 * t76
-        t78 = t3 * t66
-        t79 = t77 - t78
-        t80 = t62 * t79
-        t81 = phi_dot * t4
-        t82 = t3 * t81
-        t83 = t20 * t82
-        t84 = 2.0 * t83
+        t41 = t40 - t26
+        t42 = t4 * t41
+        t43 = theta_dot * t42
+        t44 = phi_dot * t5
+        t45 = 2.0 * t3
+        t46 = t6 * t45
+        t47 = t44 * t46
+        t48 = t43 - t47
+        t49 = t4 * t20
+        t50 = t48 * t49
+        t51 = L / t19
+        t52 = t4 * t18
+        t53 = t22 * t52
+        t54 = t3 * t27
+        t55 = t5 * t54
+        t56 = t53 - t55
+        t57 = t4 * t56
+        t58 = t3 * t23
+        t59 = t57 - t58
+        t60 = t51 * t59
+        t61 = t21 * t28
+        t62 = t3 * t44
+        t63 = 2.0 * t62
+        t64 = t61 - t63
+        t65 = t25 * t64
+        t66 = t20 * t65
+        t67 = t44 * t52
+        t68 = t6 * t54
+        t69 = t67 + t68
+        t70 = t4 * t69
+        t71 = t3 * t62
+        t72 = t70 - t71
+        t73 = t51 * t72
+        t74 = t45 * t49
+        t75 = phi_dot * t74
         entries = (
-            t34,
-            t52,
-            t63,
+            t33,
+            t50,
+            t60,
             0.0,
-            t52,
-            t70,
-            t80,
+            t50,
+            t66,
+            t73,
             0.0,
-            t63,
-            t80,
-            t84,
+            t60,
+            t73,
+            t75,
             0.0,
             0.0,
             0.0,
@@ -699,85 +688,83 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t8 = L * t4
         t9 = t5 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t6 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t20 = m_1 * t4
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_1)
-        t28 = np.abs(m_2)
-        t29 = np.abs(L)
-        t30 = t29 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = np.abs(Theta_2)
-        t34 = t32 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t28
-        t38 = t37 * t33
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = L * Theta_2
-        t45 = t5 * t4
-        t46 = m_1 * t45
-        t47 = t6 * t3
-        t48 = t45 + t47
-        t49 = m_2 * t48
-        t50 = t46 + t49
-        t51 = t44 * t50
-        t52 = t8 * t51
-        t53 = t6 * t4
-        t54 = t5 * t3
-        t55 = t53 - t54
-        t56 = m_2 * t19
-        t57 = Theta_1 + t56
-        t58 = Theta_2 * t57
-        t59 = t3 * t58
-        t60 = t55 * t59
-        t61 = t52 - t60
-        t62 = t43 * t61
-        t63 = t58 / t25
-        t64 = t47 * t63
-        t65 = m_1 * t53
-        t66 = m_2 * t55
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t29 = np.abs(m_2)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = 1.0 / t25
+        t42 = L * Theta_2
+        t43 = t8 * t42
+        t44 = t5 * t4
+        t45 = t6 * t3
+        t46 = t44 + t45
+        t47 = m_2 * t46
+        t48 = t5 * t20
+        t49 = t47 + t48
+        t50 = t43 * t49
+        t51 = t6 * t4
+        t52 = t5 * t3
+        t53 = t51 - t52
+        t54 = m_2 * t19
+        t55 = Theta_1 + t54
+        t56 = Theta_2 * t55
+        t57 = t3 * t56
+        t58 = t53 * t57
+        t59 = t50 - t58
+        t60 = t41 * t59
+        t61 = t56 / t25
+        t62 = t3 * t61
+        t63 = t6 * t62
+        t64 = t46 * t57
+        t65 = m_2 * t53
+        t66 = t6 * t20
         t67 = t65 + t66
-        t68 = t44 * t67
-        t69 = t8 * t68
-        t70 = t48 * t59
-        t71 = t69 + t70
-        t72 = t43 * t71
-        t73 = -t72
-        t74 = t54 * t63
-        t75 = t44 / t25
-        t76 = t22 * t75
-        t77 = m_1 + m_2
-        t78 = t4 * t77
-        t79 = t78 * t75
-        t80 = -t79
+        t68 = t43 * t67
+        t69 = t64 + t68
+        t70 = t41 * t69
+        t71 = -t70
+        t72 = t5 * t62
+        t73 = t42 / t25
+        t74 = t22 * t73
+        t75 = m_1 + m_2
+        t76 = t4 * t75
+        t77 = t76 * t73
+        t78 = -t77
         entries = (
-            t62,
-            t64,
-            t73,
+            t60,
+            t63,
+            t71,
+            t72,
             t74,
-            t76,
-            t80,
+            t78,
             0.0,
             0.0,
         )
@@ -798,99 +785,99 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t4 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t20 = m_1 * t6
+        t21 = t6 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_1)
-        t28 = np.abs(m_2)
-        t29 = np.abs(L)
-        t30 = t29 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = np.abs(Theta_2)
-        t34 = t32 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t28
-        t38 = t37 * t33
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = Theta_2 * t19
-        t44 = t43 / t25
-        t45 = t6 * t4
-        t46 = m_1 * t45
-        t47 = t5 * t3
-        t48 = t45 - t47
-        t49 = m_2 * t48
-        t50 = t46 + t49
-        t51 = t45 * t50
-        t52 = t44 * t51
-        t53 = t5 * t4
-        t54 = m_1 * t53
-        t55 = t6 * t3
-        t56 = t53 + t55
-        t57 = m_2 * t56
-        t58 = t54 + t57
-        t59 = t45 * t58
-        t60 = t44 * t59
-        t61 = t3 * t45
-        t62 = m_2 * t19
-        t63 = Theta_1 + t62
-        t64 = L * Theta_2
-        t65 = t63 * t64
-        t66 = t65 / t25
-        t67 = t61 * t66
-        t68 = t53 * t50
-        t69 = t44 * t68
-        t70 = t53 * t58
-        t71 = t44 * t70
-        t72 = t3 * t53
-        t73 = t72 * t66
-        t74 = t64 / t25
-        t75 = t3 * t50
-        t76 = t74 * t75
-        t77 = t3 * t58
-        t78 = t74 * t77
-        t79 = Theta_2 * t63
-        t80 = t79 / t25
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t29 = np.abs(m_2)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = t4 * t6
+        t42 = m_1 * t41
+        t43 = t3 * t5
+        t44 = t41 - t43
+        t45 = m_2 * t44
+        t46 = t42 + t45
+        t47 = Theta_2 * t19
+        t48 = t6 * t6
+        t49 = m_1 * t48
+        t50 = m_2 + t49
+        t51 = t19 * t50
+        t52 = t18 + t51
+        t53 = Theta_2 * t52
+        t54 = t47 / t53
+        t55 = t41 * t54
+        t56 = t46 * t55
+        t57 = t3 * t6
+        t58 = m_1 * t57
+        t59 = t4 * t5
+        t60 = t57 + t59
+        t61 = m_2 * t60
+        t62 = t58 + t61
+        t63 = t62 * t55
+        t64 = m_2 * t19
+        t65 = Theta_1 + t64
+        t66 = L * Theta_2
+        t67 = t65 * t66
+        t68 = t67 / t53
+        t69 = t5 * t68
+        t70 = t41 * t69
+        t71 = t57 * t54
+        t72 = t46 * t71
+        t73 = t62 * t71
+        t74 = t57 * t69
+        t75 = t66 / t53
+        t76 = t5 * t75
+        t77 = t46 * t76
+        t78 = t62 * t76
+        t79 = Theta_2 * t65
+        t80 = t79 / t53
         t81 = t7 * t80
         entries = (
-            t52,
-            t60,
-            t67,
+            t56,
+            t63,
+            t70,
             0.0,
-            t69,
-            t71,
+            t72,
             t73,
+            t74,
             0.0,
-            t76,
+            t77,
             t78,
             t81,
             0.0,
@@ -996,19 +983,13 @@ def projected_control_pseudoinverse(q, p=PARAMETERS):
         _failed_ = ~np.asarray(t8 > t10)
         if np.any(_failed_ & (status == 0)):
             t11 = t5 * t5
-            t12 = t3 * t7
-            t13 = t12 * t12
-            t14 = t11 + t13
-            t15 = t4 * t7
-            t16 = t15 * t15
-            t17 = t14 + t16
-            status = _first(status, _failed_ & ~np.asarray(t17 > t10), 2)
+            status = _first(status, _failed_ & ~np.asarray(t11 > t10), 2)
             status = _first(status, _failed_, 3)
-        t18 = t5 / t7
+        t12 = t5 / t7
         entries = (
             t4,
             t3,
-            t18,
+            t12,
             0.0,
             0.0,
             0.0,
@@ -1040,23 +1021,15 @@ def orthogonal_complement(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t5 * t5
-            t14 = t3 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = t3 / t4
-        t19 = t5 / t8
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = t3 / t4
+        t14 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t18,
+            t13,
             0.0,
-            t19,
+            t14,
             0.0,
             0.0,
             1.0,
@@ -1078,18 +1051,18 @@ def projected_mass_matrix(q, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
@@ -1099,60 +1072,49 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t18 = L * L
         t19 = t14 * t14
         t20 = t18 / t19
-        t21 = t6 * t6
+        t21 = t6 * t20
         t22 = t4 * t21
-        t23 = t4 * t22
-        t24 = Theta_1 * t7
-        t25 = t4 * t4
-        t26 = m_1 * t25
-        t27 = m_2 + t26
-        t28 = t18 * t27
-        t29 = t24 + t28
-        t30 = t23 * t29
-        t31 = t20 * t30
-        t32 = t5 * t6
-        t33 = t4 * t32
-        t34 = t4 * t33
-        t35 = t34 * t29
-        t36 = t20 * t35
-        t37 = L / t19
-        t38 = t6 * t4
-        t39 = t3 * t38
-        t40 = t39 * t29
-        t41 = t37 * t40
-        t42 = t5 * t5
-        t43 = t4 * t42
-        t44 = t4 * t43
-        t45 = t44 * t29
-        t46 = t20 * t45
-        t47 = t5 * t4
-        t48 = t3 * t47
-        t49 = t48 * t29
-        t50 = t37 * t49
-        t51 = m_2 * t18
-        t52 = Theta_1 + t51
-        t53 = t25 + (-2.0)
-        t54 = t52 * t53
-        t55 = m_1 + m_2
-        t56 = t55 * t18
-        t57 = t7 * t56
-        t58 = t54 + t57
-        t59 = t4 * t58
-        t60 = t4 * t59
-        t61 = t52 + t60
-        t62 = t61 / t19
+        t23 = Theta_1 * t7
+        t24 = t6 * t6
+        t25 = m_1 * t24
+        t26 = m_2 + t25
+        t27 = t18 * t26
+        t28 = t23 + t27
+        t29 = t6 * t28
+        t30 = t4 * t29
+        t31 = t22 * t30
+        t32 = t3 * t29
+        t33 = t22 * t32
+        t34 = L / t19
+        t35 = t5 * t34
+        t36 = t30 * t35
+        t37 = t21 * t32
+        t38 = t3 * t37
+        t39 = t32 * t35
+        t40 = m_2 * t18
+        t41 = Theta_1 + t40
+        t42 = t24 + (-2.0)
+        t43 = t41 * t42
+        t44 = m_1 + m_2
+        t45 = t44 * t18
+        t46 = t7 * t45
+        t47 = t43 + t46
+        t48 = t6 * t47
+        t49 = t6 * t48
+        t50 = t41 + t49
+        t51 = t50 / t19
         entries = (
             t31,
+            t33,
             t36,
-            t41,
+            0.0,
+            t33,
+            t38,
+            t39,
             0.0,
             t36,
-            t46,
-            t50,
-            0.0,
-            t41,
-            t50,
-            t62,
+            t39,
+            t51,
             0.0,
             0.0,
             0.0,
@@ -1180,296 +1142,265 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         m_1 = np.float64(p.m_1)
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t15 = t8 * t8
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
-        t15 = t8 * t8
+        t34 = theta_dot * t5
+        t35 = x_dot * t4
+        t36 = y_dot * t3
+        t37 = t35 + t36
+        t38 = t8 * t37
+        t39 = t34 + t38
+        t19 = L * L
+        t27 = m_1 + m_2
+        t30 = phi_dot * t4
+        t31 = t5 * t30
+        t32 = t14 * t31
+        t25 = m_2 * t19
+        t26 = Theta_1 + t25
+        t28 = 2.0 * t27
+        t29 = t26 - t28
+        t33 = t29 * t32
+        t42 = m_2 * t4
+        t44 = t6 * t6
+        t45 = t44 + (-2.0)
+        t47 = t7 * t19
+        t50 = t3 * t6
+        t51 = t5 * t50
+        t52 = t27 * t19
+        t56 = t3 * t5
+        t57 = t27 + t26
+        t58 = t56 * t57
+        t67 = t5 * t26
+        t68 = t14 * t30
+        t69 = 2.0 - t44
+        t76 = t26 * t39
+        t77 = t56 * t76
+        t40 = t7 + t15
+        t41 = 1.0 - t40
+        t43 = t41 * t42
+        t46 = t14 + t45
+        t48 = t46 + t47
+        t49 = t48 * t42
+        t53 = t51 * t52
+        t54 = t49 - t53
+        t55 = t6 * t54
+        t59 = t5 * t58
+        t60 = t5 * t59
+        t61 = t55 - t60
+        t62 = t6 * t61
+        t63 = t43 + t62
+        t64 = t39 * t63
+        t65 = t33 + t64
+        t66 = t19 * t65
+        t70 = t50 * t69
+        t71 = t39 * t70
+        t72 = t68 + t71
+        t73 = t67 * t72
+        t74 = t66 + t73
+        t75 = t6 * t74
+        t78 = t75 - t77
+        t79 = t6 * t78
+        t80 = t26 * t32
+        t81 = t79 - t80
+        t120 = t14 * t67
+        t161 = t5 * t31
+        t18 = t4 * t6
+        t104 = (-2.0) + t47
+        t92 = t7 * t14
+        t93 = 1.0 - t92
+        t138 = t69 * t76
+        t139 = t51 * t138
+        t140 = t93 * t42
+        t141 = m_2 * t18
+        t142 = 1.0 - t19
+        t143 = t27 * t142
+        t144 = t26 + t143
+        t145 = t56 * t144
+        t146 = t141 + t145
+        t147 = t6 * t146
+        t148 = t104 * t42
+        t149 = t147 + t148
+        t150 = t6 * t149
+        t151 = t150 - t58
+        t152 = t6 * t151
+        t153 = t140 + t152
+        t154 = t39 * t153
+        t155 = t33 + t154
+        t156 = t19 * t155
+        t157 = t139 + t156
+        t158 = t6 * t157
+        t159 = t158 - t77
+        t160 = t6 * t159
+        t162 = t161 * t120
+        t163 = t160 - t162
+        t90 = t14 * t29
+        t94 = m_2 * t93
+        t169 = t6 * t44
+        t170 = t6 * t169
+        t171 = 3.0 * t7
+        t172 = t170 + t171
+        t173 = t172 * t39
+        t83 = t4 * t5
+        t85 = t5 * t18
+        t105 = m_2 * t104
+        t126 = t6 * t14
+        t168 = 2.0 * t68
+        t174 = t3 * t173
+        t175 = t30 * t126
+        t176 = t174 - t175
+        t177 = t6 * t176
+        t178 = t168 + t177
+        t179 = t26 * t178
+        t180 = t161 * t90
+        t181 = t83 * t94
+        t182 = m_2 * t85
+        t183 = t26 * t69
+        t184 = t69 - t47
+        t185 = t27 * t184
+        t186 = t183 + t185
+        t187 = t3 * t186
+        t188 = t182 + t187
+        t189 = t6 * t188
+        t190 = t83 * t105
+        t191 = t189 + t190
+        t192 = t6 * t191
+        t193 = t3 * t57
+        t194 = t192 - t193
+        t195 = t6 * t194
+        t196 = t181 + t195
+        t197 = t39 * t196
+        t198 = t180 + t197
+        t199 = t19 * t198
+        t200 = t179 + t199
+        t201 = t6 * t200
+        t202 = t3 * t76
+        t203 = t201 - t202
+        t204 = t6 * t203
+        t205 = t26 * t68
+        t206 = t204 - t205
+        t88 = phi_dot * t3
+        t89 = t5 * t88
+        t119 = t5 * t89
+        t209 = t14 * t88
+        t208 = t4 * t76
+        t210 = 2.0 * t209
+        t211 = t4 * t173
+        t212 = t88 * t126
+        t213 = t211 + t212
+        t214 = t6 * t213
+        t215 = t210 - t214
+        t216 = t26 * t215
+        t217 = t119 * t90
+        t218 = t56 * t94
+        t219 = t4 * t57
+        t220 = m_2 * t51
+        t221 = t26 * t45
+        t222 = t44 + t104
+        t223 = t27 * t222
+        t224 = t221 + t223
+        t225 = t4 * t224
+        t226 = t220 + t225
+        t227 = t6 * t226
+        t228 = t56 * t105
+        t229 = t227 + t228
+        t230 = t6 * t229
+        t231 = t219 + t230
+        t232 = t6 * t231
+        t233 = t218 + t232
+        t234 = t39 * t233
+        t235 = t217 + t234
+        t236 = t19 * t235
+        t237 = t216 + t236
+        t238 = t6 * t237
+        t239 = t208 + t238
+        t240 = t6 * t239
+        t241 = t26 * t209
+        t242 = t240 - t241
+        t84 = t83 * t76
+        t86 = t45 * t76
+        t87 = t85 * t86
+        t91 = t89 * t90
+        t95 = t3 * t94
+        t96 = t83 * t57
+        t97 = m_2 * t50
+        t98 = (-1.0) + t19
+        t99 = t27 * t98
+        t100 = t99 - t26
+        t101 = t83 * t100
+        t102 = t97 + t101
+        t103 = t6 * t102
+        t106 = t3 * t105
+        t107 = t103 + t106
+        t108 = t6 * t107
+        t109 = t96 + t108
+        t110 = t6 * t109
+        t111 = t95 + t110
+        t112 = t39 * t111
+        t113 = t91 + t112
+        t114 = t19 * t113
+        t115 = t87 + t114
+        t116 = t6 * t115
+        t117 = t84 + t116
+        t118 = t6 * t117
+        t121 = t119 * t120
+        t122 = t118 - t121
+        t127 = t44 * t52
+        t128 = 2.0 * t26
+        t129 = t128 - t27
+        t130 = t5 * t129
+        t131 = t5 * t130
+        t132 = t127 + t131
+        t133 = phi_dot * t132
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = L * L
-        t19 = t14 * t14
-        t20 = t14 * t19
+        t20 = t14 * t14
         t21 = t14 * t20
-        t22 = t18 / t21
-        t23 = t6 * t4
-        t24 = m_2 * t18
-        t25 = Theta_1 + t24
-        t26 = t4 * t4
-        t27 = 2.0 - t26
-        t28 = x_dot * t6
-        t29 = y_dot * t5
-        t30 = t28 + t29
-        t31 = t4 * t30
-        t32 = L * t31
-        t33 = theta_dot * t3
-        t34 = t32 + t33
-        t35 = t4 * t34
-        t36 = t27 * t35
-        t37 = t5 * t36
-        t38 = phi_dot * t6
-        t39 = t14 * t38
-        t40 = t37 + t39
-        t41 = t3 * t40
-        t42 = t25 * t41
-        t43 = m_1 + m_2
-        t44 = 2.0 * t43
-        t45 = t25 - t44
-        t46 = t3 * t38
-        t47 = t14 * t46
-        t48 = t45 * t47
-        t49 = t7 + t15
-        t50 = 1.0 - t49
-        t51 = t6 * t50
-        t52 = m_2 * t51
-        t53 = t26 + (-2.0)
-        t54 = t14 + t53
-        t55 = t7 * t18
-        t56 = t54 + t55
-        t57 = t6 * t56
-        t58 = m_2 * t57
-        t59 = t5 * t4
-        t60 = t3 * t59
-        t61 = t43 * t18
-        t62 = t60 * t61
-        t63 = t58 - t62
-        t64 = t4 * t63
-        t65 = t43 + t25
-        t66 = t5 * t3
-        t67 = t3 * t66
-        t68 = t3 * t67
-        t69 = t65 * t68
-        t70 = t64 - t69
-        t71 = t4 * t70
-        t72 = t52 + t71
-        t73 = t34 * t72
-        t74 = t48 + t73
-        t75 = t18 * t74
-        t76 = t42 + t75
-        t77 = t4 * t76
-        t78 = t34 * t66
-        t79 = t25 * t78
-        t80 = t77 - t79
-        t81 = t4 * t80
-        t82 = t25 * t47
-        t83 = t81 - t82
-        t84 = t23 * t83
-        t85 = t22 * t84
-        t86 = t6 * t3
-        t87 = t34 * t86
-        t88 = t25 * t87
-        t89 = t3 * t23
-        t90 = t34 * t89
-        t91 = t53 * t90
-        t92 = t25 * t91
-        t93 = phi_dot * t5
-        t94 = t3 * t93
-        t95 = t14 * t94
-        t96 = t45 * t95
-        t97 = t7 * t14
-        t98 = 1.0 - t97
-        t99 = t5 * t98
-        t100 = m_2 * t99
-        t101 = t86 * t65
-        t102 = (-1.0) + t18
-        t103 = t43 * t102
-        t104 = t103 - t25
-        t105 = t3 * t104
-        t106 = t6 * t105
-        t107 = m_2 * t59
-        t108 = t106 + t107
-        t109 = t4 * t108
-        t110 = (-2.0) + t55
-        t111 = t5 * t110
-        t112 = m_2 * t111
-        t113 = t109 + t112
-        t114 = t4 * t113
-        t115 = t101 + t114
-        t116 = t4 * t115
-        t117 = t100 + t116
-        t118 = t34 * t117
-        t119 = t96 + t118
-        t120 = t18 * t119
-        t121 = t92 + t120
-        t122 = t4 * t121
-        t123 = t88 + t122
-        t124 = t4 * t123
-        t125 = t3 * t94
-        t126 = t3 * t125
-        t127 = t14 * t126
-        t128 = t25 * t127
-        t129 = t124 - t128
-        t130 = t23 * t129
-        t131 = t22 * t130
-        t132 = L * t18
-        t133 = t132 / t21
-        t134 = t4 * t23
-        t135 = t26 * t61
-        t136 = 2.0 * t25
-        t137 = t136 - t43
-        t138 = t3 * t137
-        t139 = t3 * t138
-        t140 = t135 + t139
-        t141 = phi_dot * t14
-        t142 = t140 * t141
-        t143 = t134 * t142
-        t144 = t133 * t143
-        t145 = t34 * t60
-        t146 = t27 * t145
-        t147 = t25 * t146
-        t148 = t6 * t98
-        t149 = m_2 * t148
-        t150 = 1.0 - t18
-        t151 = t43 * t150
-        t152 = t25 + t151
-        t153 = t3 * t152
-        t154 = t5 * t153
-        t155 = m_2 * t23
-        t156 = t154 + t155
-        t157 = t4 * t156
-        t158 = t6 * t110
-        t159 = m_2 * t158
-        t160 = t157 + t159
-        t161 = t4 * t160
-        t162 = t66 * t65
-        t163 = t161 - t162
-        t164 = t4 * t163
-        t165 = t149 + t164
-        t166 = t34 * t165
-        t167 = t48 + t166
-        t168 = t18 * t167
-        t169 = t147 + t168
-        t170 = t4 * t169
-        t171 = t170 - t79
-        t172 = t4 * t171
-        t173 = t3 * t46
-        t174 = t3 * t173
-        t175 = t14 * t174
-        t176 = t25 * t175
-        t177 = t172 - t176
-        t178 = t59 * t177
-        t179 = t22 * t178
-        t180 = t59 * t129
-        t181 = t22 * t180
-        t182 = t4 * t59
-        t183 = t182 * t142
-        t184 = t133 * t183
-        t185 = L / t21
-        t186 = t4 * t26
-        t187 = t4 * t186
-        t188 = 3.0 * t7
-        t189 = t187 + t188
-        t190 = t34 * t189
-        t191 = t5 * t190
-        t192 = t4 * t38
-        t193 = t14 * t192
-        t194 = t191 - t193
-        t195 = t4 * t194
-        t196 = 2.0 * t39
-        t197 = t195 + t196
-        t198 = t25 * t197
-        t199 = t14 * t173
-        t200 = t45 * t199
-        t201 = t86 * t98
-        t202 = m_2 * t201
-        t203 = m_2 * t89
-        t204 = t25 * t27
-        t205 = 2.0 - t55
-        t206 = t205 - t26
-        t207 = t43 * t206
-        t208 = t204 + t207
-        t209 = t5 * t208
-        t210 = t203 + t209
-        t211 = t4 * t210
-        t212 = t86 * t110
-        t213 = m_2 * t212
-        t214 = t211 + t213
-        t215 = t4 * t214
-        t216 = t5 * t65
-        t217 = t215 - t216
-        t218 = t4 * t217
-        t219 = t202 + t218
-        t220 = t34 * t219
-        t221 = t200 + t220
-        t222 = t18 * t221
-        t223 = t198 + t222
-        t224 = t4 * t223
-        t225 = t5 * t34
-        t226 = t25 * t225
-        t227 = t224 - t226
-        t228 = t4 * t227
-        t229 = t25 * t39
-        t230 = t228 - t229
-        t231 = t185 * t230
-        t232 = t6 * t34
-        t233 = t25 * t232
-        t234 = t14 * t93
-        t235 = 2.0 * t234
-        t236 = t6 * t190
-        t237 = t4 * t93
-        t238 = t14 * t237
-        t239 = t236 + t238
-        t240 = t4 * t239
-        t241 = t235 - t240
-        t242 = t25 * t241
-        t243 = t14 * t125
-        t244 = t45 * t243
-        t245 = t66 * t98
-        t246 = m_2 * t245
-        t247 = t6 * t65
-        t248 = m_2 * t60
-        t249 = t25 * t53
-        t250 = t26 + t110
-        t251 = t43 * t250
-        t252 = t249 + t251
-        t253 = t6 * t252
-        t254 = t248 + t253
-        t255 = t4 * t254
-        t256 = t66 * t110
-        t257 = m_2 * t256
-        t258 = t255 + t257
-        t259 = t4 * t258
-        t260 = t247 + t259
-        t261 = t4 * t260
-        t262 = t246 + t261
-        t263 = t34 * t262
-        t264 = t244 + t263
-        t265 = t18 * t264
-        t266 = t242 + t265
-        t267 = t4 * t266
-        t268 = t233 + t267
-        t269 = t4 * t268
-        t270 = t25 * t234
-        t271 = t269 - t270
-        t272 = t185 * t271
-        t273 = phi_dot * t3
-        t274 = t14 * t273
-        t275 = t274 * t140
-        t276 = t4 * t275
-        t277 = t22 * t276
+        t22 = t14 * t21
+        t23 = t19 / t22
+        t134 = t126 * t133
+        t244 = t23 * t126
+        t245 = t133 * t244
+        t246 = t5 * t245
+        t24 = t18 * t23
+        t82 = t24 * t81
+        t123 = t24 * t122
+        t137 = t50 * t23
+        t164 = t137 * t163
+        t165 = t137 * t122
+        t124 = L * t19
+        t125 = t124 / t22
+        t135 = t125 * t134
+        t136 = t18 * t135
+        t166 = t50 * t135
+        t167 = L / t22
+        t207 = t167 * t206
+        t243 = t167 * t242
         entries = (
-            t85,
-            t131,
-            t144,
+            t82,
+            t123,
+            t136,
             0.0,
-            t179,
-            t181,
-            t184,
+            t164,
+            t165,
+            t166,
             0.0,
-            t231,
-            t272,
-            t277,
+            t207,
+            t243,
+            t246,
             0.0,
             0.0,
             0.0,
@@ -1538,26 +1469,18 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t3 * t3
-            t14 = t5 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = t4 * t4
-        t19 = m_1 * t18
-        t20 = m_2 + t19
-        t21 = L * t20
-        t22 = L * t21
-        t23 = t3 * t3
-        t24 = Theta_1 * t23
-        t25 = t22 + t24
-        t26 = t25 / t9
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = t4 * t4
+        t14 = m_1 * t13
+        t15 = m_2 + t14
+        t16 = L * t15
+        t17 = L * t16
+        t18 = t3 * t3
+        t19 = Theta_1 * t18
+        t20 = t17 + t19
+        t21 = t20 / t9
         entries = (
-            t26,
+            t21,
             0.0,
             0.0,
             Theta_2,
@@ -1599,10 +1522,7 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        _failed_ = ~np.asarray(t13 > t17)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
-            status = _first(status, _failed_, 2)
+        status = _first(status, ~np.asarray(t13 > t17), 2)
         t18 = L * L
         t19 = m_2 * t18
         t20 = Theta_1 + t19
@@ -1612,38 +1532,36 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t24 = theta_dot * t5
         t25 = t20 * t24
         t26 = (-1.0) + t18
-        t27 = t22 * t26
-        t28 = t20 * t27
-        t29 = t5 * t4
-        t30 = t4 * t4
-        t31 = t30 + (-2.0)
-        t32 = t29 * t31
-        t33 = t20 * t32
-        t34 = m_1 + m_2
-        t35 = t34 * t18
-        t36 = t30 * t35
-        t37 = t34 + t20
-        t38 = t7 * t37
-        t39 = t36 + t38
-        t40 = t29 * t39
-        t41 = t18 * t40
-        t42 = t33 + t41
-        t43 = theta_dot * t42
-        t44 = t28 + t43
+        t27 = t26 * t23
+        t28 = t4 * t4
+        t29 = t28 + (-2.0)
+        t30 = t20 * t29
+        t31 = m_1 + m_2
+        t32 = t31 * t18
+        t33 = t28 * t32
+        t34 = t31 + t20
+        t35 = t3 * t34
+        t36 = t3 * t35
+        t37 = t33 + t36
+        t38 = t18 * t37
+        t39 = t30 + t38
+        t40 = t4 * t24
+        t41 = t39 * t40
+        t42 = t27 + t41
+        t43 = t4 * t42
+        t44 = t25 + t43
         t45 = t4 * t44
-        t46 = t25 + t45
-        t47 = t4 * t46
-        t48 = t23 + t47
-        t49 = t6 * t18
-        t50 = t6 * t49
-        t51 = t6 * t50
+        t46 = t23 + t45
+        t47 = t6 * t18
+        t48 = t6 * t47
+        t49 = t6 * t48
+        t50 = t4 * t49
+        t51 = t4 * t50
         t52 = t4 * t51
-        t53 = t4 * t52
-        t54 = t4 * t53
-        t55 = t14 * t54
-        t56 = t48 / t55
+        t53 = t14 * t52
+        t54 = t46 / t53
         entries = (
-            t56,
+            t54,
             0.0,
             0.0,
             0.0,
@@ -1702,18 +1620,10 @@ def minimal_control_matrix(q, p=PARAMETERS):
         t10 = t7 * t7
         t11 = 1.0 + t10
         t12 = t11 * 1.262177448353619e-29
-        _failed_ = ~np.asarray(t9 > t12)
-        if np.any(_failed_ & (status == 0)):
-            t13 = t5 * t5
-            t14 = t3 * t7
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = t16 + t9
-            status = _first(status, _failed_ & ~np.asarray(t17 > t12), 2)
-            status = _first(status, _failed_, 2)
-        t18 = 1.0 / t4
+        status = _first(status, ~np.asarray(t9 > t12), 2)
+        t13 = 1.0 / t4
         entries = (
-            t18,
+            t13,
             0.0,
             0.0,
             1.0,
@@ -1736,18 +1646,18 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         theta_dot = qd[..., 2]
         phi_dot = qd[..., 3]
         L = np.float64(p.L)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t3 * t8
         t10 = t9 * t9
         t11 = t7 + t10
-        t12 = t6 * t8
+        t12 = t4 * t8
         t13 = t12 * t12
         t14 = t11 + t13
         t15 = t8 * t8
@@ -1755,25 +1665,22 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = L / t14
-        t19 = x_dot * t6
-        t20 = y_dot * t5
-        t21 = t19 + t20
-        t22 = t4 * t21
-        t23 = L * t22
-        t24 = theta_dot * t3
-        t25 = t23 + t24
-        t26 = t6 * t4
-        t27 = t25 * t26
-        t28 = t18 * t27
-        t29 = t5 * t4
-        t30 = t25 * t29
-        t31 = t18 * t30
-        t32 = t3 * t25
-        t33 = t32 / t14
+        t19 = theta_dot * t5
+        t20 = x_dot * t4
+        t21 = y_dot * t3
+        t22 = t20 + t21
+        t23 = t8 * t22
+        t24 = t19 + t23
+        t25 = t6 * t24
+        t26 = t18 * t25
+        t27 = t4 * t26
+        t28 = t3 * t26
+        t29 = t5 * t24
+        t30 = t29 / t14
         entries = (
+            t27,
             t28,
-            t31,
-            t33,
+            t30,
             phi_dot,
         )
         return _result("admissible_velocity", status, batch, (4,), entries)
@@ -1817,93 +1724,71 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = y_ddot * t6
+        t18 = t14 * t14
         t19 = t14 * t18
-        t20 = t14 * t19
-        t21 = x_dot * t6
-        t22 = y_dot * t5
-        t23 = t21 + t22
-        t24 = t4 * t23
-        t25 = L * t24
-        t26 = theta_dot * t3
+        t20 = L / t19
+        t21 = t6 * t14
+        t22 = t14 * t21
+        t23 = y_ddot * t22
+        t24 = theta_dot * t3
+        t25 = x_dot * t6
+        t26 = y_dot * t5
         t27 = t25 + t26
-        t28 = t8 * t3
-        t29 = t27 * t28
-        t30 = t27 * t29
-        t31 = t20 - t30
-        t32 = t5 * t31
-        t33 = x_ddot * t6
-        t34 = t6 * t33
-        t35 = t14 * t34
-        t36 = t14 * t35
-        t37 = t32 + t36
-        t38 = t4 * t37
-        t39 = L * t38
-        t40 = theta_ddot * t6
-        t41 = t14 * t40
-        t42 = t14 * t41
-        t43 = t5 * t3
+        t28 = t8 * t27
+        t29 = t24 + t28
+        t30 = t3 * t29
+        t31 = t29 * t30
+        t32 = t8 * t31
+        t33 = t23 - t32
+        t34 = t5 * t33
+        t35 = x_ddot * t6
+        t36 = t35 * t22
+        t37 = t34 + t36
+        t38 = t8 * t37
+        t39 = theta_ddot * t14
+        t40 = t21 * t39
+        t41 = t5 * t31
+        t42 = t3 * t41
+        t43 = t40 - t42
         t44 = t3 * t43
-        t45 = t27 * t44
-        t46 = t27 * t45
-        t47 = t42 - t46
-        t48 = t3 * t47
-        t49 = t39 + t48
-        t50 = t4 * t49
-        t51 = phi_dot * t6
-        t52 = t3 * t51
-        t53 = t14 * t52
-        t54 = t27 * t53
-        t55 = t50 - t54
-        t56 = t14 * t14
-        t57 = t14 * t56
-        t58 = L / t57
-        t59 = t55 * t58
-        t60 = y_ddot * t5
-        t61 = t33 + t60
-        t62 = t56 * t61
-        t63 = t5 * t62
-        t64 = t6 * t4
-        t65 = t3 * t64
-        t66 = t27 * t65
-        t67 = t27 * t66
-        t68 = L * t67
-        t69 = t63 + t68
-        t70 = t4 * t69
-        t71 = L * t70
-        t72 = theta_ddot * t5
-        t73 = t14 * t72
-        t74 = t14 * t73
-        t75 = t6 * t3
+        t45 = t38 + t44
+        t46 = t4 * t45
+        t47 = phi_dot * t30
+        t48 = t21 * t47
+        t49 = t46 - t48
+        t50 = t20 * t49
+        t51 = y_ddot * t5
+        t52 = t35 + t51
+        t53 = t18 * t52
+        t54 = t5 * t53
+        t55 = t6 * t31
+        t56 = t8 * t55
+        t57 = t54 + t56
+        t58 = t8 * t57
+        t59 = t5 * t14
+        t60 = t39 * t59
+        t61 = t3 * t55
+        t62 = t60 + t61
+        t63 = t3 * t62
+        t64 = t58 + t63
+        t65 = t4 * t64
+        t66 = t47 * t59
+        t67 = t65 - t66
+        t68 = t20 * t67
+        t69 = t14 * t52
+        t70 = t3 * t69
+        t71 = phi_dot * t29
+        t72 = L * t71
+        t73 = t70 + t72
+        t74 = t8 * t73
+        t75 = t3 * t39
         t76 = t3 * t75
-        t77 = t27 * t76
-        t78 = t27 * t77
-        t79 = t74 + t78
-        t80 = t3 * t79
-        t81 = t71 + t80
-        t82 = t4 * t81
-        t83 = phi_dot * t5
-        t84 = t3 * t83
-        t85 = t14 * t84
-        t86 = t27 * t85
-        t87 = t82 - t86
-        t88 = t58 * t87
-        t89 = t14 * t61
-        t90 = t3 * t89
-        t91 = phi_dot * t27
-        t92 = L * t91
-        t93 = t90 + t92
-        t94 = t4 * t93
-        t95 = L * t94
-        t96 = theta_ddot * t3
-        t97 = t3 * t96
-        t98 = t14 * t97
-        t99 = t95 + t98
-        t100 = t99 / t56
+        t77 = t74 + t76
+        t78 = t77 / t18
         entries = (
-            t59,
-            t88,
-            t100,
+            t50,
+            t68,
+            t78,
             phi_ddot,
         )
         return _result("admissible_acceleration", status, batch, (4,), entries)
@@ -2047,7 +1932,6 @@ def actuator_mass_matrix(q, p=PARAMETERS):
     )
     status = np.zeros((), dtype=np.int64)
     with np.errstate(all="ignore"):
-        theta = q[..., 2]
         phi = q[..., 3]
         L = np.float64(p.L)
         m_1 = np.float64(p.m_1)
@@ -2064,27 +1948,18 @@ def actuator_mass_matrix(q, p=PARAMETERS):
         _failed_ = ~np.asarray(t5 > t7)
         if np.any(_failed_ & (status == 0)):
             t8 = t2 * t2
-            t9, t10 = _sincos(theta)
-            t11 = t9 * t4
-            t12 = t11 * t11
-            t13 = t8 + t12
-            t14 = t10 * t4
-            t15 = t14 * t14
-            t16 = t13 + t15
-            t17 = np.abs(theta)
-            status = _first(status, _failed_ & ~np.asarray(100000.0 >= t17), 4)
-            status = _first(status, _failed_ & ~np.asarray(t16 > t7), 2)
+            status = _first(status, _failed_ & ~np.asarray(t8 > t7), 2)
             status = _first(status, _failed_, 3)
-        t18 = m_1 + m_2
-        t19 = t2 / t4
-        t20 = L * L
-        t21 = m_2 * t20
-        t22 = Theta_1 + t21
-        t23 = t22 * t19
-        t24 = t19 * t23
-        t25 = t18 + t24
+        t9 = m_1 + m_2
+        t10 = t2 / t4
+        t11 = L * L
+        t12 = m_2 * t11
+        t13 = Theta_1 + t12
+        t14 = t13 * t10
+        t15 = t10 * t14
+        t16 = t9 + t15
         entries = (
-            t25,
+            t16,
             0.0,
             0.0,
             Theta_2,
@@ -2128,7 +2003,7 @@ def actuator_bias(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(t14 > t17), 2)
         _failed_ = ~np.asarray(t15 > t17)
         if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
+            status = _first(status, _failed_ & ~np.asarray(t7 > t17), 2)
             status = _first(status, _failed_, 3)
         t18 = L * L
         t19 = m_2 * t18
@@ -2176,140 +2051,134 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(phi)
         t5, t6 = _sincos(theta)
-        t7 = t3 * t3
         t8 = L * t4
         t9 = t5 * t8
+        t11 = t6 * t8
+        t42 = L * m_2
+        t43 = theta_dot * t42
+        t44 = theta_dot * t6
+        t49 = theta_dot * t5
+        t45 = t43 * t44
+        t46 = K_r * t6
+        t47 = t45 + t46
+        t48 = t11 * t47
+        t50 = t43 * t49
+        t51 = K_r * t5
+        t52 = t50 + t51
+        t53 = t9 * t52
+        t54 = t48 + t53
+        t55 = Theta_2 * t54
+        t77 = y_dot * t49
+        t78 = x_dot * t44
+        t79 = t77 + t78
+        t65 = t6 * t4
+        t66 = t5 * t3
+        t67 = t65 - t66
+        t69 = t5 * t4
+        t70 = t6 * t3
+        t71 = t69 + t70
+        t61 = phi_dot * t3
+        t62 = L * t61
+        t63 = theta_dot * t62
+        t64 = theta_dot + phi_dot
+        t68 = x_dot * t67
+        t72 = y_dot * t71
+        t73 = t68 + t72
+        t74 = t64 * t73
+        t75 = t63 + t74
+        t76 = t6 * t75
+        t80 = t79 * t67
+        t81 = t76 - t80
+        t94 = t5 * t75
+        t95 = t79 * t71
+        t96 = t94 - t95
+        t20 = m_1 * t4
+        t84 = L * Theta_2
+        t85 = m_2 * t71
+        t86 = t5 * t20
+        t87 = t85 + t86
+        t88 = t84 * t87
+        t98 = m_2 * t67
+        t99 = t6 * t20
+        t100 = t98 + t99
+        t101 = t84 * t100
+        t83 = t8 * t79
+        t57 = L * t42
+        t58 = Theta_1 + t57
+        t59 = t3 * t58
+        t60 = Theta_2 * t59
+        t56 = t11 * t55
+        t82 = t60 * t81
+        t89 = t83 * t88
+        t90 = t82 + t89
+        t91 = t56 - t90
+        t93 = t9 * t55
+        t97 = t60 * t96
+        t102 = t83 * t101
+        t103 = t97 - t102
+        t104 = t93 - t103
+        t106 = t3 * t55
+        t107 = t88 * t96
+        t108 = t81 * t101
+        t109 = t107 + t108
+        t110 = t106 + t109
+        t115 = T * t3
+        t116 = t42 * t115
+        t112 = m_1 + m_2
+        t113 = T * t112
+        t114 = t11 * t113
+        t117 = t5 * t116
+        t118 = t114 - t117
+        t119 = t11 * t118
+        t120 = t9 * t113
+        t121 = t6 * t116
+        t122 = t120 + t121
+        t123 = t9 * t122
+        t124 = t119 + t123
+        t125 = t115 * t59
+        t126 = t124 + t125
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t12 = t11 * t11
+        t13 = t10 + t12
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
+        t7 = t3 * t3
+        t14 = t7 + t13
         status = _first(status, ~np.asarray(t14 > t17), 2)
+        t29 = np.abs(m_2)
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_1)
-        t28 = np.abs(m_2)
-        t29 = np.abs(L)
-        t30 = t29 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = np.abs(Theta_2)
-        t34 = t32 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t28
-        t38 = t37 * t33
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = L * m_2
-        t45 = theta_dot * t44
-        t46 = theta_dot * t6
-        t47 = t45 * t46
-        t48 = K_r * t6
-        t49 = t47 + t48
-        t50 = t12 * t49
-        t51 = theta_dot * t5
-        t52 = t45 * t51
-        t53 = K_r * t5
-        t54 = t52 + t53
-        t55 = t9 * t54
-        t56 = t50 + t55
-        t57 = Theta_2 * t56
-        t58 = t12 * t57
-        t59 = y_dot * t51
-        t60 = x_dot * t46
-        t61 = t59 + t60
-        t62 = t8 * t61
-        t63 = L * Theta_2
-        t64 = t5 * t4
-        t65 = m_1 * t64
-        t66 = t6 * t3
-        t67 = t64 + t66
-        t68 = m_2 * t67
-        t69 = t65 + t68
-        t70 = t63 * t69
-        t71 = t62 * t70
-        t72 = L * t44
-        t73 = Theta_1 + t72
-        t74 = t3 * t73
-        t75 = Theta_2 * t74
-        t76 = phi_dot * t3
-        t77 = L * t76
-        t78 = theta_dot * t77
-        t79 = theta_dot + phi_dot
-        t80 = t6 * t4
-        t81 = t5 * t3
-        t82 = t80 - t81
-        t83 = x_dot * t82
-        t84 = y_dot * t67
-        t85 = t83 + t84
-        t86 = t79 * t85
-        t87 = t78 + t86
-        t88 = t6 * t87
-        t89 = t61 * t82
-        t90 = t88 - t89
-        t91 = t75 * t90
-        t92 = t71 + t91
-        t93 = t58 - t92
-        t94 = t43 * t93
-        t95 = t9 * t57
-        t96 = t5 * t87
-        t97 = t61 * t67
-        t98 = t96 - t97
-        t99 = t75 * t98
-        t100 = m_1 * t80
-        t101 = m_2 * t82
-        t102 = t100 + t101
-        t103 = t63 * t102
-        t104 = t62 * t103
-        t105 = t99 - t104
-        t106 = t95 - t105
-        t107 = t43 * t106
-        t108 = t3 * t57
-        t109 = t89 - t88
-        t110 = t103 * t109
-        t111 = t70 * t98
-        t112 = t110 - t111
-        t113 = t108 - t112
-        t114 = t43 * t113
-        t115 = m_1 + m_2
-        t116 = T * t12
-        t117 = t115 * t116
-        t118 = t5 * t44
-        t119 = T * t3
-        t120 = t118 * t119
-        t121 = t117 - t120
-        t122 = t12 * t121
-        t123 = T * t9
-        t124 = t115 * t123
-        t125 = t6 * t44
-        t126 = t125 * t119
-        t127 = t124 + t126
-        t128 = t9 * t127
-        t129 = t122 + t128
-        t130 = t119 * t73
-        t131 = t3 * t130
-        t132 = t129 + t131
-        t133 = t43 * t132
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t41 = 1.0 / t25
+        t92 = t41 * t91
+        t105 = t41 * t104
+        t111 = t41 * t110
+        t127 = t41 * t126
         entries = (
-            t94,
-            t107,
-            t114,
-            t133,
+            t92,
+            t105,
+            t111,
+            t127,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2346,138 +2215,133 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t8 = L * t4
         t9 = t5 * t8
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
+        t11 = t6 * t8
+        t12 = t11 * t11
+        t13 = t10 + t12
+        t14 = t7 + t13
         t15 = t8 * t8
         t16 = 1.0 + t15
         t17 = t16 * 1.262177448353619e-29
         status = _first(status, ~np.asarray(t14 > t17), 2)
+        t29 = np.abs(m_2)
+        t27 = np.abs(Theta_2)
+        t28 = np.abs(Theta_1)
+        t30 = np.abs(L)
+        t31 = t30 * t30
+        t32 = t29 * t31
+        t33 = t28 + t32
+        t34 = t7 * t33
+        t35 = np.abs(m_1)
+        t36 = t35 + t29
+        t37 = t36 * t13
+        t38 = t34 + t37
+        t39 = t27 * t38
+        t40 = t39 * 3.552713678800501e-15
+        t20 = m_1 * t4
         t18 = Theta_1 * t7
         t19 = L * L
-        t20 = t4 * t4
-        t21 = m_1 * t20
+        t21 = t4 * t20
         t22 = m_2 + t21
         t23 = t19 * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
-        t27 = np.abs(Theta_1)
-        t28 = np.abs(m_2)
-        t29 = np.abs(L)
-        t30 = t29 * t29
-        t31 = t28 * t30
-        t32 = t27 + t31
-        t33 = np.abs(Theta_2)
-        t34 = t32 * t33
-        t35 = t7 * t34
-        t36 = np.abs(m_1)
-        t37 = t36 + t28
-        t38 = t37 * t33
-        t39 = t10 + t13
-        t40 = t38 * t39
-        t41 = t35 + t40
-        t42 = t41 * 3.552713678800501e-15
-        status = _first(status, ~np.asarray(t26 > t42), 5)
-        t43 = 1.0 / t25
-        t44 = L * Theta_2
-        t45 = t5 * t4
-        t46 = m_1 * t45
-        t47 = t6 * t3
-        t48 = t45 + t47
-        t49 = m_2 * t48
-        t50 = t46 + t49
-        t51 = t44 * t50
-        t52 = L * m_2
-        t53 = theta_dot * t52
-        t54 = theta_dot * t6
-        t55 = t53 * t54
-        t56 = K_r * t6
-        t57 = t55 + t56
-        t58 = m_1 + m_2
-        t59 = theta_dot * t5
-        t60 = y_dot * t59
-        t61 = x_dot * t54
-        t62 = t60 + t61
-        t63 = t8 * t62
-        t64 = t63 * t51
-        t65 = L * t52
-        t66 = Theta_1 + t65
-        t67 = t3 * t66
-        t68 = Theta_2 * t67
-        t69 = phi_dot * t3
-        t70 = L * t69
-        t71 = theta_dot * t70
-        t72 = theta_dot + phi_dot
-        t73 = t6 * t4
-        t74 = t5 * t3
-        t75 = t73 - t74
-        t76 = x_dot * t75
-        t77 = y_dot * t48
+        status = _first(status, ~np.asarray(t26 > t40), 5)
+        t50 = L * m_2
+        t51 = theta_dot * t50
+        t52 = theta_dot * t6
+        t75 = theta_dot * t5
+        t53 = t51 * t52
+        t54 = K_r * t6
+        t55 = t53 + t54
+        t76 = y_dot * t75
+        t77 = x_dot * t52
         t78 = t76 + t77
-        t79 = t72 * t78
-        t80 = t71 + t79
-        t81 = t6 * t80
-        t82 = t62 * t75
-        t83 = t81 - t82
-        t84 = t68 * t83
-        t85 = t64 + t84
-        t86 = t43 * t85
-        t87 = t58 * t86
-        t88 = t5 * t52
-        t89 = m_1 * t73
-        t90 = m_2 * t75
-        t91 = t89 + t90
-        t92 = t44 * t91
-        t93 = t82 - t81
-        t94 = t92 * t93
-        t95 = t5 * t80
-        t96 = t62 * t48
-        t97 = t95 - t96
-        t98 = t51 * t97
-        t99 = t94 - t98
-        t100 = t43 * t99
-        t101 = t88 * t100
-        t102 = t87 - t101
-        t103 = t57 + t102
-        t104 = t51 * t103
-        t105 = t53 * t59
-        t106 = K_r * t5
-        t107 = t105 + t106
-        t108 = t68 * t97
-        t109 = t63 * t92
+        t102 = t51 * t75
+        t103 = K_r * t5
+        t104 = t102 + t103
+        t42 = L * Theta_2
+        t43 = t5 * t4
+        t44 = t6 * t3
+        t45 = t43 + t44
+        t66 = t6 * t4
+        t67 = t5 * t3
+        t68 = t66 - t67
+        t46 = m_2 * t45
+        t47 = t5 * t20
+        t48 = t46 + t47
+        t49 = t42 * t48
+        t90 = m_2 * t68
+        t91 = t6 * t20
+        t92 = t90 + t91
+        t93 = t42 * t92
+        t62 = phi_dot * t3
+        t63 = L * t62
+        t64 = theta_dot * t63
+        t65 = theta_dot + phi_dot
+        t69 = x_dot * t68
+        t70 = y_dot * t45
+        t71 = t69 + t70
+        t72 = t65 * t71
+        t73 = t64 + t72
+        t74 = t6 * t73
+        t79 = t78 * t68
+        t80 = t74 - t79
+        t86 = t5 * t73
+        t87 = t78 * t45
+        t88 = t86 - t87
+        t82 = t8 * t78
+        t58 = L * t50
+        t59 = Theta_1 + t58
+        t60 = t3 * t59
+        t61 = Theta_2 * t60
+        t81 = t61 * t80
+        t83 = t82 * t49
+        t84 = t81 + t83
+        t89 = t49 * t88
+        t94 = t80 * t93
+        t95 = t89 + t94
+        t105 = t61 * t88
+        t106 = t82 * t93
+        t107 = t105 - t106
+        t41 = 1.0 / t25
+        t56 = m_1 + m_2
+        t57 = t56 * t41
+        t96 = t41 * t95
+        t97 = t50 * t96
+        t85 = t57 * t84
+        t98 = t5 * t97
+        t99 = t85 + t98
+        t100 = t55 + t99
+        t108 = t57 * t107
+        t109 = t6 * t97
         t110 = t108 - t109
-        t111 = t43 * t110
-        t112 = t58 * t111
-        t113 = t6 * t52
-        t114 = t113 * t100
-        t115 = t112 + t114
-        t116 = t107 + t115
-        t117 = t92 * t116
-        t118 = t104 - t117
-        t119 = t8 * t118
-        t120 = t68 * t103
-        t121 = t66 * t100
-        t122 = t52 * t62
-        t123 = t121 - t122
-        t124 = t92 * t123
-        t125 = t120 - t124
-        t126 = t75 * t125
-        t127 = t119 - t126
-        t128 = t68 * t116
-        t129 = t51 * t123
-        t130 = t128 - t129
-        t131 = t48 * t130
-        t132 = t127 - t131
-        t133 = t43 * t132
-        t134 = t6 * t125
-        t135 = t5 * t130
-        t136 = t134 + t135
-        t137 = t43 * t136
+        t111 = t104 + t110
+        t116 = t50 * t78
+        t117 = t59 * t96
+        t118 = t116 + t117
+        t115 = t61 * t100
+        t119 = t93 * t118
+        t120 = t115 + t119
+        t123 = t61 * t111
+        t124 = t49 * t118
+        t125 = t123 + t124
+        t101 = t49 * t100
+        t112 = t93 * t111
+        t113 = t101 - t112
+        t114 = t8 * t113
+        t121 = t68 * t120
+        t122 = t114 - t121
+        t126 = t45 * t125
+        t127 = t122 - t126
+        t128 = t41 * t127
+        t129 = t6 * t120
+        t130 = t5 * t125
+        t131 = t129 + t130
+        t132 = t41 * t131
         entries = (
-            t133,
-            t137,
+            t128,
+            t132,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2508,25 +2372,24 @@ def energy(q, qd, p=PARAMETERS):
         t6 = y_dot * y_dot
         t7 = t5 + t6
         t8 = t4 * t7
-        t9 = 0.5 * t8
-        t10 = phi_dot * phi_dot
-        t11 = Theta_2 * t10
+        t9 = phi_dot * phi_dot
+        t10 = Theta_2 * t9
+        t11 = t8 + t10
         t12 = 0.5 * t11
-        t13 = t9 + t12
-        t14 = L * m_2
-        t15 = y_dot * t3
-        t16 = x_dot * t2
-        t17 = t15 - t16
-        t18 = t14 * t17
-        t19 = L * t14
-        t20 = Theta_1 + t19
-        t21 = theta_dot * t20
-        t22 = 0.5 * t21
-        t23 = t18 + t22
-        t24 = theta_dot * t23
-        t25 = t13 + t24
+        t13 = L * m_2
+        t14 = y_dot * t3
+        t15 = x_dot * t2
+        t16 = t14 - t15
+        t17 = t13 * t16
+        t18 = L * t13
+        t19 = Theta_1 + t18
+        t20 = theta_dot * t19
+        t21 = 0.5 * t20
+        t22 = t17 + t21
+        t23 = theta_dot * t22
+        t24 = t12 + t23
         entries = (
-            t25,
+            t24,
             0.0,
         )
         return _result("energy", status, batch, (2,), entries)
@@ -2559,34 +2422,31 @@ def singularity(q, p=PARAMETERS):
         t15 = t6 * t3
         t16 = t14 + t15
         t17 = _ratio_or_zero(t16, t11)
-        t18 = t6 * t6
-        t19 = t18 * t17
-        t20 = t17 * t19
-        t21 = t13 + t20
-        t22 = t6 * t4
-        t23 = t5 * t3
-        t24 = t22 - t23
-        t25 = -t24
-        t26 = _ratio_or_zero(t25, t11)
-        t27 = t5 * t26
-        t28 = t6 * t17
-        t29 = 2.0 * t28
-        t30 = t27 + t29
-        t31 = t26 * t30
-        t32 = t5 * t31
-        t33 = t21 + t32
-        t34 = t6 * t12
-        t35 = t34 * t34
-        t36 = t5 * t12
-        t37 = t36 * t36
-        t38 = t27 + t28
-        t39 = t38 * t38
-        t40 = t37 + t39
-        t41 = t35 + t40
-        t42 = _ratio_or_zero(t13, t41)
+        t18 = t6 * t17
+        t19 = t18 * t18
+        t20 = t13 + t19
+        t21 = t6 * t4
+        t22 = t5 * t3
+        t23 = t21 - t22
+        t24 = -t23
+        t25 = _ratio_or_zero(t24, t11)
+        t26 = t5 * t25
+        t27 = 2.0 * t18
+        t28 = t26 + t27
+        t29 = t26 * t28
+        t30 = t20 + t29
+        t31 = t6 * t12
+        t32 = t31 * t31
+        t33 = t5 * t12
+        t34 = t33 * t33
+        t35 = t26 + t18
+        t36 = t35 * t35
+        t37 = t34 + t36
+        t38 = t32 + t37
+        t39 = _ratio_or_zero(t13, t38)
         entries = (
-            t33,
-            t42,
+            t30,
+            t39,
         )
         return _result("singularity", status, batch, (2,), entries)
 

@@ -18,10 +18,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      20     50      5      2      2      0
- * forward_dynamics     129    245     19      6      3      0
- * multipliers          111    217     22      6      3      0
- * singularity           30     72     15      4      2      0
+ * inverse_dynamics      15     32      2      0      2      0
+ * forward_dynamics      97    178     12      5      3      0
+ * multipliers           80    152     14      5      3      0
+ * singularity           27     63     12      3      2      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

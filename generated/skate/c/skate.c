@@ -102,7 +102,8 @@ skate_status skate_mass_matrix(const double q[3], const skate_params *p, double 
     (void)q;
     const double Theta_s = p->Theta_s;
     const double m_s = p->m_s;
-    double rest = (Theta_s - Theta_s) * m_s;
+    double rest = Theta_s - Theta_s;
+    rest *= m_s;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -173,8 +174,9 @@ skate_status skate_constraint_jacobian(const double q[3], const skate_params *p,
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
+    double rest = t2 - t2;
     const double t4 = -t3;
-    double rest = (t2 - t2) * t4;
+    rest *= t4;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -196,8 +198,9 @@ skate_status skate_constraint_jacobian_dot(const double q[3], const double qd[3]
     skate_sincos(phi, &t2, &t3);
     const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
+    double rest = t4 - t4;
     const double t5 = phi_dot * t2;
-    double rest = (t4 - t4) * t5;
+    rest *= t5;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -217,8 +220,9 @@ skate_status skate_constraint_pseudoinverse(const double q[3], const skate_param
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
+    double rest = t2 - t2;
     const double t4 = -t3;
-    double rest = (t2 - t2) * t4;
+    rest *= t4;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -239,9 +243,11 @@ skate_status skate_nullspace_projector(const double q[3], const skate_params *p,
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
+    double rest = t4 - t4;
     const double t5 = t2 * t3;
+    rest *= t5;
     const double t6 = t2 * t2;
-    double rest = (t4 - t4) * t5 * t6;
+    rest *= t6;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -267,16 +273,17 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    const double phi_dot = qd[0];
-    const double t4 = phi_dot * t3;
+    const double t4 = 2.0 * t3;
     const double t5 = t2 * t4;
-    const double t6 = 2.0 * t5;
+    const double phi_dot = qd[0];
+    const double t6 = phi_dot * t5;
+    double rest = t6 - t6;
     const double t7 = -t6;
-    const double t8 = t3 * t3;
-    const double t9 = 2.0 * t8;
-    const double t10 = (-1.0) + t9;
-    const double t11 = phi_dot * t10;
-    double rest = (t7 - t7) * t11 * t6;
+    rest *= t7;
+    const double t8 = t3 * t4;
+    const double t9 = (-1.0) + t8;
+    const double t10 = phi_dot * t9;
+    rest *= t10;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -285,9 +292,9 @@ skate_status skate_nullspace_projector_dot(const double q[3], const double qd[3]
     N_B_dot[2] = 0.0;
     N_B_dot[3] = 0.0;
     N_B_dot[4] = t7;
-    N_B_dot[5] = t11;
+    N_B_dot[5] = t10;
     N_B_dot[6] = 0.0;
-    N_B_dot[7] = t11;
+    N_B_dot[7] = t10;
     N_B_dot[8] = t6;
     return SKATE_OK;
 }
@@ -301,6 +308,7 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
+    double rest = t2 - t2;
     const double m_s = p->m_s;
     const double Theta_s = p->Theta_s;
     const double t4 = m_s * Theta_s;
@@ -313,7 +321,7 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
         return SKATE_MASS_RANK;
     }
     const double t10 = -t3;
-    double rest = (t2 - t2) * t10;
+    rest *= t10;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -344,9 +352,11 @@ skate_status skate_weighted_nullspace_projector(const double q[3], const skate_p
         return SKATE_MASS_RANK;
     }
     const double t10 = t3 * t3;
+    double rest = t10 - t10;
     const double t11 = t2 * t3;
+    rest *= t11;
     const double t12 = t2 * t2;
-    double rest = (t10 - t10) * t11 * t12;
+    rest *= t12;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -372,7 +382,8 @@ skate_status skate_control_matrix(const double q[3], const skate_params *p, doub
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = (t3 - t3) * t2;
+    double rest = t2 - t2;
+    rest *= t3;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -395,7 +406,8 @@ skate_status skate_projected_control_matrix(const double q[3], const skate_param
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = (t3 - t3) * t2;
+    double rest = t2 - t2;
+    rest *= t3;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -418,7 +430,8 @@ skate_status skate_projected_control_pseudoinverse(const double q[3], const skat
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    double rest = (t3 - t3) * t2;
+    double rest = t2 - t2;
+    rest *= t3;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -443,9 +456,6 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
     if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
-        if (!(1.0 > 0.0)) {
-            return SKATE_CONSTRAINT_RANK;
-        }
         return SKATE_CONSTRAINT_RANK;
     }
     const double t5 = t2 / t3;
@@ -474,13 +484,14 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
     const double t4 = t3 * t3;
     const double m_s = p->m_s;
     const double t5 = m_s * t4;
-    const double t6 = t2 * t3;
-    const double t7 = m_s * t6;
-    const double t8 = t2 * t2;
-    const double t9 = m_s * t8;
+    double rest = t5 - t5;
+    const double t6 = m_s * t2;
+    const double t7 = t3 * t6;
+    rest *= t7;
+    const double t8 = t2 * t6;
+    rest *= t8;
     const double Theta_s = p->Theta_s;
-    double rest = (Theta_s - Theta_s) * t5 * t7;
-    rest += t9 - t9;
+    rest += Theta_s - Theta_s;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -492,7 +503,7 @@ skate_status skate_projected_mass_matrix(const double q[3], const skate_params *
     G_tilde[5] = t7;
     G_tilde[6] = 0.0;
     G_tilde[7] = t7;
-    G_tilde[8] = t9;
+    G_tilde[8] = t8;
     return SKATE_OK;
 }
 
@@ -507,18 +518,19 @@ skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[
     skate_sincos(phi, &t2, &t3);
     const double phi_dot = qd[0];
     const double t4 = phi_dot * t3;
-    const double t5 = t2 * t4;
     const double m_s = p->m_s;
-    const double t6 = m_s * t5;
+    const double t5 = m_s * t2;
+    const double t6 = t4 * t5;
+    double rest = t6 - t6;
     const double t7 = -t6;
+    rest *= t7;
     const double t8 = t3 * t4;
     const double t9 = m_s * t8;
-    const double t10 = phi_dot * t2;
+    rest *= t9;
+    const double t10 = phi_dot * t5;
     const double t11 = t2 * t10;
-    const double t12 = m_s * t11;
-    const double t13 = -t12;
-    double rest = (t7 - t7) * t9 * t13;
-    rest += t6 - t6;
+    const double t12 = -t11;
+    rest += t12 - t12;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -529,7 +541,7 @@ skate_status skate_projected_coriolis_matrix(const double q[3], const double qd[
     C_tilde[4] = t7;
     C_tilde[5] = t9;
     C_tilde[6] = 0.0;
-    C_tilde[7] = t13;
+    C_tilde[7] = t12;
     C_tilde[8] = t6;
     return SKATE_OK;
 }
@@ -564,15 +576,13 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
     if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
-        if (!(1.0 > 0.0)) {
-            return SKATE_CONSTRAINT_RANK;
-        }
         return SKATE_CONSTRAINT_RANK;
     }
     const double m_s = p->m_s;
     const double t5 = m_s / t4;
+    double rest = t5 - t5;
     const double Theta_s = p->Theta_s;
-    double rest = (Theta_s - Theta_s) * t5;
+    rest *= Theta_s;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -594,9 +604,6 @@ skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3]
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
     if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
-        if (!(1.0 > 0.0)) {
-            return SKATE_CONSTRAINT_RANK;
-        }
         return SKATE_CONSTRAINT_RANK;
     }
     const double phi_dot = qd[0];
@@ -645,9 +652,6 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
     if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
-        if (!(1.0 > 0.0)) {
-            return SKATE_CONSTRAINT_RANK;
-        }
         return SKATE_CONSTRAINT_RANK;
     }
     const double t5 = 1.0 / t3;
@@ -678,9 +682,11 @@ skate_status skate_admissible_velocity(const double q[3], const double qd[3], co
     const double t5 = y_dot * t2;
     const double t6 = t4 + t5;
     const double t7 = t3 * t6;
+    double rest = t7 - t7;
     const double t8 = t2 * t6;
+    rest *= t8;
     const double phi_dot = qd[0];
-    double rest = (phi_dot - phi_dot) * t7 * t8;
+    rest *= phi_dot;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -700,35 +706,36 @@ skate_status skate_admissible_acceleration(const double q[3], const double qd[3]
     double t2;
     double t3;
     skate_sincos(phi, &t2, &t3);
-    const double t4 = t3 * t3;
-    const double x_ddot = qdd[1];
-    const double t5 = x_ddot * t4;
     const double y_ddot = qdd[2];
-    const double t6 = y_ddot * t3;
+    const double t4 = y_ddot * t3;
     const double x_dot = qd[1];
-    const double t7 = x_dot * t3;
+    const double t5 = x_dot * t3;
     const double y_dot = qd[2];
-    const double t8 = y_dot * t2;
-    const double t9 = t7 + t8;
+    const double t6 = y_dot * t2;
+    const double t7 = t5 + t6;
     const double phi_dot = qd[0];
-    const double t10 = phi_dot * t9;
-    const double t11 = t6 - t10;
-    const double t12 = t2 * t11;
-    const double t13 = t5 + t12;
-    const double t14 = t3 * t10;
-    const double t15 = x_ddot * t3;
-    const double t16 = y_ddot * t2;
-    const double t17 = t15 + t16;
-    const double t18 = t2 * t17;
-    const double t19 = t14 + t18;
+    const double t8 = phi_dot * t7;
+    const double t9 = t4 - t8;
+    const double t10 = t2 * t9;
+    const double x_ddot = qdd[1];
+    const double t11 = x_ddot * t3;
+    const double t12 = t3 * t11;
+    const double t13 = t10 + t12;
+    double rest = t13 - t13;
+    const double t14 = t3 * t8;
+    const double t15 = y_ddot * t2;
+    const double t16 = t11 + t15;
+    const double t17 = t2 * t16;
+    const double t18 = t14 + t17;
+    rest *= t18;
     const double phi_ddot = qdd[0];
-    double rest = (phi_ddot - phi_ddot) * t13 * t19;
+    rest *= phi_ddot;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd_admissible[0] = phi_ddot;
     qdd_admissible[1] = t13;
-    qdd_admissible[2] = t19;
+    qdd_admissible[2] = t18;
     return SKATE_OK;
 }
 
@@ -737,7 +744,9 @@ skate_status skate_projected_configuration(const double q[3], const skate_params
     const double phi = q[0];
     const double x = q[1];
     const double y = q[2];
-    double rest = (phi - phi) * x * y;
+    double rest = phi - phi;
+    rest *= x;
+    rest *= y;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -760,6 +769,7 @@ skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const
     const double phi_ddot = qdd[0];
     const double Theta_s = p->Theta_s;
     const double t4 = phi_ddot * Theta_s;
+    double rest = t4 - t4;
     const double x_ddot = qdd[1];
     const double t5 = x_ddot * t3;
     const double y_ddot = qdd[2];
@@ -767,7 +777,7 @@ skate_status skate_inverse_dynamics(const double q[3], const double qd[3], const
     const double t7 = t5 + t6;
     const double m_s = p->m_s;
     const double t8 = m_s * t7;
-    double rest = (t4 - t4) * t8;
+    rest *= t8;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -802,8 +812,9 @@ skate_status skate_actuator_velocity(const double q[3], const double qd[3], cons
     const double y_dot = qd[2];
     const double t5 = y_dot * t2;
     const double t6 = t4 + t5;
+    double rest = t6 - t6;
     const double phi_dot = qd[0];
-    double rest = (phi_dot - phi_dot) * t6;
+    rest *= phi_dot;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -816,7 +827,8 @@ skate_status skate_actuator_mass_matrix(const double q[3], const skate_params *p
     (void)q;
     const double Theta_s = p->Theta_s;
     const double m_s = p->m_s;
-    double rest = (Theta_s - Theta_s) * m_s;
+    double rest = Theta_s - Theta_s;
+    rest *= m_s;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -858,6 +870,7 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     }
     const double T = u[0];
     const double t10 = T / Theta_s;
+    double rest = t10 - t10;
     const double t11 = 1.0 / m_s;
     const double K = u[1];
     const double t12 = K * t3;
@@ -868,22 +881,22 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     const double t15 = t13 + t14;
     const double phi_dot = qd[0];
     const double t16 = phi_dot * t15;
-    const double t17 = t2 * t16;
-    const double t18 = m_s * t17;
+    const double t17 = m_s * t16;
+    const double t18 = t2 * t17;
     const double t19 = t12 - t18;
     const double t20 = t11 * t19;
+    rest *= t20;
     const double t21 = K * t2;
-    const double t22 = t3 * t16;
-    const double t23 = m_s * t22;
-    const double t24 = t21 + t23;
-    const double t25 = t11 * t24;
-    double rest = (t10 - t10) * t20 * t25;
+    const double t22 = t3 * t17;
+    const double t23 = t21 + t22;
+    const double t24 = t11 * t23;
+    rest *= t24;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
     qdd[1] = t20;
-    qdd[2] = t25;
+    qdd[2] = t24;
     return SKATE_OK;
 }
 
@@ -930,21 +943,20 @@ skate_status skate_energy(const double q[3], const double qd[3], const skate_par
     const double t1 = phi_dot * phi_dot;
     const double Theta_s = p->Theta_s;
     const double t2 = Theta_s * t1;
-    const double t3 = 0.5 * t2;
     const double x_dot = qd[1];
-    const double t4 = x_dot * x_dot;
+    const double t3 = x_dot * x_dot;
     const double y_dot = qd[2];
-    const double t5 = y_dot * y_dot;
-    const double t6 = t4 + t5;
+    const double t4 = y_dot * y_dot;
+    const double t5 = t3 + t4;
     const double m_s = p->m_s;
-    const double t7 = m_s * t6;
+    const double t6 = m_s * t5;
+    const double t7 = t2 + t6;
     const double t8 = 0.5 * t7;
-    const double t9 = t3 + t8;
-    double rest = t9 - t9;
+    double rest = t8 - t8;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
-    T_U[0] = t9;
+    T_U[0] = t8;
     T_U[1] = 0.0;
     return SKATE_OK;
 }

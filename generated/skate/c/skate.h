@@ -23,15 +23,15 @@
  * constraint_jacobian_dot               0      2      0      0      1      0
  * constraint_pseudoinverse              0      0      0      0      1      0
  * nullspace_projector                   0      3      0      0      1      0
- * nullspace_projector_dot               1      6      0      0      1      0
+ * nullspace_projector_dot               1      5      0      0      1      0
  * weighted_pseudoinverse                0      3      0      0      1      0
  * weighted_nullspace_projector          0      6      0      0      1      0
  * control_matrix                        0      0      0      0      1      0
  * projected_control_matrix              0      0      0      0      1      0
  * projected_control_pseudoinverse       0      0      0      0      1      0
  * orthogonal_complement                 0      1      1      0      1      0
- * projected_mass_matrix                 0      6      0      0      1      0
- * projected_coriolis_matrix             0      8      0      0      1      0
+ * projected_mass_matrix                 0      5      0      0      1      0
+ * projected_coriolis_matrix             0      7      0      0      1      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   0      1      1      0      1      0
@@ -40,16 +40,16 @@
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                0      1      1      0      1      0
  * admissible_velocity                   1      4      0      0      1      0
- * admissible_acceleration               5     11      0      0      1      0
+ * admissible_acceleration               5     10      0      0      1      0
  * projected_configuration               0      0      0      0      0      0
  * inverse_dynamics                      1      4      0      0      1      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  0      0      0      0      0      0
  * actuator_bias                         0      0      0      0      0      0
- * forward_dynamics                      3     14      2      0      1      0
+ * forward_dynamics                      3     13      2      0      1      0
  * multipliers                           1      7      0      0      1      0
- * energy                                2      7      0      0      0      0
+ * energy                                2      6      0      0      0      0
  * singularity                           0      0      0      0      0      0
  * (changes of sign are not counted)
  *

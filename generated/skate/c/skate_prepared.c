@@ -127,6 +127,7 @@ skate_status skate_forward_dynamics_prepared(const double q[3], const double qd[
     const double T = u[0];
     const double Theta_s = p->value[1];
     const double t10 = T / Theta_s;
+    double rest = t10 - t10;
     const double K = u[1];
     const double t12 = K * t3;
     const double x_dot = qd[1];
@@ -136,24 +137,24 @@ skate_status skate_forward_dynamics_prepared(const double q[3], const double qd[
     const double t15 = t13 + t14;
     const double phi_dot = qd[0];
     const double t16 = phi_dot * t15;
-    const double t17 = t2 * t16;
     const double m_s = p->value[0];
-    const double t18 = m_s * t17;
+    const double t17 = m_s * t16;
+    const double t18 = t2 * t17;
     const double t19 = t12 - t18;
     const double t11 = p->value[4];
     const double t20 = t11 * t19;
+    rest *= t20;
     const double t21 = K * t2;
-    const double t22 = t3 * t16;
-    const double t23 = m_s * t22;
-    const double t24 = t21 + t23;
-    const double t25 = t11 * t24;
-    double rest = (t10 - t10) * t20 * t25;
+    const double t22 = t3 * t17;
+    const double t23 = t21 + t22;
+    const double t24 = t11 * t23;
+    rest *= t24;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
     qdd[1] = t20;
-    qdd[2] = t25;
+    qdd[2] = t24;
     return SKATE_OK;
 }
 

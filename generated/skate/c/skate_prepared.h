@@ -19,7 +19,7 @@ typedef struct {
 
 skate_prepared skate_prepare(const skate_params *p);
 
-/* q̈: accelerations under the inputs, (15); 17 operations instead of 24 */
+/* q̈: accelerations under the inputs, (15); 16 operations instead of 23 */
 skate_status skate_forward_dynamics_prepared(const double q[3], const double qd[3], const double u[2], const skate_prepared *p, double qdd[3]);
 
 /* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 7 operations instead of 13 */

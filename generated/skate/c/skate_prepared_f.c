@@ -119,6 +119,7 @@ skate_status skate_forward_dynamics_prepared_f(const float q[3], const float qd[
     const float T = u[0];
     const float Theta_s = p->value[1];
     const float t10 = T / Theta_s;
+    float rest = t10 - t10;
     const float K = u[1];
     const float t12 = K * t3;
     const float x_dot = qd[1];
@@ -128,24 +129,24 @@ skate_status skate_forward_dynamics_prepared_f(const float q[3], const float qd[
     const float t15 = t13 + t14;
     const float phi_dot = qd[0];
     const float t16 = phi_dot * t15;
-    const float t17 = t2 * t16;
     const float m_s = p->value[0];
-    const float t18 = m_s * t17;
+    const float t17 = m_s * t16;
+    const float t18 = t2 * t17;
     const float t19 = t12 - t18;
     const float t11 = p->value[4];
     const float t20 = t11 * t19;
+    rest *= t20;
     const float t21 = K * t2;
-    const float t22 = t3 * t16;
-    const float t23 = m_s * t22;
-    const float t24 = t21 + t23;
-    const float t25 = t11 * t24;
-    float rest = (t10 - t10) * t20 * t25;
+    const float t22 = t3 * t17;
+    const float t23 = t21 + t22;
+    const float t24 = t11 * t23;
+    rest *= t24;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
     qdd[1] = t20;
-    qdd[2] = t25;
+    qdd[2] = t24;
     return SKATE_OK;
 }
 

@@ -19,7 +19,7 @@ typedef struct {
 
 skate_prepared_f skate_prepare_f(const skate_params_f *p);
 
-/* q̈: accelerations under the inputs, (15); 17 operations instead of 24 */
+/* q̈: accelerations under the inputs, (15); 16 operations instead of 23 */
 skate_status skate_forward_dynamics_prepared_f(const float q[3], const float qd[3], const float u[2], const skate_prepared_f *p, float qdd[3]);
 
 /* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 7 operations instead of 13 */

@@ -31,6 +31,7 @@ skate_status skate_inverse_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     const float phi_ddot = qdd[0];
     const float Theta_s = p->Theta_s;
     const float t4 = phi_ddot * Theta_s;
+    float rest = t4 - t4;
     const float x_ddot = qdd[1];
     const float cos_phi = sc->cos_phi;
     const float t5 = x_ddot * cos_phi;
@@ -40,7 +41,7 @@ skate_status skate_inverse_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     const float t7 = t5 + t6;
     const float m_s = p->m_s;
     const float t8 = m_s * t7;
-    float rest = (t4 - t4) * t8;
+    rest *= t8;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -64,6 +65,7 @@ skate_status skate_forward_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     }
     const float T = u[0];
     const float t10 = T / Theta_s;
+    float rest = t10 - t10;
     const float t11 = 1.0f / m_s;
     const float K = u[1];
     const float cos_phi = sc->cos_phi;
@@ -76,22 +78,22 @@ skate_status skate_forward_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     const float t15 = t13 + t14;
     const float phi_dot = qd[0];
     const float t16 = phi_dot * t15;
-    const float t17 = sin_phi * t16;
-    const float t18 = m_s * t17;
+    const float t17 = m_s * t16;
+    const float t18 = sin_phi * t17;
     const float t19 = t12 - t18;
     const float t20 = t11 * t19;
+    rest *= t20;
     const float t21 = K * sin_phi;
-    const float t22 = cos_phi * t16;
-    const float t23 = m_s * t22;
-    const float t24 = t21 + t23;
-    const float t25 = t11 * t24;
-    float rest = (t10 - t10) * t20 * t25;
+    const float t22 = cos_phi * t17;
+    const float t23 = t21 + t22;
+    const float t24 = t11 * t23;
+    rest *= t24;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
     qdd[1] = t20;
-    qdd[2] = t25;
+    qdd[2] = t24;
     return SKATE_OK;
 }
 

@@ -21,15 +21,15 @@ constraint_jacobian                   0      0      0      0      1      0
 constraint_jacobian_dot               0      2      0      0      1      0
 constraint_pseudoinverse              0      0      0      0      1      0
 nullspace_projector                   0      3      0      0      1      0
-nullspace_projector_dot               1      6      0      0      1      0
+nullspace_projector_dot               1      5      0      0      1      0
 weighted_pseudoinverse                0      3      0      0      1      0
 weighted_nullspace_projector          0      6      0      0      1      0
 control_matrix                        0      0      0      0      1      0
 projected_control_matrix              0      0      0      0      1      0
 projected_control_pseudoinverse       0      0      0      0      1      0
 orthogonal_complement                 0      1      1      0      1      0
-projected_mass_matrix                 0      6      0      0      1      0
-projected_coriolis_matrix             0      8      0      0      1      0
+projected_mass_matrix                 0      5      0      0      1      0
+projected_coriolis_matrix             0      7      0      0      1      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
 minimal_mass_matrix                   0      1      1      0      1      0
@@ -38,16 +38,16 @@ minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                0      1      1      0      1      0
 admissible_velocity                   1      4      0      0      1      0
-admissible_acceleration               5     11      0      0      1      0
+admissible_acceleration               5     10      0      0      1      0
 projected_configuration               0      0      0      0      0      0
 inverse_dynamics                      1      4      0      0      1      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     1      2      0      0      1      0
 actuator_mass_matrix                  0      0      0      0      0      0
 actuator_bias                         0      0      0      0      0      0
-forward_dynamics                      3     14      2      0      1      0
+forward_dynamics                      3     13      2      0      1      0
 multipliers                           1      7      0      0      1      0
-energy                                2      7      0      0      0      0
+energy                                2      6      0      0      0      0
 singularity                           0      0      0      0      0      0
 (changes of sign are not counted)
 
@@ -386,23 +386,22 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t1 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
-        t4 = phi_dot * t3
+        t4 = 2.0 * t3
         t5 = t2 * t4
-        t6 = 2.0 * t5
+        t6 = phi_dot * t5
         t7 = -t6
-        t8 = t3 * t3
-        t9 = 2.0 * t8
-        t10 = (-1.0) + t9
-        t11 = phi_dot * t10
+        t8 = t3 * t4
+        t9 = (-1.0) + t8
+        t10 = phi_dot * t9
         entries = (
             0.0,
             0.0,
             0.0,
             0.0,
             t7,
-            t11,
+            t10,
             0.0,
-            t11,
+            t10,
             t6,
         )
         return _result("nullspace_projector_dot", status, batch, (3, 3), entries)
@@ -552,10 +551,7 @@ def orthogonal_complement(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
-        _failed_ = ~np.asarray(t4 > 7.099748146989106e-30)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(1.0 > 0.0), 2)
-            status = _first(status, _failed_, 2)
+        status = _first(status, ~np.asarray(t4 > 7.099748146989106e-30), 2)
         t5 = t2 / t3
         entries = (
             1.0,
@@ -583,10 +579,9 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
         t5 = m_s * t4
-        t6 = t2 * t3
-        t7 = m_s * t6
-        t8 = t2 * t2
-        t9 = m_s * t8
+        t6 = m_s * t2
+        t7 = t3 * t6
+        t8 = t2 * t6
         entries = (
             Theta_s,
             0.0,
@@ -596,7 +591,7 @@ def projected_mass_matrix(q, p=PARAMETERS):
             t7,
             0.0,
             t7,
-            t9,
+            t8,
         )
         return _result("projected_mass_matrix", status, batch, (3, 3), entries)
 
@@ -616,15 +611,14 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = phi_dot * t3
-        t5 = t2 * t4
-        t6 = m_s * t5
+        t5 = m_s * t2
+        t6 = t4 * t5
         t7 = -t6
         t8 = t3 * t4
         t9 = m_s * t8
-        t10 = phi_dot * t2
+        t10 = phi_dot * t5
         t11 = t2 * t10
-        t12 = m_s * t11
-        t13 = -t12
+        t12 = -t11
         entries = (
             0.0,
             0.0,
@@ -633,7 +627,7 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
             t7,
             t9,
             0.0,
-            t13,
+            t12,
             t6,
         )
         return _result("projected_coriolis_matrix", status, batch, (3, 3), entries)
@@ -684,10 +678,7 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
-        _failed_ = ~np.asarray(t4 > 7.099748146989106e-30)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(1.0 > 0.0), 2)
-            status = _first(status, _failed_, 2)
+        status = _first(status, ~np.asarray(t4 > 7.099748146989106e-30), 2)
         t5 = m_s / t4
         entries = (
             Theta_s,
@@ -713,10 +704,7 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
-        _failed_ = ~np.asarray(t4 > 7.099748146989106e-30)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(1.0 > 0.0), 2)
-            status = _first(status, _failed_, 2)
+        status = _first(status, ~np.asarray(t4 > 7.099748146989106e-30), 2)
         t5 = phi_dot * t2
         t6 = t3 * t4
         t7 = m_s / t6
@@ -771,10 +759,7 @@ def minimal_control_matrix(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
-        _failed_ = ~np.asarray(t4 > 7.099748146989106e-30)
-        if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(1.0 > 0.0), 2)
-            status = _first(status, _failed_, 2)
+        status = _first(status, ~np.asarray(t4 > 7.099748146989106e-30), 2)
         t5 = 1.0 / t3
         entries = (
             1.0,
@@ -832,26 +817,25 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         t1 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
-        t4 = t3 * t3
-        t5 = x_ddot * t4
-        t6 = y_ddot * t3
-        t7 = x_dot * t3
-        t8 = y_dot * t2
-        t9 = t7 + t8
-        t10 = phi_dot * t9
-        t11 = t6 - t10
-        t12 = t2 * t11
-        t13 = t5 + t12
-        t14 = t3 * t10
-        t15 = x_ddot * t3
-        t16 = y_ddot * t2
-        t17 = t15 + t16
-        t18 = t2 * t17
-        t19 = t14 + t18
+        t4 = y_ddot * t3
+        t5 = x_dot * t3
+        t6 = y_dot * t2
+        t7 = t5 + t6
+        t8 = phi_dot * t7
+        t9 = t4 - t8
+        t10 = t2 * t9
+        t11 = x_ddot * t3
+        t12 = t3 * t11
+        t13 = t10 + t12
+        t14 = t3 * t8
+        t15 = y_ddot * t2
+        t16 = t11 + t15
+        t17 = t2 * t16
+        t18 = t14 + t17
         entries = (
             phi_ddot,
             t13,
-            t19,
+            t18,
         )
         return _result("admissible_acceleration", status, batch, (3,), entries)
 
@@ -1013,19 +997,18 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t14 = y_dot * t2
         t15 = t13 + t14
         t16 = phi_dot * t15
-        t17 = t2 * t16
-        t18 = m_s * t17
+        t17 = m_s * t16
+        t18 = t2 * t17
         t19 = t12 - t18
         t20 = t11 * t19
         t21 = K * t2
-        t22 = t3 * t16
-        t23 = m_s * t22
-        t24 = t21 + t23
-        t25 = t11 * t24
+        t22 = t3 * t17
+        t23 = t21 + t22
+        t24 = t11 * t23
         entries = (
             t10,
             t20,
-            t25,
+            t24,
         )
         return _result("forward_dynamics", status, batch, (3,), entries)
 
@@ -1082,15 +1065,14 @@ def energy(q, qd, p=PARAMETERS):
         Theta_s = np.float64(p.Theta_s)
         t1 = phi_dot * phi_dot
         t2 = Theta_s * t1
-        t3 = 0.5 * t2
-        t4 = x_dot * x_dot
-        t5 = y_dot * y_dot
-        t6 = t4 + t5
-        t7 = m_s * t6
+        t3 = x_dot * x_dot
+        t4 = y_dot * y_dot
+        t5 = t3 + t4
+        t6 = m_s * t5
+        t7 = t2 + t6
         t8 = 0.5 * t7
-        t9 = t3 + t8
         entries = (
-            t9,
+            t8,
             0.0,
         )
         return _result("energy", status, batch, (2,), entries)

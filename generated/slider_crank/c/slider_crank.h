@@ -12,43 +12,43 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           3     14      0      0      1      0
+ * mass_matrix                           3     12      0      0      1      0
  * coriolis_matrix                       1      6      0      0      1      0
  * coriolis_force                        1      8      0      0      1      0
  * potential_force                       2      9      0      0      2      0
  * applied_force                         0      1      0      0      0      0
  * constraint_residual                   4      4      0      0      2      0
  * constraint_jacobian                   0      4      0      0      2      0
- * constraint_jacobian_dot               0      8      0      0      2      0
- * constraint_pseudoinverse              9     27      1      0      2      0
- * nullspace_projector                   6     24      1      0      2      0
- * nullspace_projector_dot              27     71      1      0      2      0
- * weighted_pseudoinverse               30     98      4      0      2      0
- * weighted_nullspace_projector         23     86      1      0      2      0
+ * constraint_jacobian_dot               0      6      0      0      2      0
+ * constraint_pseudoinverse              8     26      1      0      2      0
+ * nullspace_projector                   5     23      1      0      2      0
+ * nullspace_projector_dot              26     68      1      0      2      0
+ * weighted_pseudoinverse               29     90      4      0      2      0
+ * weighted_nullspace_projector         22     76      1      0      2      0
  * control_matrix                        0      0      0      0      0      0
- * projected_control_matrix              6     20      1      0      2      0
+ * projected_control_matrix              5     19      1      0      2      0
  * projected_control_pseudoinverse       4     11      2      0      2      0
  * orthogonal_complement                 4     11      2      0      2      0
- * projected_mass_matrix                27     71      1      0      2      0
- * projected_coriolis_matrix            64    150      1      0      2      0
- * projected_potential_force            14     44      1      0      2      0
- * projected_applied_force               8     27      1      0      2      0
- * minimal_mass_matrix                  11     33      1      0      2      0
- * minimal_coriolis_matrix              24     64      3      0      2      0
- * minimal_potential_force               8     21      1      0      2      0
+ * projected_mass_matrix                26     69      1      0      2      0
+ * projected_coriolis_matrix            63    135      1      0      2      0
+ * projected_potential_force            13     39      1      0      2      0
+ * projected_applied_force               7     26      1      0      2      0
+ * minimal_mass_matrix                  11     32      1      0      2      0
+ * minimal_coriolis_matrix              23     59      3      0      2      0
+ * minimal_potential_force               8     19      1      0      2      0
  * minimal_applied_force                 4     13      1      0      2      0
  * minimal_control_matrix                0      0      0      0      0      0
- * admissible_velocity                  16     43      3      0      2      0
- * admissible_acceleration              26     58      1      0      2      0
- * projected_configuration              38     57      2      0      5      0
- * inverse_dynamics                     16     48      1      0      2      0
+ * admissible_velocity                  14     39      3      0      2      0
+ * admissible_acceleration              25     53      1      0      2      0
+ * projected_configuration              37     56      2      0      5      0
+ * inverse_dynamics                     16     40      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                 11     33      1      0      2      0
- * actuator_bias                        26     87      1      0      2      0
- * forward_dynamics                     42    117      1      0      2      0
- * multipliers                          48    133      1      0      2      0
- * energy                               11     31      0      0      2      0
+ * actuator_mass_matrix                 11     32      1      0      2      0
+ * actuator_bias                        25     74      1      0      2      0
+ * forward_dynamics                     41    107      1      0      2      0
+ * multipliers                          47    120      1      0      2      0
+ * energy                               11     30      0      0      2      0
  * singularity                          10     23      6      2      2      0
  * (changes of sign are not counted)
  *

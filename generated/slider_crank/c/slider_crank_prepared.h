@@ -14,18 +14,18 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[26];
+    double value[25];
 } slider_crank_prepared;
 
 slider_crank_prepared slider_crank_prepare(const slider_crank_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 47 operations instead of 71 */
+/* u: the smallest inputs that produce the motion, (27); 48 operations instead of 63 */
 slider_crank_status slider_crank_inverse_dynamics_prepared(const double q[3], const double qd[3], const double qdd[3], const slider_crank_prepared *p, double u[1]);
 
-/* q̈: accelerations under the inputs, (15); 139 operations instead of 171 */
+/* q̈: accelerations under the inputs, (15); 134 operations instead of 160 */
 slider_crank_status slider_crank_forward_dynamics_prepared(const double q[3], const double qd[3], const double u[1], const slider_crank_prepared *p, double qdd[3]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 159 operations instead of 195 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 151 operations instead of 181 */
 slider_crank_status slider_crank_multipliers_prepared(const double q[3], const double qd[3], const double u[1], const slider_crank_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus

@@ -21,10 +21,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      78    126      3      0     10      0
- * forward_dynamics     477    756     24     12      7      0
- * multipliers          443    692     30     12      7      0
- * singularity          156    230     30     12      7      0
+ * inverse_dynamics      69    113      3      0      9      0
+ * forward_dynamics     473    709     24     12      7      0
+ * multipliers          439    649     30     12      7      0
+ * singularity          156    228     30     12      7      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -20,7 +20,7 @@ float Frama_C_float_interval(float min, float max);
 
 void eva_inverse_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t60. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t53. */
 void eva_inverse_dynamics(void) {
     float q[9];
     float qd[9];
@@ -72,7 +72,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t341, t414, t491, t497, t557, t442, t655, t657, t729, t735, t452, t966, t1093, t970, t1097. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t412, t485, t491, t544, t542, t438, t654, t652, t706, t712, t447, t931, t1056, t935, t1060. */
 void eva_forward_dynamics(void) {
     float q[9];
     float qd[9];
@@ -118,7 +118,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t341, t490, t519, t414, t615, t442, t688, t686, t452, t834, t841, t960, t956, t1034, t1153. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t484, t510, t412, t595, t593, t438, t665, t663, t447, t803, t810, t927, t923, t996, t1107. */
 void eva_multipliers(void) {
     float q[9];
     float qd[9];

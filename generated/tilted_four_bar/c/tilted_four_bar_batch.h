@@ -24,7 +24,8 @@ size_t tilted_four_bar_inverse_dynamics_batch(size_t count, size_t stride, const
 /* q̈: accelerations under the inputs, (15); qdd has 3 rows */
 size_t tilted_four_bar_forward_dynamics_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const tilted_four_bar_params *p, double *qdd, unsigned char *status);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); lambda_B has 3 rows */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); not unique, as the constraints depend on
+   each other (rank 2 of 3): these are the smallest; u and q̈ are not affected; lambda_B has 3 rows */
 size_t tilted_four_bar_multipliers_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const tilted_four_bar_params *p, double *lambda_B, unsigned char *status);
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 /*
  * tilted_four_bar: Four-bar linkage in a tilted plane whose last joint is closed as a full revolute joint: its
  * axes are parallel anyway, and of the three rows that are left two are independent (single precision)
- * Source: a textbook mechanism, dimensions and masses invented
+ * Source: a textbook mechanism (redundant constraints: J. García de Jalón, E. Bayo, Kinematic and Dynamic
+ * Simulation of Multibody Systems, 1994); dimensions and masses invented
  *
  * Coordinates q (rates qd and accelerations qdd in the same order):
  *   q[0] a [rad] of crank
@@ -12,10 +13,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      57    111      1      0      5      0
- * forward_dynamics     154    260      2      0      5      0
- * multipliers          165    280      2      0      5      0
- * singularity           37     64     14      3      5      0
+ * inverse_dynamics      55    106      1      0      5      0
+ * forward_dynamics     145    257      2      0      5      0
+ * multipliers          165    281      2      0      5      0
+ * singularity           35     63     14      3      5      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.
@@ -58,7 +59,8 @@ tilted_four_bar_status tilted_four_bar_inverse_dynamics_f(const float q[3], cons
 /* q̈: accelerations under the inputs, (15); length 3 */
 tilted_four_bar_status tilted_four_bar_forward_dynamics_f(const float q[3], const float qd[3], const float u[1], const tilted_four_bar_params_f *p, float qdd[3]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); length 3 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); not unique, as the constraints depend on
+   each other (rank 2 of 3): these are the smallest; u and q̈ are not affected; length 3 */
 tilted_four_bar_status tilted_four_bar_multipliers_f(const float q[3], const float qd[3], const float u[1], const tilted_four_bar_params_f *p, float lambda_B[3]);
 
 /* σ: distances from constraint and input singularities, 0 to 1; length 2 */

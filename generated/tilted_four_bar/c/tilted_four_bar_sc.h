@@ -27,7 +27,8 @@ tilted_four_bar_status tilted_four_bar_inverse_dynamics_sc(const tilted_four_bar
 /* q̈: accelerations under the inputs, (15) */
 tilted_four_bar_status tilted_four_bar_forward_dynamics_sc(const tilted_four_bar_trig *sc, const double q[3], const double qd[3], const double u[1], const tilted_four_bar_params *p, double qdd[3]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14) */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); not unique, as the constraints depend on
+   each other (rank 2 of 3): these are the smallest; u and q̈ are not affected */
 tilted_four_bar_status tilted_four_bar_multipliers_sc(const tilted_four_bar_trig *sc, const double q[3], const double qd[3], const double u[1], const tilted_four_bar_params *p, double lambda_B[3]);
 
 #ifdef __cplusplus

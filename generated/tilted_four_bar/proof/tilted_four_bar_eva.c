@@ -50,7 +50,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t195, t106. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t188. */
 void eva_forward_dynamics(void) {
     double q[3];
     double qd[3];
@@ -78,7 +78,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t195. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t273. */
 void eva_multipliers(void) {
     double q[3];
     double qd[3];

@@ -12,9 +12,9 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           6     16      0      0      1      0
- * coriolis_matrix                       1      7      0      0      1      0
- * coriolis_force                        1      9      0      0      1      0
+ * mass_matrix                           6     12      0      0      1      0
+ * coriolis_matrix                       1      6      0      0      1      0
+ * coriolis_force                        1      8      0      0      1      0
  * potential_force                       3      7      0      0      2      0
  * applied_force                         0      2      0      0      0      0
  * nullspace_projector                   0      0      0      0      0      0
@@ -24,25 +24,25 @@
  * projected_control_matrix              0      0      0      0      0      0
  * projected_control_pseudoinverse       0      0      0      0      0      0
  * orthogonal_complement                 0      0      0      0      0      0
- * projected_mass_matrix                 6     16      0      0      1      0
- * projected_coriolis_matrix             1      7      0      0      1      0
+ * projected_mass_matrix                 6     12      0      0      1      0
+ * projected_coriolis_matrix             1      6      0      0      1      0
  * projected_potential_force             3      7      0      0      2      0
  * projected_applied_force               0      2      0      0      0      0
- * minimal_mass_matrix                   6     16      0      0      1      0
- * minimal_coriolis_matrix               1      7      0      0      1      0
+ * minimal_mass_matrix                   6     12      0      0      1      0
+ * minimal_coriolis_matrix               1      6      0      0      1      0
  * minimal_potential_force               3      7      0      0      2      0
  * minimal_applied_force                 0      2      0      0      0      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                   0      0      0      0      0      0
  * admissible_acceleration               0      0      0      0      0      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                     20     36      0      0      2      0
+ * inverse_dynamics                     19     31      0      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                  6     16      0      0      1      0
+ * actuator_mass_matrix                  6     12      0      0      1      0
  * actuator_bias                         9     21      0      0      2      0
- * forward_dynamics                     29     56      1      0      2      0
- * energy                                9     24      0      0      2      0
+ * forward_dynamics                     27     53      1      0      2      0
+ * energy                                9     23      0      0      2      0
  * singularity                           0      0      0      0      0      0
  * (changes of sign are not counted)
  *
@@ -342,43 +342,41 @@ double_pendulum_status double_pendulum_mass_matrix(const double q[2], const doub
     double t2;
     double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
-    const double c_1 = p->c_1;
-    const double t4 = c_1 * c_1;
-    const double m_1 = p->m_1;
-    const double t5 = m_1 * t4;
-    const double J_1 = p->J_1;
-    const double t6 = J_1 + t5;
-    const double t7 = 0.5 * t6;
     const double l_1 = p->l_1;
-    const double t8 = l_1 * l_1;
     const double m_2 = p->m_2;
-    const double t9 = m_2 * t8;
-    const double t10 = 0.5 * t9;
-    const double t11 = t7 + t10;
-    const double t12 = 2.0 * t11;
-    const double J_2 = p->J_2;
-    const double t13 = 0.5 * J_2;
+    const double t4 = l_1 * m_2;
     const double c_2 = p->c_2;
-    const double t14 = c_2 * c_2;
-    const double t15 = m_2 * t14;
+    const double t5 = c_2 * t4;
+    const double t6 = t3 * t5;
+    const double t7 = c_2 * c_2;
+    const double t8 = m_2 * t7;
+    const double J_2 = p->J_2;
+    const double t9 = J_2 + t8;
+    const double t10 = 0.5 * t9;
+    const double c_1 = p->c_1;
+    const double t11 = c_1 * c_1;
+    const double m_1 = p->m_1;
+    const double t12 = m_1 * t11;
+    const double J_1 = p->J_1;
+    const double t13 = J_1 + t12;
+    const double t14 = l_1 * t4;
+    const double t15 = t13 + t14;
     const double t16 = 0.5 * t15;
-    const double t17 = t13 + t16;
-    const double t18 = 2.0 * t17;
-    const double t19 = l_1 * c_2;
-    const double t20 = t19 * t3;
-    const double t21 = m_2 * t20;
-    const double t22 = 2.0 * t21;
-    const double t23 = t18 + t22;
-    const double t24 = t12 + t23;
-    const double t25 = t21 + t18;
-    double rest = (t24 - t24) * t25 * t18;
+    const double t17 = t10 + t16;
+    const double t18 = t6 + t17;
+    const double t19 = 2.0 * t18;
+    double rest = t19 - t19;
+    const double t20 = 2.0 * t10;
+    rest *= t20;
+    const double t21 = t20 + t6;
+    rest *= t21;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    G[0] = t24;
-    G[1] = t25;
-    G[2] = t25;
-    G[3] = t18;
+    G[0] = t19;
+    G[1] = t21;
+    G[2] = t21;
+    G[3] = t20;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -400,19 +398,20 @@ double_pendulum_status double_pendulum_coriolis_matrix(const double q[2], const 
     const double q_2_dot = qd[1];
     const double t7 = q_2_dot * t6;
     const double t8 = -t7;
+    double rest = t8 - t8;
     const double q_1_dot = qd[0];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t9 = turn_2 * t2;
-    const double t10 = t5 * t9;
-    const double t11 = -t10;
-    const double t12 = q_1_dot * t6;
-    double rest = (t8 - t8) * t11 * t12;
+    const double t9 = turn_2 * t6;
+    const double t10 = -t9;
+    rest *= t10;
+    const double t11 = q_1_dot * t6;
+    rest *= t11;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C[0] = t8;
-    C[1] = t11;
-    C[2] = t12;
+    C[1] = t10;
+    C[2] = t11;
     C[3] = 0.0;
     return DOUBLE_PENDULUM_OK;
 }
@@ -426,28 +425,28 @@ double_pendulum_status double_pendulum_coriolis_force(const double q[2], const d
     double t2;
     double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
+    const double q_1_dot = qd[0];
+    const double t4 = 2.0 * q_1_dot;
+    const double q_2_dot = qd[1];
+    const double t5 = q_2_dot + t4;
     const double l_1 = p->l_1;
     const double c_2 = p->c_2;
-    const double t4 = l_1 * c_2;
+    const double t6 = l_1 * c_2;
     const double m_2 = p->m_2;
-    const double t5 = m_2 * t4;
-    const double q_2_dot = qd[1];
-    const double t6 = q_2_dot * t2;
-    const double q_1_dot = qd[0];
-    const double t7 = 2.0 * q_1_dot;
-    const double t8 = q_2_dot + t7;
-    const double t9 = t6 * t8;
+    const double t7 = m_2 * t6;
+    const double t8 = t7 * t2;
+    const double t9 = q_2_dot * t8;
     const double t10 = t5 * t9;
     const double t11 = -t10;
+    double rest = t11 - t11;
     const double t12 = q_1_dot * q_1_dot;
-    const double t13 = t5 * t2;
-    const double t14 = t12 * t13;
-    double rest = (t11 - t11) * t14;
+    const double t13 = t12 * t8;
+    rest *= t13;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_qd[0] = t11;
-    C_qd[1] = t14;
+    C_qd[1] = t13;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -474,6 +473,7 @@ double_pendulum_status double_pendulum_potential_force(const double q[2], const 
     const double t8 = c_2 * t7;
     const double t3 = sine[0];
     const double t9 = t8 * t3;
+    double rest = t9 - t9;
     const double l_1 = p->l_1;
     const double t10 = l_1 * t7;
     const double c_1 = p->c_1;
@@ -484,7 +484,7 @@ double_pendulum_status double_pendulum_potential_force(const double q[2], const 
     const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
-    double rest = (t15 - t15) * t9;
+    rest *= t15;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -499,11 +499,12 @@ double_pendulum_status double_pendulum_applied_force(const double q[2], const do
     const double d_1 = p->d_1;
     const double t1 = q_1_dot * d_1;
     const double t2 = -t1;
+    double rest = t2 - t2;
     const double q_2_dot = qd[1];
     const double d_2 = p->d_2;
     const double t3 = q_2_dot * d_2;
     const double t4 = -t3;
-    double rest = (t2 - t2) * t4;
+    rest *= t4;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -592,43 +593,41 @@ double_pendulum_status double_pendulum_projected_mass_matrix(const double q[2], 
     double t2;
     double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
-    const double c_1 = p->c_1;
-    const double t4 = c_1 * c_1;
-    const double m_1 = p->m_1;
-    const double t5 = m_1 * t4;
-    const double J_1 = p->J_1;
-    const double t6 = J_1 + t5;
-    const double t7 = 0.5 * t6;
     const double l_1 = p->l_1;
-    const double t8 = l_1 * l_1;
     const double m_2 = p->m_2;
-    const double t9 = m_2 * t8;
-    const double t10 = 0.5 * t9;
-    const double t11 = t7 + t10;
-    const double t12 = 2.0 * t11;
-    const double J_2 = p->J_2;
-    const double t13 = 0.5 * J_2;
+    const double t4 = l_1 * m_2;
     const double c_2 = p->c_2;
-    const double t14 = c_2 * c_2;
-    const double t15 = m_2 * t14;
+    const double t5 = c_2 * t4;
+    const double t6 = t3 * t5;
+    const double t7 = c_2 * c_2;
+    const double t8 = m_2 * t7;
+    const double J_2 = p->J_2;
+    const double t9 = J_2 + t8;
+    const double t10 = 0.5 * t9;
+    const double c_1 = p->c_1;
+    const double t11 = c_1 * c_1;
+    const double m_1 = p->m_1;
+    const double t12 = m_1 * t11;
+    const double J_1 = p->J_1;
+    const double t13 = J_1 + t12;
+    const double t14 = l_1 * t4;
+    const double t15 = t13 + t14;
     const double t16 = 0.5 * t15;
-    const double t17 = t13 + t16;
-    const double t18 = 2.0 * t17;
-    const double t19 = l_1 * c_2;
-    const double t20 = t19 * t3;
-    const double t21 = m_2 * t20;
-    const double t22 = 2.0 * t21;
-    const double t23 = t18 + t22;
-    const double t24 = t12 + t23;
-    const double t25 = t21 + t18;
-    double rest = (t24 - t24) * t25 * t18;
+    const double t17 = t10 + t16;
+    const double t18 = t6 + t17;
+    const double t19 = 2.0 * t18;
+    double rest = t19 - t19;
+    const double t20 = 2.0 * t10;
+    rest *= t20;
+    const double t21 = t20 + t6;
+    rest *= t21;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    G_tilde[0] = t24;
-    G_tilde[1] = t25;
-    G_tilde[2] = t25;
-    G_tilde[3] = t18;
+    G_tilde[0] = t19;
+    G_tilde[1] = t21;
+    G_tilde[2] = t21;
+    G_tilde[3] = t20;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -650,19 +649,20 @@ double_pendulum_status double_pendulum_projected_coriolis_matrix(const double q[
     const double q_2_dot = qd[1];
     const double t7 = q_2_dot * t6;
     const double t8 = -t7;
+    double rest = t8 - t8;
     const double q_1_dot = qd[0];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t9 = turn_2 * t2;
-    const double t10 = t5 * t9;
-    const double t11 = -t10;
-    const double t12 = q_1_dot * t6;
-    double rest = (t8 - t8) * t11 * t12;
+    const double t9 = turn_2 * t6;
+    const double t10 = -t9;
+    rest *= t10;
+    const double t11 = q_1_dot * t6;
+    rest *= t11;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_tilde[0] = t8;
-    C_tilde[1] = t11;
-    C_tilde[2] = t12;
+    C_tilde[1] = t10;
+    C_tilde[2] = t11;
     C_tilde[3] = 0.0;
     return DOUBLE_PENDULUM_OK;
 }
@@ -690,6 +690,7 @@ double_pendulum_status double_pendulum_projected_potential_force(const double q[
     const double t8 = c_2 * t7;
     const double t3 = sine[0];
     const double t9 = t8 * t3;
+    double rest = t9 - t9;
     const double l_1 = p->l_1;
     const double t10 = l_1 * t7;
     const double c_1 = p->c_1;
@@ -700,7 +701,7 @@ double_pendulum_status double_pendulum_projected_potential_force(const double q[
     const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
-    double rest = (t15 - t15) * t9;
+    rest *= t15;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -715,11 +716,12 @@ double_pendulum_status double_pendulum_projected_applied_force(const double q[2]
     const double d_1 = p->d_1;
     const double t1 = q_1_dot * d_1;
     const double t2 = -t1;
+    double rest = t2 - t2;
     const double q_2_dot = qd[1];
     const double d_2 = p->d_2;
     const double t3 = q_2_dot * d_2;
     const double t4 = -t3;
-    double rest = (t2 - t2) * t4;
+    rest *= t4;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -737,43 +739,41 @@ double_pendulum_status double_pendulum_minimal_mass_matrix(const double q[2], co
     double t2;
     double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
-    const double c_1 = p->c_1;
-    const double t4 = c_1 * c_1;
-    const double m_1 = p->m_1;
-    const double t5 = m_1 * t4;
-    const double J_1 = p->J_1;
-    const double t6 = J_1 + t5;
-    const double t7 = 0.5 * t6;
     const double l_1 = p->l_1;
-    const double t8 = l_1 * l_1;
     const double m_2 = p->m_2;
-    const double t9 = m_2 * t8;
-    const double t10 = 0.5 * t9;
-    const double t11 = t7 + t10;
-    const double t12 = 2.0 * t11;
-    const double J_2 = p->J_2;
-    const double t13 = 0.5 * J_2;
+    const double t4 = l_1 * m_2;
     const double c_2 = p->c_2;
-    const double t14 = c_2 * c_2;
-    const double t15 = m_2 * t14;
+    const double t5 = c_2 * t4;
+    const double t6 = t3 * t5;
+    const double t7 = c_2 * c_2;
+    const double t8 = m_2 * t7;
+    const double J_2 = p->J_2;
+    const double t9 = J_2 + t8;
+    const double t10 = 0.5 * t9;
+    const double c_1 = p->c_1;
+    const double t11 = c_1 * c_1;
+    const double m_1 = p->m_1;
+    const double t12 = m_1 * t11;
+    const double J_1 = p->J_1;
+    const double t13 = J_1 + t12;
+    const double t14 = l_1 * t4;
+    const double t15 = t13 + t14;
     const double t16 = 0.5 * t15;
-    const double t17 = t13 + t16;
-    const double t18 = 2.0 * t17;
-    const double t19 = l_1 * c_2;
-    const double t20 = t19 * t3;
-    const double t21 = m_2 * t20;
-    const double t22 = 2.0 * t21;
-    const double t23 = t18 + t22;
-    const double t24 = t12 + t23;
-    const double t25 = t21 + t18;
-    double rest = (t24 - t24) * t25 * t18;
+    const double t17 = t10 + t16;
+    const double t18 = t6 + t17;
+    const double t19 = 2.0 * t18;
+    double rest = t19 - t19;
+    const double t20 = 2.0 * t10;
+    rest *= t20;
+    const double t21 = t20 + t6;
+    rest *= t21;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    G_bar[0] = t24;
-    G_bar[1] = t25;
-    G_bar[2] = t25;
-    G_bar[3] = t18;
+    G_bar[0] = t19;
+    G_bar[1] = t21;
+    G_bar[2] = t21;
+    G_bar[3] = t20;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -795,19 +795,20 @@ double_pendulum_status double_pendulum_minimal_coriolis_matrix(const double q[2]
     const double q_2_dot = qd[1];
     const double t7 = q_2_dot * t6;
     const double t8 = -t7;
+    double rest = t8 - t8;
     const double q_1_dot = qd[0];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t9 = turn_2 * t2;
-    const double t10 = t5 * t9;
-    const double t11 = -t10;
-    const double t12 = q_1_dot * t6;
-    double rest = (t8 - t8) * t11 * t12;
+    const double t9 = turn_2 * t6;
+    const double t10 = -t9;
+    rest *= t10;
+    const double t11 = q_1_dot * t6;
+    rest *= t11;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_bar[0] = t8;
-    C_bar[1] = t11;
-    C_bar[2] = t12;
+    C_bar[1] = t10;
+    C_bar[2] = t11;
     C_bar[3] = 0.0;
     return DOUBLE_PENDULUM_OK;
 }
@@ -835,6 +836,7 @@ double_pendulum_status double_pendulum_minimal_potential_force(const double q[2]
     const double t8 = c_2 * t7;
     const double t3 = sine[0];
     const double t9 = t8 * t3;
+    double rest = t9 - t9;
     const double l_1 = p->l_1;
     const double t10 = l_1 * t7;
     const double c_1 = p->c_1;
@@ -845,7 +847,7 @@ double_pendulum_status double_pendulum_minimal_potential_force(const double q[2]
     const double t5 = sine[1];
     const double t14 = t13 * t5;
     const double t15 = t9 + t14;
-    double rest = (t15 - t15) * t9;
+    rest *= t15;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -860,11 +862,12 @@ double_pendulum_status double_pendulum_minimal_applied_force(const double q[2], 
     const double d_1 = p->d_1;
     const double t1 = q_1_dot * d_1;
     const double t2 = -t1;
+    double rest = t2 - t2;
     const double q_2_dot = qd[1];
     const double d_2 = p->d_2;
     const double t3 = q_2_dot * d_2;
     const double t4 = -t3;
-    double rest = (t2 - t2) * t4;
+    rest *= t4;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -888,7 +891,8 @@ double_pendulum_status double_pendulum_admissible_velocity(const double q[2], co
     (void)p;
     const double q_1_dot = qd[0];
     const double q_2_dot = qd[1];
-    double rest = (q_1_dot - q_1_dot) * q_2_dot;
+    double rest = q_1_dot - q_1_dot;
+    rest *= q_2_dot;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -903,7 +907,8 @@ double_pendulum_status double_pendulum_admissible_acceleration(const double q[2]
     (void)p;
     const double q_1_ddot = qdd[0];
     const double q_2_ddot = qdd[1];
-    double rest = (q_1_ddot - q_1_ddot) * q_2_ddot;
+    double rest = q_1_ddot - q_1_ddot;
+    rest *= q_2_ddot;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -916,7 +921,8 @@ double_pendulum_status double_pendulum_projected_configuration(const double q[2]
     (void)p;
     const double q_1 = q[0];
     const double q_2 = q[1];
-    double rest = (q_1 - q_1) * q_2;
+    double rest = q_1 - q_1;
+    rest *= q_2;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -926,100 +932,95 @@ double_pendulum_status double_pendulum_projected_configuration(const double q[2]
 }
 
 double_pendulum_status double_pendulum_inverse_dynamics(const double q[2], const double qd[2], const double qdd[2], const double_pendulum_params *p, double u[2]) {
-    const double q_1 = q[0];
-    const double t1 = fabs(q_1);
     const double q_2 = q[1];
-    const double t2 = fabs(q_2);
+    const double t1 = fabs(q_2);
+    const double q_1 = q[0];
+    const double t2 = fabs(q_1);
     if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    const double angle[2] = {q_1, q_2};
+    const double angle[2] = {q_2, q_1};
     double sine[2];
     double cosine[2];
     double_pendulum_sincos_group(2, angle, sine, cosine);
-    const double q_1_dot = qd[0];
-    const double d_1 = p->d_1;
-    const double t7 = q_1_dot * d_1;
-    const double m_2 = p->m_2;
-    const double g = p->g;
-    const double t8 = m_2 * g;
     const double l_1 = p->l_1;
-    const double t9 = l_1 * t8;
+    const double m_2 = p->m_2;
+    const double t7 = l_1 * m_2;
+    const double t8 = l_1 * t7;
     const double c_1 = p->c_1;
     const double m_1 = p->m_1;
-    const double t10 = c_1 * m_1;
-    const double t11 = g * t10;
-    const double t12 = t9 + t11;
-    const double t3 = sine[0];
-    const double t13 = t12 * t3;
-    const double c_2 = p->c_2;
-    const double t14 = c_2 * t8;
-    const double t6 = cosine[1];
-    const double t15 = t6 * t3;
-    const double t5 = sine[1];
-    const double t4 = cosine[0];
-    const double t16 = t5 * t4;
-    const double t17 = t15 + t16;
-    const double t18 = t14 * t17;
-    const double t19 = t13 + t18;
-    const double t20 = l_1 * l_1;
-    const double t21 = m_2 * t20;
-    const double t22 = 0.5 * t21;
-    const double t23 = c_1 * t10;
+    const double t9 = c_1 * m_1;
+    const double t10 = c_1 * t9;
     const double J_1 = p->J_1;
-    const double t24 = J_1 + t23;
-    const double t25 = 0.5 * t24;
-    const double t26 = t22 + t25;
+    const double t11 = J_1 + t10;
+    const double t12 = t8 + t11;
+    const double t13 = 0.5 * t12;
     const double q_1_ddot = qdd[0];
-    const double t27 = q_1_ddot * t26;
-    const double t28 = l_1 * c_2;
-    const double t29 = t28 * t6;
+    const double t14 = q_1_ddot * t13;
+    const double c_2 = p->c_2;
+    const double t15 = l_1 * c_2;
+    const double t4 = cosine[0];
+    const double t16 = t15 * t4;
     const double q_2_ddot = qdd[1];
-    const double t30 = q_1_ddot + q_2_ddot;
-    const double t31 = m_2 * t30;
-    const double t32 = t29 * t31;
-    const double q_2_dot = qd[1];
-    const double turn_2 = q_1_dot + q_2_dot;
-    const double t33 = m_2 * turn_2;
-    const double t34 = q_2_dot * t5;
-    const double t35 = t28 * t34;
-    const double t36 = t33 * t35;
-    const double t37 = t32 - t36;
+    const double t17 = q_1_ddot + q_2_ddot;
+    const double t18 = m_2 * t17;
+    const double t19 = t16 * t18;
+    const double t20 = t9 + t7;
+    const double g = p->g;
+    const double t21 = g * t20;
+    const double t5 = sine[1];
+    const double t22 = t5 * t21;
+    const double q_1_dot = qd[0];
+    const double d_1 = p->d_1;
+    const double t23 = q_1_dot * d_1;
+    const double t24 = c_2 * m_2;
+    const double t25 = c_2 * t24;
     const double J_2 = p->J_2;
-    const double t38 = 0.5 * J_2;
-    const double t39 = c_2 * c_2;
-    const double t40 = m_2 * t39;
-    const double t41 = 0.5 * t40;
-    const double t42 = t38 + t41;
-    const double t43 = t42 * t30;
-    const double t44 = q_1_ddot * t29;
-    const double t45 = q_1_dot * t35;
-    const double t46 = t44 - t45;
-    const double t47 = m_2 * t46;
-    const double t48 = t43 + t47;
-    const double t49 = t43 + t48;
-    const double t50 = t37 + t49;
-    const double t51 = t50 + t27;
-    const double t52 = t27 + t51;
-    const double t53 = t19 + t52;
-    const double t54 = t7 + t53;
+    const double t26 = J_2 + t25;
+    const double t27 = 0.5 * t26;
+    const double t28 = t17 * t27;
+    const double t29 = q_1_ddot * t16;
+    const double t3 = sine[0];
+    const double t30 = t15 * t3;
+    const double q_2_dot = qd[1];
+    const double t31 = q_2_dot * t30;
+    const double t32 = q_1_dot * t31;
+    const double t33 = t29 - t32;
+    const double t34 = m_2 * t33;
+    const double t35 = t34 + t28;
+    const double t36 = t28 + t35;
+    const double t37 = t4 * t5;
+    const double t6 = cosine[1];
+    const double t38 = t3 * t6;
+    const double t39 = t37 + t38;
+    const double t40 = g * t24;
+    const double t41 = t39 * t40;
+    const double t42 = t36 + t41;
+    const double t43 = t23 + t42;
+    const double t44 = t22 + t43;
+    const double t45 = t14 + t44;
+    const double t46 = t19 + t45;
+    const double turn_2 = q_1_dot + q_2_dot;
+    const double t47 = m_2 * turn_2;
+    const double t48 = t47 * t31;
+    const double t49 = t46 - t48;
+    const double t50 = t14 + t49;
+    double rest = t50 - t50;
+    const double t51 = q_1_dot * t30;
+    const double t52 = t47 * t51;
     const double d_2 = p->d_2;
-    const double t55 = q_2_dot * d_2;
-    const double t56 = q_1_dot * t33;
-    const double t57 = t28 * t56;
-    const double t58 = t5 * t57;
-    const double t59 = t58 + t49;
-    const double t60 = t59 + t18;
-    const double t61 = t55 + t60;
-    double rest = (t54 - t54) * t61;
+    const double t53 = q_2_dot * d_2;
+    const double t54 = t53 + t42;
+    const double t55 = t52 + t54;
+    rest *= t55;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    u[0] = t54;
-    u[1] = t61;
+    u[0] = t50;
+    u[1] = t55;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1038,7 +1039,8 @@ double_pendulum_status double_pendulum_actuator_velocity(const double q[2], cons
     (void)p;
     const double q_1_dot = qd[0];
     const double q_2_dot = qd[1];
-    double rest = (q_1_dot - q_1_dot) * q_2_dot;
+    double rest = q_1_dot - q_1_dot;
+    rest *= q_2_dot;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -1056,110 +1058,109 @@ double_pendulum_status double_pendulum_actuator_mass_matrix(const double q[2], c
     double t2;
     double t3;
     double_pendulum_sincos(q_2, &t2, &t3);
-    const double c_1 = p->c_1;
-    const double t4 = c_1 * c_1;
-    const double m_1 = p->m_1;
-    const double t5 = m_1 * t4;
-    const double J_1 = p->J_1;
-    const double t6 = J_1 + t5;
-    const double t7 = 0.5 * t6;
     const double l_1 = p->l_1;
-    const double t8 = l_1 * l_1;
     const double m_2 = p->m_2;
-    const double t9 = m_2 * t8;
-    const double t10 = 0.5 * t9;
-    const double t11 = t7 + t10;
-    const double t12 = 2.0 * t11;
-    const double J_2 = p->J_2;
-    const double t13 = 0.5 * J_2;
+    const double t4 = l_1 * m_2;
     const double c_2 = p->c_2;
-    const double t14 = c_2 * c_2;
-    const double t15 = m_2 * t14;
+    const double t5 = c_2 * t4;
+    const double t6 = t3 * t5;
+    const double t7 = c_2 * c_2;
+    const double t8 = m_2 * t7;
+    const double J_2 = p->J_2;
+    const double t9 = J_2 + t8;
+    const double t10 = 0.5 * t9;
+    const double c_1 = p->c_1;
+    const double t11 = c_1 * c_1;
+    const double m_1 = p->m_1;
+    const double t12 = m_1 * t11;
+    const double J_1 = p->J_1;
+    const double t13 = J_1 + t12;
+    const double t14 = l_1 * t4;
+    const double t15 = t13 + t14;
     const double t16 = 0.5 * t15;
-    const double t17 = t13 + t16;
-    const double t18 = 2.0 * t17;
-    const double t19 = l_1 * c_2;
-    const double t20 = t19 * t3;
-    const double t21 = m_2 * t20;
-    const double t22 = 2.0 * t21;
-    const double t23 = t18 + t22;
-    const double t24 = t12 + t23;
-    const double t25 = t21 + t18;
-    double rest = (t24 - t24) * t25 * t18;
+    const double t17 = t10 + t16;
+    const double t18 = t6 + t17;
+    const double t19 = 2.0 * t18;
+    double rest = t19 - t19;
+    const double t20 = 2.0 * t10;
+    rest *= t20;
+    const double t21 = t20 + t6;
+    rest *= t21;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    G_nu[0] = t24;
-    G_nu[1] = t25;
-    G_nu[2] = t25;
-    G_nu[3] = t18;
+    G_nu[0] = t19;
+    G_nu[1] = t21;
+    G_nu[2] = t21;
+    G_nu[3] = t20;
     return DOUBLE_PENDULUM_OK;
 }
 
 double_pendulum_status double_pendulum_actuator_bias(const double q[2], const double qd[2], const double_pendulum_params *p, double bias_nu[2]) {
-    const double q_1 = q[0];
-    const double t1 = fabs(q_1);
     const double q_2 = q[1];
-    const double t2 = fabs(q_2);
+    const double t1 = fabs(q_2);
+    const double q_1 = q[0];
+    const double t2 = fabs(q_1);
     if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (DOUBLE_PENDULUM_RARELY(!(100000.0 >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    const double angle[2] = {q_1, q_2};
+    const double angle[2] = {q_2, q_1};
     double sine[2];
     double cosine[2];
     double_pendulum_sincos_group(2, angle, sine, cosine);
+    const double c_2 = p->c_2;
+    const double m_2 = p->m_2;
+    const double t7 = c_2 * m_2;
+    const double g = p->g;
+    const double t6 = cosine[1];
+    const double t8 = g * t6;
     const double q_1_dot = qd[0];
+    const double t9 = 2.0 * q_1_dot;
+    const double q_2_dot = qd[1];
+    const double t10 = q_2_dot + t9;
+    const double l_1 = p->l_1;
+    const double t11 = l_1 * t10;
+    const double t12 = q_2_dot * t11;
+    const double t13 = t8 - t12;
+    const double t3 = sine[0];
+    const double t14 = t3 * t13;
+    const double t5 = sine[1];
+    const double t15 = g * t5;
+    const double t4 = cosine[0];
+    const double t16 = t4 * t15;
+    const double t17 = t14 + t16;
+    const double t18 = t7 * t17;
     const double d_1 = p->d_1;
-    const double t7 = q_1_dot * d_1;
+    const double t19 = q_1_dot * d_1;
     const double c_1 = p->c_1;
     const double m_1 = p->m_1;
-    const double t8 = c_1 * m_1;
-    const double l_1 = p->l_1;
-    const double m_2 = p->m_2;
-    const double t9 = l_1 * m_2;
-    const double t10 = t8 + t9;
-    const double g = p->g;
-    const double t11 = g * t10;
-    const double t3 = sine[0];
-    const double t12 = t3 * t11;
-    const double t13 = t7 + t12;
-    const double c_2 = p->c_2;
-    const double t14 = c_2 * m_2;
-    const double t4 = cosine[0];
-    const double t15 = g * t4;
-    const double t16 = 2.0 * q_1_dot;
-    const double q_2_dot = qd[1];
-    const double t17 = q_2_dot + t16;
-    const double t18 = l_1 * t17;
-    const double t19 = q_2_dot * t18;
-    const double t20 = t15 - t19;
-    const double t5 = sine[1];
-    const double t21 = t5 * t20;
-    const double t6 = cosine[1];
-    const double t22 = t6 * t3;
-    const double t23 = g * t22;
-    const double t24 = t21 + t23;
-    const double t25 = t14 * t24;
-    const double t26 = t13 + t25;
+    const double t20 = c_1 * m_1;
+    const double t21 = l_1 * m_2;
+    const double t22 = t20 + t21;
+    const double t23 = t22 * t15;
+    const double t24 = t19 + t23;
+    const double t25 = t18 + t24;
+    double rest = t25 - t25;
     const double d_2 = p->d_2;
-    const double t27 = q_2_dot * d_2;
-    const double t28 = q_1_dot * q_1_dot;
-    const double t29 = t28 * t5;
-    const double t30 = l_1 * t29;
-    const double t31 = t5 * t4;
-    const double t32 = t22 + t31;
+    const double t26 = q_2_dot * d_2;
+    const double t27 = q_1_dot * q_1_dot;
+    const double t28 = t27 * t3;
+    const double t29 = l_1 * t28;
+    const double t30 = t4 * t5;
+    const double t31 = t3 * t6;
+    const double t32 = t30 + t31;
     const double t33 = g * t32;
-    const double t34 = t30 + t33;
-    const double t35 = t14 * t34;
-    const double t36 = t27 + t35;
-    double rest = (t26 - t26) * t36;
+    const double t34 = t29 + t33;
+    const double t35 = t7 * t34;
+    const double t36 = t26 + t35;
+    rest *= t36;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    bias_nu[0] = t26;
+    bias_nu[0] = t25;
     bias_nu[1] = t36;
     return DOUBLE_PENDULUM_OK;
 }
@@ -1179,128 +1180,124 @@ double_pendulum_status double_pendulum_forward_dynamics(const double q[2], const
     double sine[2];
     double cosine[2];
     double_pendulum_sincos_group(2, angle, sine, cosine);
-    const double l_1 = p->l_1;
-    const double t7 = l_1 * l_1;
-    const double J_2 = p->J_2;
-    const double t8 = J_2 * t7;
-    const double c_2 = p->c_2;
-    const double t9 = c_2 * c_2;
-    const double m_2 = p->m_2;
-    const double t10 = m_2 * t7;
-    const double t3 = sine[0];
-    const double t11 = t3 * t3;
-    const double t12 = t10 * t11;
     const double c_1 = p->c_1;
     const double m_1 = p->m_1;
-    const double t13 = c_1 * m_1;
-    const double t14 = c_1 * t13;
-    const double t15 = t12 + t14;
+    const double t7 = c_1 * m_1;
+    const double t8 = c_1 * t7;
     const double J_1 = p->J_1;
-    const double t16 = J_1 + t15;
-    const double t17 = t9 * t16;
-    const double t18 = t8 + t17;
-    const double t19 = m_2 * t18;
-    const double t20 = J_1 + t14;
-    const double t21 = J_2 * t20;
-    const double t22 = t19 + t21;
-    const double t23 = fabs(t22);
-    const double t24 = fabs(m_2);
-    const double t25 = fabs(c_2);
-    const double t26 = fabs(J_1);
-    const double t27 = fabs(m_1);
-    const double t28 = fabs(c_1);
-    const double t29 = t28 * t28;
-    const double t30 = t27 * t29;
-    const double t31 = fabs(l_1);
-    const double t32 = t31 * t31;
-    const double t33 = t24 * t32;
-    const double t34 = t30 + t33;
-    const double t35 = t26 + t34;
-    const double t36 = t25 * t35;
-    const double t37 = t25 * t36;
-    const double t38 = fabs(J_2);
-    const double t39 = t38 * t32;
-    const double t40 = t37 + t39;
-    const double t41 = t24 * t40;
-    const double t42 = t26 + t30;
-    const double t43 = t38 * t42;
-    const double t44 = t41 + t43;
-    const double t45 = t44 * 1.7763568394002505e-15;
-    if (DOUBLE_PENDULUM_RARELY(!(t23 > t45))) {
+    const double t9 = J_1 + t8;
+    const double J_2 = p->J_2;
+    const double t10 = J_2 * t9;
+    const double l_1 = p->l_1;
+    const double t11 = l_1 * l_1;
+    const double t12 = J_2 * t11;
+    const double c_2 = p->c_2;
+    const double t13 = c_2 * c_2;
+    const double m_2 = p->m_2;
+    const double t14 = m_2 * t11;
+    const double t3 = sine[0];
+    const double t15 = t3 * t3;
+    const double t16 = t14 * t15;
+    const double t17 = t16 + t9;
+    const double t18 = t13 * t17;
+    const double t19 = t12 + t18;
+    const double t20 = m_2 * t19;
+    const double t21 = t10 + t20;
+    const double t22 = fabs(t21);
+    const double t23 = fabs(J_2);
+    const double t24 = fabs(J_1);
+    const double t25 = fabs(m_1);
+    const double t26 = fabs(c_1);
+    const double t27 = t26 * t26;
+    const double t28 = t25 * t27;
+    const double t29 = t24 + t28;
+    const double t30 = t23 * t29;
+    const double t31 = fabs(m_2);
+    const double t32 = fabs(l_1);
+    const double t33 = t32 * t32;
+    const double t34 = t23 * t33;
+    const double t35 = fabs(c_2);
+    const double t36 = t31 * t33;
+    const double t37 = t29 + t36;
+    const double t38 = t35 * t37;
+    const double t39 = t35 * t38;
+    const double t40 = t34 + t39;
+    const double t41 = t31 * t40;
+    const double t42 = t30 + t41;
+    const double t43 = t42 * 1.7763568394002505e-15;
+    if (DOUBLE_PENDULUM_RARELY(!(t22 > t43))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }
-    const double t46 = 1.0 / t22;
-    const double t47 = l_1 * c_2;
+    const double t44 = 1.0 / t21;
+    const double t45 = l_1 * c_2;
     const double t4 = cosine[0];
-    const double t48 = t47 * t4;
-    const double t49 = m_2 * t48;
-    const double t50 = 0.5 * J_2;
-    const double t51 = m_2 * t9;
-    const double t52 = 0.5 * t51;
-    const double t53 = t50 + t52;
-    const double t54 = 2.0 * t53;
-    const double t55 = t49 + t54;
+    const double t46 = t45 * t4;
+    const double t47 = m_2 * t46;
+    const double t48 = m_2 * t13;
+    const double t49 = J_2 + t48;
+    const double t50 = 0.5 * t49;
+    const double t51 = 2.0 * t50;
+    const double t52 = t47 + t51;
     const double q_2_dot = qd[1];
     const double d_2 = p->d_2;
-    const double t56 = q_2_dot * d_2;
+    const double t53 = q_2_dot * d_2;
+    const double elbow = u[1];
+    const double t54 = elbow - t53;
     const double q_1_dot = qd[0];
     const double turn_2 = q_1_dot + q_2_dot;
-    const double t57 = m_2 * turn_2;
-    const double t58 = q_1_dot * t57;
-    const double t59 = t47 * t58;
-    const double t60 = t3 * t59;
-    const double t61 = q_2_dot * t3;
-    const double t62 = t47 * t61;
-    const double t63 = q_1_dot * t62;
-    const double t64 = m_2 * t63;
-    const double t65 = t60 - t64;
+    const double t55 = m_2 * turn_2;
+    const double t56 = t45 * t3;
+    const double t57 = q_1_dot * t56;
+    const double t58 = t55 * t57;
+    const double t59 = t54 - t58;
+    const double t60 = q_2_dot * t56;
+    const double t61 = q_1_dot * t60;
+    const double t62 = m_2 * t61;
     const double g = p->g;
-    const double t66 = m_2 * g;
-    const double t67 = c_2 * t66;
+    const double t63 = m_2 * g;
+    const double t64 = c_2 * t63;
     const double t5 = sine[1];
-    const double t68 = t4 * t5;
+    const double t65 = t4 * t5;
     const double t6 = cosine[1];
-    const double t69 = t3 * t6;
-    const double t70 = t68 + t69;
-    const double t71 = t67 * t70;
-    const double t72 = t65 + t71;
-    const double t73 = t56 + t72;
-    const double elbow = u[1];
-    const double t74 = elbow - t73;
-    const double t75 = t55 * t74;
+    const double t66 = t3 * t6;
+    const double t67 = t65 + t66;
+    const double t68 = t64 * t67;
+    const double t69 = t62 - t68;
+    const double t70 = t59 + t69;
+    const double t71 = t52 * t70;
+    const double t72 = l_1 * m_2;
+    const double t73 = t7 + t72;
+    const double t74 = g * t73;
+    const double t75 = t5 * t74;
     const double d_1 = p->d_1;
     const double t76 = q_1_dot * d_1;
-    const double t77 = l_1 * t66;
-    const double t78 = g * t13;
-    const double t79 = t77 + t78;
-    const double t80 = t79 * t5;
-    const double t81 = t80 + t71;
-    const double t82 = t57 * t62;
-    const double t83 = t82 + t64;
-    const double t84 = t81 - t83;
-    const double t85 = t76 + t84;
+    const double t77 = t76 - t69;
+    const double t78 = t75 + t77;
+    const double t79 = t55 * t60;
+    const double t80 = t78 - t79;
     const double shoulder = u[0];
-    const double t86 = t85 - shoulder;
-    const double t87 = t54 * t86;
-    const double t88 = t75 + t87;
-    const double t89 = t46 * t88;
-    const double t90 = -t89;
-    const double t91 = t55 * t86;
-    const double t92 = t49 + t55;
-    const double t93 = 0.5 * t10;
-    const double t94 = 0.5 * t20;
-    const double t95 = t93 + t94;
-    const double t96 = 2.0 * t95;
-    const double t97 = t92 + t96;
-    const double t98 = t74 * t97;
-    const double t99 = t91 + t98;
-    const double t100 = t46 * t99;
-    double rest = (t90 - t90) * t100;
+    const double t81 = t80 - shoulder;
+    const double t82 = t51 * t81;
+    const double t83 = t71 + t82;
+    const double t84 = t44 * t83;
+    const double t85 = -t84;
+    double rest = t85 - t85;
+    const double t86 = t52 * t81;
+    const double t87 = t47 + t47;
+    const double t88 = t14 + t9;
+    const double t89 = 0.5 * t88;
+    const double t90 = t50 + t89;
+    const double t91 = 2.0 * t90;
+    const double t92 = t87 + t91;
+    const double t93 = t92 * t70;
+    const double t94 = t86 + t93;
+    const double t95 = t44 * t94;
+    rest *= t95;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    qdd[0] = t90;
-    qdd[1] = t100;
+    qdd[0] = t85;
+    qdd[1] = t95;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1323,56 +1320,56 @@ double_pendulum_status double_pendulum_energy(const double q[2], const double qd
     const double q_2_dot = qd[1];
     const double turn_2 = q_1_dot + q_2_dot;
     const double t7 = turn_2 * turn_2;
-    const double J_2 = p->J_2;
-    const double t8 = J_2 * t7;
-    const double t9 = 0.5 * t8;
+    const double c_2 = p->c_2;
+    const double t8 = c_2 * c_2;
+    const double t9 = t7 * t8;
     const double t10 = q_1_dot * q_1_dot;
+    const double l_1 = p->l_1;
+    const double t11 = l_1 * t10;
+    const double t4 = cosine[0];
+    const double t12 = c_2 * t4;
+    const double t13 = q_1_dot * t12;
+    const double t14 = turn_2 * t13;
+    const double t15 = 2.0 * t14;
+    const double t16 = t11 + t15;
+    const double t17 = l_1 * t16;
+    const double t18 = t9 + t17;
+    const double m_2 = p->m_2;
+    const double t19 = m_2 * t18;
+    const double J_2 = p->J_2;
+    const double t20 = J_2 * t7;
     const double c_1 = p->c_1;
     const double m_1 = p->m_1;
-    const double t11 = c_1 * m_1;
-    const double t12 = c_1 * t11;
+    const double t21 = c_1 * m_1;
+    const double t22 = c_1 * t21;
     const double J_1 = p->J_1;
-    const double t13 = J_1 + t12;
-    const double t14 = t10 * t13;
-    const double t15 = 0.5 * t14;
-    const double t16 = t9 + t15;
-    const double c_2 = p->c_2;
-    const double t17 = c_2 * c_2;
-    const double t18 = t7 * t17;
-    const double l_1 = p->l_1;
-    const double t19 = q_1_dot * l_1;
-    const double t20 = c_2 * turn_2;
-    const double t4 = cosine[0];
-    const double t21 = t4 * t20;
-    const double t22 = 2.0 * t21;
-    const double t23 = t19 + t22;
-    const double t24 = t19 * t23;
-    const double t25 = t18 + t24;
-    const double m_2 = p->m_2;
-    const double t26 = m_2 * t25;
+    const double t23 = J_1 + t22;
+    const double t24 = t10 * t23;
+    const double t25 = t20 + t24;
+    const double t26 = t19 + t25;
     const double t27 = 0.5 * t26;
-    const double t28 = t16 + t27;
+    double rest = t27 - t27;
     const double t6 = cosine[1];
-    const double t29 = t11 * t6;
-    const double t30 = l_1 * t6;
-    const double t31 = t4 * t6;
+    const double t28 = t21 * t6;
+    const double t29 = l_1 * t6;
+    const double t30 = t4 * t6;
     const double t3 = sine[0];
     const double t5 = sine[1];
-    const double t32 = t3 * t5;
-    const double t33 = t31 - t32;
-    const double t34 = c_2 * t33;
-    const double t35 = t30 + t34;
-    const double t36 = m_2 * t35;
-    const double t37 = t29 + t36;
+    const double t31 = t3 * t5;
+    const double t32 = t30 - t31;
+    const double t33 = c_2 * t32;
+    const double t34 = t29 + t33;
+    const double t35 = m_2 * t34;
+    const double t36 = t28 + t35;
     const double g = p->g;
-    const double t38 = g * t37;
-    const double t39 = -t38;
-    double rest = (t28 - t28) * t39;
+    const double t37 = g * t36;
+    const double t38 = -t37;
+    rest *= t38;
     if (DOUBLE_PENDULUM_RARELY(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    T_U[0] = t28;
-    T_U[1] = t39;
+    T_U[0] = t27;
+    T_U[1] = t38;
     return DOUBLE_PENDULUM_OK;
 }
 

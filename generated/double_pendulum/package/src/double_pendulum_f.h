@@ -12,9 +12,9 @@
  *
  *
  * Operations                          + -      *      /   sqrt sincos  other
- * mass_matrix                           6     16      0      0      1      0
- * coriolis_matrix                       1      7      0      0      1      0
- * coriolis_force                        1      9      0      0      1      0
+ * mass_matrix                           6     12      0      0      1      0
+ * coriolis_matrix                       1      6      0      0      1      0
+ * coriolis_force                        1      8      0      0      1      0
  * potential_force                       3      7      0      0      2      0
  * applied_force                         0      2      0      0      0      0
  * nullspace_projector                   0      0      0      0      0      0
@@ -24,25 +24,25 @@
  * projected_control_matrix              0      0      0      0      0      0
  * projected_control_pseudoinverse       0      0      0      0      0      0
  * orthogonal_complement                 0      0      0      0      0      0
- * projected_mass_matrix                 6     16      0      0      1      0
- * projected_coriolis_matrix             1      7      0      0      1      0
+ * projected_mass_matrix                 6     12      0      0      1      0
+ * projected_coriolis_matrix             1      6      0      0      1      0
  * projected_potential_force             3      7      0      0      2      0
  * projected_applied_force               0      2      0      0      0      0
- * minimal_mass_matrix                   6     16      0      0      1      0
- * minimal_coriolis_matrix               1      7      0      0      1      0
+ * minimal_mass_matrix                   6     12      0      0      1      0
+ * minimal_coriolis_matrix               1      6      0      0      1      0
  * minimal_potential_force               3      7      0      0      2      0
  * minimal_applied_force                 0      2      0      0      0      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                   0      0      0      0      0      0
  * admissible_acceleration               0      0      0      0      0      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                     20     36      0      0      2      0
+ * inverse_dynamics                     19     31      0      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
- * actuator_mass_matrix                  6     16      0      0      1      0
+ * actuator_mass_matrix                  6     12      0      0      1      0
  * actuator_bias                         9     21      0      0      2      0
- * forward_dynamics                     29     56      1      0      2      0
- * energy                                9     24      0      0      2      0
+ * forward_dynamics                     27     53      1      0      2      0
+ * energy                                9     23      0      0      2      0
  * singularity                           0      0      0      0      0      0
  * (changes of sign are not counted)
  *
@@ -334,43 +334,41 @@ double_pendulum_status double_pendulum_mass_matrix_f(const float q[2], const dou
     float t2;
     float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
-    const float c_1 = p->c_1;
-    const float t4 = c_1 * c_1;
-    const float m_1 = p->m_1;
-    const float t5 = m_1 * t4;
-    const float J_1 = p->J_1;
-    const float t6 = J_1 + t5;
-    const float t7 = 0.5f * t6;
     const float l_1 = p->l_1;
-    const float t8 = l_1 * l_1;
     const float m_2 = p->m_2;
-    const float t9 = m_2 * t8;
-    const float t10 = 0.5f * t9;
-    const float t11 = t7 + t10;
-    const float t12 = 2.0f * t11;
-    const float J_2 = p->J_2;
-    const float t13 = 0.5f * J_2;
+    const float t4 = l_1 * m_2;
     const float c_2 = p->c_2;
-    const float t14 = c_2 * c_2;
-    const float t15 = m_2 * t14;
+    const float t5 = c_2 * t4;
+    const float t6 = t3 * t5;
+    const float t7 = c_2 * c_2;
+    const float t8 = m_2 * t7;
+    const float J_2 = p->J_2;
+    const float t9 = J_2 + t8;
+    const float t10 = 0.5f * t9;
+    const float c_1 = p->c_1;
+    const float t11 = c_1 * c_1;
+    const float m_1 = p->m_1;
+    const float t12 = m_1 * t11;
+    const float J_1 = p->J_1;
+    const float t13 = J_1 + t12;
+    const float t14 = l_1 * t4;
+    const float t15 = t13 + t14;
     const float t16 = 0.5f * t15;
-    const float t17 = t13 + t16;
-    const float t18 = 2.0f * t17;
-    const float t19 = l_1 * c_2;
-    const float t20 = t19 * t3;
-    const float t21 = m_2 * t20;
-    const float t22 = 2.0f * t21;
-    const float t23 = t18 + t22;
-    const float t24 = t12 + t23;
-    const float t25 = t21 + t18;
-    float rest = (t24 - t24) * t25 * t18;
+    const float t17 = t10 + t16;
+    const float t18 = t6 + t17;
+    const float t19 = 2.0f * t18;
+    float rest = t19 - t19;
+    const float t20 = 2.0f * t10;
+    rest *= t20;
+    const float t21 = t20 + t6;
+    rest *= t21;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    G[0] = t24;
-    G[1] = t25;
-    G[2] = t25;
-    G[3] = t18;
+    G[0] = t19;
+    G[1] = t21;
+    G[2] = t21;
+    G[3] = t20;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -392,19 +390,20 @@ double_pendulum_status double_pendulum_coriolis_matrix_f(const float q[2], const
     const float q_2_dot = qd[1];
     const float t7 = q_2_dot * t6;
     const float t8 = -t7;
+    float rest = t8 - t8;
     const float q_1_dot = qd[0];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t9 = turn_2 * t2;
-    const float t10 = t5 * t9;
-    const float t11 = -t10;
-    const float t12 = q_1_dot * t6;
-    float rest = (t8 - t8) * t11 * t12;
+    const float t9 = turn_2 * t6;
+    const float t10 = -t9;
+    rest *= t10;
+    const float t11 = q_1_dot * t6;
+    rest *= t11;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C[0] = t8;
-    C[1] = t11;
-    C[2] = t12;
+    C[1] = t10;
+    C[2] = t11;
     C[3] = 0.0f;
     return DOUBLE_PENDULUM_OK;
 }
@@ -418,28 +417,28 @@ double_pendulum_status double_pendulum_coriolis_force_f(const float q[2], const 
     float t2;
     float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
+    const float q_1_dot = qd[0];
+    const float t4 = 2.0f * q_1_dot;
+    const float q_2_dot = qd[1];
+    const float t5 = q_2_dot + t4;
     const float l_1 = p->l_1;
     const float c_2 = p->c_2;
-    const float t4 = l_1 * c_2;
+    const float t6 = l_1 * c_2;
     const float m_2 = p->m_2;
-    const float t5 = m_2 * t4;
-    const float q_2_dot = qd[1];
-    const float t6 = q_2_dot * t2;
-    const float q_1_dot = qd[0];
-    const float t7 = 2.0f * q_1_dot;
-    const float t8 = q_2_dot + t7;
-    const float t9 = t6 * t8;
+    const float t7 = m_2 * t6;
+    const float t8 = t7 * t2;
+    const float t9 = q_2_dot * t8;
     const float t10 = t5 * t9;
     const float t11 = -t10;
+    float rest = t11 - t11;
     const float t12 = q_1_dot * q_1_dot;
-    const float t13 = t5 * t2;
-    const float t14 = t12 * t13;
-    float rest = (t11 - t11) * t14;
+    const float t13 = t12 * t8;
+    rest *= t13;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_qd[0] = t11;
-    C_qd[1] = t14;
+    C_qd[1] = t13;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -466,6 +465,7 @@ double_pendulum_status double_pendulum_potential_force_f(const float q[2], const
     const float t8 = c_2 * t7;
     const float t3 = sine[0];
     const float t9 = t8 * t3;
+    float rest = t9 - t9;
     const float l_1 = p->l_1;
     const float t10 = l_1 * t7;
     const float c_1 = p->c_1;
@@ -476,7 +476,7 @@ double_pendulum_status double_pendulum_potential_force_f(const float q[2], const
     const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
-    float rest = (t15 - t15) * t9;
+    rest *= t15;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -491,11 +491,12 @@ double_pendulum_status double_pendulum_applied_force_f(const float q[2], const f
     const float d_1 = p->d_1;
     const float t1 = q_1_dot * d_1;
     const float t2 = -t1;
+    float rest = t2 - t2;
     const float q_2_dot = qd[1];
     const float d_2 = p->d_2;
     const float t3 = q_2_dot * d_2;
     const float t4 = -t3;
-    float rest = (t2 - t2) * t4;
+    rest *= t4;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -584,43 +585,41 @@ double_pendulum_status double_pendulum_projected_mass_matrix_f(const float q[2],
     float t2;
     float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
-    const float c_1 = p->c_1;
-    const float t4 = c_1 * c_1;
-    const float m_1 = p->m_1;
-    const float t5 = m_1 * t4;
-    const float J_1 = p->J_1;
-    const float t6 = J_1 + t5;
-    const float t7 = 0.5f * t6;
     const float l_1 = p->l_1;
-    const float t8 = l_1 * l_1;
     const float m_2 = p->m_2;
-    const float t9 = m_2 * t8;
-    const float t10 = 0.5f * t9;
-    const float t11 = t7 + t10;
-    const float t12 = 2.0f * t11;
-    const float J_2 = p->J_2;
-    const float t13 = 0.5f * J_2;
+    const float t4 = l_1 * m_2;
     const float c_2 = p->c_2;
-    const float t14 = c_2 * c_2;
-    const float t15 = m_2 * t14;
+    const float t5 = c_2 * t4;
+    const float t6 = t3 * t5;
+    const float t7 = c_2 * c_2;
+    const float t8 = m_2 * t7;
+    const float J_2 = p->J_2;
+    const float t9 = J_2 + t8;
+    const float t10 = 0.5f * t9;
+    const float c_1 = p->c_1;
+    const float t11 = c_1 * c_1;
+    const float m_1 = p->m_1;
+    const float t12 = m_1 * t11;
+    const float J_1 = p->J_1;
+    const float t13 = J_1 + t12;
+    const float t14 = l_1 * t4;
+    const float t15 = t13 + t14;
     const float t16 = 0.5f * t15;
-    const float t17 = t13 + t16;
-    const float t18 = 2.0f * t17;
-    const float t19 = l_1 * c_2;
-    const float t20 = t19 * t3;
-    const float t21 = m_2 * t20;
-    const float t22 = 2.0f * t21;
-    const float t23 = t18 + t22;
-    const float t24 = t12 + t23;
-    const float t25 = t21 + t18;
-    float rest = (t24 - t24) * t25 * t18;
+    const float t17 = t10 + t16;
+    const float t18 = t6 + t17;
+    const float t19 = 2.0f * t18;
+    float rest = t19 - t19;
+    const float t20 = 2.0f * t10;
+    rest *= t20;
+    const float t21 = t20 + t6;
+    rest *= t21;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    G_tilde[0] = t24;
-    G_tilde[1] = t25;
-    G_tilde[2] = t25;
-    G_tilde[3] = t18;
+    G_tilde[0] = t19;
+    G_tilde[1] = t21;
+    G_tilde[2] = t21;
+    G_tilde[3] = t20;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -642,19 +641,20 @@ double_pendulum_status double_pendulum_projected_coriolis_matrix_f(const float q
     const float q_2_dot = qd[1];
     const float t7 = q_2_dot * t6;
     const float t8 = -t7;
+    float rest = t8 - t8;
     const float q_1_dot = qd[0];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t9 = turn_2 * t2;
-    const float t10 = t5 * t9;
-    const float t11 = -t10;
-    const float t12 = q_1_dot * t6;
-    float rest = (t8 - t8) * t11 * t12;
+    const float t9 = turn_2 * t6;
+    const float t10 = -t9;
+    rest *= t10;
+    const float t11 = q_1_dot * t6;
+    rest *= t11;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_tilde[0] = t8;
-    C_tilde[1] = t11;
-    C_tilde[2] = t12;
+    C_tilde[1] = t10;
+    C_tilde[2] = t11;
     C_tilde[3] = 0.0f;
     return DOUBLE_PENDULUM_OK;
 }
@@ -682,6 +682,7 @@ double_pendulum_status double_pendulum_projected_potential_force_f(const float q
     const float t8 = c_2 * t7;
     const float t3 = sine[0];
     const float t9 = t8 * t3;
+    float rest = t9 - t9;
     const float l_1 = p->l_1;
     const float t10 = l_1 * t7;
     const float c_1 = p->c_1;
@@ -692,7 +693,7 @@ double_pendulum_status double_pendulum_projected_potential_force_f(const float q
     const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
-    float rest = (t15 - t15) * t9;
+    rest *= t15;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -707,11 +708,12 @@ double_pendulum_status double_pendulum_projected_applied_force_f(const float q[2
     const float d_1 = p->d_1;
     const float t1 = q_1_dot * d_1;
     const float t2 = -t1;
+    float rest = t2 - t2;
     const float q_2_dot = qd[1];
     const float d_2 = p->d_2;
     const float t3 = q_2_dot * d_2;
     const float t4 = -t3;
-    float rest = (t2 - t2) * t4;
+    rest *= t4;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -729,43 +731,41 @@ double_pendulum_status double_pendulum_minimal_mass_matrix_f(const float q[2], c
     float t2;
     float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
-    const float c_1 = p->c_1;
-    const float t4 = c_1 * c_1;
-    const float m_1 = p->m_1;
-    const float t5 = m_1 * t4;
-    const float J_1 = p->J_1;
-    const float t6 = J_1 + t5;
-    const float t7 = 0.5f * t6;
     const float l_1 = p->l_1;
-    const float t8 = l_1 * l_1;
     const float m_2 = p->m_2;
-    const float t9 = m_2 * t8;
-    const float t10 = 0.5f * t9;
-    const float t11 = t7 + t10;
-    const float t12 = 2.0f * t11;
-    const float J_2 = p->J_2;
-    const float t13 = 0.5f * J_2;
+    const float t4 = l_1 * m_2;
     const float c_2 = p->c_2;
-    const float t14 = c_2 * c_2;
-    const float t15 = m_2 * t14;
+    const float t5 = c_2 * t4;
+    const float t6 = t3 * t5;
+    const float t7 = c_2 * c_2;
+    const float t8 = m_2 * t7;
+    const float J_2 = p->J_2;
+    const float t9 = J_2 + t8;
+    const float t10 = 0.5f * t9;
+    const float c_1 = p->c_1;
+    const float t11 = c_1 * c_1;
+    const float m_1 = p->m_1;
+    const float t12 = m_1 * t11;
+    const float J_1 = p->J_1;
+    const float t13 = J_1 + t12;
+    const float t14 = l_1 * t4;
+    const float t15 = t13 + t14;
     const float t16 = 0.5f * t15;
-    const float t17 = t13 + t16;
-    const float t18 = 2.0f * t17;
-    const float t19 = l_1 * c_2;
-    const float t20 = t19 * t3;
-    const float t21 = m_2 * t20;
-    const float t22 = 2.0f * t21;
-    const float t23 = t18 + t22;
-    const float t24 = t12 + t23;
-    const float t25 = t21 + t18;
-    float rest = (t24 - t24) * t25 * t18;
+    const float t17 = t10 + t16;
+    const float t18 = t6 + t17;
+    const float t19 = 2.0f * t18;
+    float rest = t19 - t19;
+    const float t20 = 2.0f * t10;
+    rest *= t20;
+    const float t21 = t20 + t6;
+    rest *= t21;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    G_bar[0] = t24;
-    G_bar[1] = t25;
-    G_bar[2] = t25;
-    G_bar[3] = t18;
+    G_bar[0] = t19;
+    G_bar[1] = t21;
+    G_bar[2] = t21;
+    G_bar[3] = t20;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -787,19 +787,20 @@ double_pendulum_status double_pendulum_minimal_coriolis_matrix_f(const float q[2
     const float q_2_dot = qd[1];
     const float t7 = q_2_dot * t6;
     const float t8 = -t7;
+    float rest = t8 - t8;
     const float q_1_dot = qd[0];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t9 = turn_2 * t2;
-    const float t10 = t5 * t9;
-    const float t11 = -t10;
-    const float t12 = q_1_dot * t6;
-    float rest = (t8 - t8) * t11 * t12;
+    const float t9 = turn_2 * t6;
+    const float t10 = -t9;
+    rest *= t10;
+    const float t11 = q_1_dot * t6;
+    rest *= t11;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
     C_bar[0] = t8;
-    C_bar[1] = t11;
-    C_bar[2] = t12;
+    C_bar[1] = t10;
+    C_bar[2] = t11;
     C_bar[3] = 0.0f;
     return DOUBLE_PENDULUM_OK;
 }
@@ -827,6 +828,7 @@ double_pendulum_status double_pendulum_minimal_potential_force_f(const float q[2
     const float t8 = c_2 * t7;
     const float t3 = sine[0];
     const float t9 = t8 * t3;
+    float rest = t9 - t9;
     const float l_1 = p->l_1;
     const float t10 = l_1 * t7;
     const float c_1 = p->c_1;
@@ -837,7 +839,7 @@ double_pendulum_status double_pendulum_minimal_potential_force_f(const float q[2
     const float t5 = sine[1];
     const float t14 = t13 * t5;
     const float t15 = t9 + t14;
-    float rest = (t15 - t15) * t9;
+    rest *= t15;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -852,11 +854,12 @@ double_pendulum_status double_pendulum_minimal_applied_force_f(const float q[2],
     const float d_1 = p->d_1;
     const float t1 = q_1_dot * d_1;
     const float t2 = -t1;
+    float rest = t2 - t2;
     const float q_2_dot = qd[1];
     const float d_2 = p->d_2;
     const float t3 = q_2_dot * d_2;
     const float t4 = -t3;
-    float rest = (t2 - t2) * t4;
+    rest *= t4;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -880,7 +883,8 @@ double_pendulum_status double_pendulum_admissible_velocity_f(const float q[2], c
     (void)p;
     const float q_1_dot = qd[0];
     const float q_2_dot = qd[1];
-    float rest = (q_1_dot - q_1_dot) * q_2_dot;
+    float rest = q_1_dot - q_1_dot;
+    rest *= q_2_dot;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -895,7 +899,8 @@ double_pendulum_status double_pendulum_admissible_acceleration_f(const float q[2
     (void)p;
     const float q_1_ddot = qdd[0];
     const float q_2_ddot = qdd[1];
-    float rest = (q_1_ddot - q_1_ddot) * q_2_ddot;
+    float rest = q_1_ddot - q_1_ddot;
+    rest *= q_2_ddot;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -908,7 +913,8 @@ double_pendulum_status double_pendulum_projected_configuration_f(const float q[2
     (void)p;
     const float q_1 = q[0];
     const float q_2 = q[1];
-    float rest = (q_1 - q_1) * q_2;
+    float rest = q_1 - q_1;
+    rest *= q_2;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -918,100 +924,95 @@ double_pendulum_status double_pendulum_projected_configuration_f(const float q[2
 }
 
 double_pendulum_status double_pendulum_inverse_dynamics_f(const float q[2], const float qd[2], const float qdd[2], const double_pendulum_params_f *p, float u[2]) {
-    const float q_1 = q[0];
-    const float t1 = fabsf(q_1);
     const float q_2 = q[1];
-    const float t2 = fabsf(q_2);
+    const float t1 = fabsf(q_2);
+    const float q_1 = q[0];
+    const float t2 = fabsf(q_1);
     if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    const float angle[4] = {q_1, q_2, q_2, q_2};
+    const float angle[4] = {q_2, q_1, q_1, q_1};
     float sine[4];
     float cosine[4];
     double_pendulum_sincos_group_f(2, angle, sine, cosine);
-    const float q_1_dot = qd[0];
-    const float d_1 = p->d_1;
-    const float t7 = q_1_dot * d_1;
-    const float m_2 = p->m_2;
-    const float g = p->g;
-    const float t8 = m_2 * g;
     const float l_1 = p->l_1;
-    const float t9 = l_1 * t8;
+    const float m_2 = p->m_2;
+    const float t7 = l_1 * m_2;
+    const float t8 = l_1 * t7;
     const float c_1 = p->c_1;
     const float m_1 = p->m_1;
-    const float t10 = c_1 * m_1;
-    const float t11 = g * t10;
-    const float t12 = t9 + t11;
-    const float t3 = sine[0];
-    const float t13 = t12 * t3;
-    const float c_2 = p->c_2;
-    const float t14 = c_2 * t8;
-    const float t6 = cosine[1];
-    const float t15 = t6 * t3;
-    const float t5 = sine[1];
-    const float t4 = cosine[0];
-    const float t16 = t5 * t4;
-    const float t17 = t15 + t16;
-    const float t18 = t14 * t17;
-    const float t19 = t13 + t18;
-    const float t20 = l_1 * l_1;
-    const float t21 = m_2 * t20;
-    const float t22 = 0.5f * t21;
-    const float t23 = c_1 * t10;
+    const float t9 = c_1 * m_1;
+    const float t10 = c_1 * t9;
     const float J_1 = p->J_1;
-    const float t24 = J_1 + t23;
-    const float t25 = 0.5f * t24;
-    const float t26 = t22 + t25;
+    const float t11 = J_1 + t10;
+    const float t12 = t8 + t11;
+    const float t13 = 0.5f * t12;
     const float q_1_ddot = qdd[0];
-    const float t27 = q_1_ddot * t26;
-    const float t28 = l_1 * c_2;
-    const float t29 = t28 * t6;
+    const float t14 = q_1_ddot * t13;
+    const float c_2 = p->c_2;
+    const float t15 = l_1 * c_2;
+    const float t4 = cosine[0];
+    const float t16 = t15 * t4;
     const float q_2_ddot = qdd[1];
-    const float t30 = q_1_ddot + q_2_ddot;
-    const float t31 = m_2 * t30;
-    const float t32 = t29 * t31;
-    const float q_2_dot = qd[1];
-    const float turn_2 = q_1_dot + q_2_dot;
-    const float t33 = m_2 * turn_2;
-    const float t34 = q_2_dot * t5;
-    const float t35 = t28 * t34;
-    const float t36 = t33 * t35;
-    const float t37 = t32 - t36;
+    const float t17 = q_1_ddot + q_2_ddot;
+    const float t18 = m_2 * t17;
+    const float t19 = t16 * t18;
+    const float t20 = t9 + t7;
+    const float g = p->g;
+    const float t21 = g * t20;
+    const float t5 = sine[1];
+    const float t22 = t5 * t21;
+    const float q_1_dot = qd[0];
+    const float d_1 = p->d_1;
+    const float t23 = q_1_dot * d_1;
+    const float t24 = c_2 * m_2;
+    const float t25 = c_2 * t24;
     const float J_2 = p->J_2;
-    const float t38 = 0.5f * J_2;
-    const float t39 = c_2 * c_2;
-    const float t40 = m_2 * t39;
-    const float t41 = 0.5f * t40;
-    const float t42 = t38 + t41;
-    const float t43 = t42 * t30;
-    const float t44 = q_1_ddot * t29;
-    const float t45 = q_1_dot * t35;
-    const float t46 = t44 - t45;
-    const float t47 = m_2 * t46;
-    const float t48 = t43 + t47;
-    const float t49 = t43 + t48;
-    const float t50 = t37 + t49;
-    const float t51 = t50 + t27;
-    const float t52 = t27 + t51;
-    const float t53 = t19 + t52;
-    const float t54 = t7 + t53;
+    const float t26 = J_2 + t25;
+    const float t27 = 0.5f * t26;
+    const float t28 = t17 * t27;
+    const float t29 = q_1_ddot * t16;
+    const float t3 = sine[0];
+    const float t30 = t15 * t3;
+    const float q_2_dot = qd[1];
+    const float t31 = q_2_dot * t30;
+    const float t32 = q_1_dot * t31;
+    const float t33 = t29 - t32;
+    const float t34 = m_2 * t33;
+    const float t35 = t34 + t28;
+    const float t36 = t28 + t35;
+    const float t37 = t4 * t5;
+    const float t6 = cosine[1];
+    const float t38 = t3 * t6;
+    const float t39 = t37 + t38;
+    const float t40 = g * t24;
+    const float t41 = t39 * t40;
+    const float t42 = t36 + t41;
+    const float t43 = t23 + t42;
+    const float t44 = t22 + t43;
+    const float t45 = t14 + t44;
+    const float t46 = t19 + t45;
+    const float turn_2 = q_1_dot + q_2_dot;
+    const float t47 = m_2 * turn_2;
+    const float t48 = t47 * t31;
+    const float t49 = t46 - t48;
+    const float t50 = t14 + t49;
+    float rest = t50 - t50;
+    const float t51 = q_1_dot * t30;
+    const float t52 = t47 * t51;
     const float d_2 = p->d_2;
-    const float t55 = q_2_dot * d_2;
-    const float t56 = q_1_dot * t33;
-    const float t57 = t28 * t56;
-    const float t58 = t5 * t57;
-    const float t59 = t58 + t49;
-    const float t60 = t59 + t18;
-    const float t61 = t55 + t60;
-    float rest = (t54 - t54) * t61;
+    const float t53 = q_2_dot * d_2;
+    const float t54 = t53 + t42;
+    const float t55 = t52 + t54;
+    rest *= t55;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    u[0] = t54;
-    u[1] = t61;
+    u[0] = t50;
+    u[1] = t55;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1030,7 +1031,8 @@ double_pendulum_status double_pendulum_actuator_velocity_f(const float q[2], con
     (void)p;
     const float q_1_dot = qd[0];
     const float q_2_dot = qd[1];
-    float rest = (q_1_dot - q_1_dot) * q_2_dot;
+    float rest = q_1_dot - q_1_dot;
+    rest *= q_2_dot;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
@@ -1048,110 +1050,109 @@ double_pendulum_status double_pendulum_actuator_mass_matrix_f(const float q[2], 
     float t2;
     float t3;
     double_pendulum_sincos_f(q_2, &t2, &t3);
-    const float c_1 = p->c_1;
-    const float t4 = c_1 * c_1;
-    const float m_1 = p->m_1;
-    const float t5 = m_1 * t4;
-    const float J_1 = p->J_1;
-    const float t6 = J_1 + t5;
-    const float t7 = 0.5f * t6;
     const float l_1 = p->l_1;
-    const float t8 = l_1 * l_1;
     const float m_2 = p->m_2;
-    const float t9 = m_2 * t8;
-    const float t10 = 0.5f * t9;
-    const float t11 = t7 + t10;
-    const float t12 = 2.0f * t11;
-    const float J_2 = p->J_2;
-    const float t13 = 0.5f * J_2;
+    const float t4 = l_1 * m_2;
     const float c_2 = p->c_2;
-    const float t14 = c_2 * c_2;
-    const float t15 = m_2 * t14;
+    const float t5 = c_2 * t4;
+    const float t6 = t3 * t5;
+    const float t7 = c_2 * c_2;
+    const float t8 = m_2 * t7;
+    const float J_2 = p->J_2;
+    const float t9 = J_2 + t8;
+    const float t10 = 0.5f * t9;
+    const float c_1 = p->c_1;
+    const float t11 = c_1 * c_1;
+    const float m_1 = p->m_1;
+    const float t12 = m_1 * t11;
+    const float J_1 = p->J_1;
+    const float t13 = J_1 + t12;
+    const float t14 = l_1 * t4;
+    const float t15 = t13 + t14;
     const float t16 = 0.5f * t15;
-    const float t17 = t13 + t16;
-    const float t18 = 2.0f * t17;
-    const float t19 = l_1 * c_2;
-    const float t20 = t19 * t3;
-    const float t21 = m_2 * t20;
-    const float t22 = 2.0f * t21;
-    const float t23 = t18 + t22;
-    const float t24 = t12 + t23;
-    const float t25 = t21 + t18;
-    float rest = (t24 - t24) * t25 * t18;
+    const float t17 = t10 + t16;
+    const float t18 = t6 + t17;
+    const float t19 = 2.0f * t18;
+    float rest = t19 - t19;
+    const float t20 = 2.0f * t10;
+    rest *= t20;
+    const float t21 = t20 + t6;
+    rest *= t21;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    G_nu[0] = t24;
-    G_nu[1] = t25;
-    G_nu[2] = t25;
-    G_nu[3] = t18;
+    G_nu[0] = t19;
+    G_nu[1] = t21;
+    G_nu[2] = t21;
+    G_nu[3] = t20;
     return DOUBLE_PENDULUM_OK;
 }
 
 double_pendulum_status double_pendulum_actuator_bias_f(const float q[2], const float qd[2], const double_pendulum_params_f *p, float bias_nu[2]) {
-    const float q_1 = q[0];
-    const float t1 = fabsf(q_1);
     const float q_2 = q[1];
-    const float t2 = fabsf(q_2);
+    const float t1 = fabsf(q_2);
+    const float q_1 = q[0];
+    const float t2 = fabsf(q_1);
     if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t1))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
     if (DOUBLE_PENDULUM_RARELY_F(!(100.0f >= t2))) {
         return DOUBLE_PENDULUM_ANGLE_RANGE;
     }
-    const float angle[4] = {q_1, q_2, q_2, q_2};
+    const float angle[4] = {q_2, q_1, q_1, q_1};
     float sine[4];
     float cosine[4];
     double_pendulum_sincos_group_f(2, angle, sine, cosine);
+    const float c_2 = p->c_2;
+    const float m_2 = p->m_2;
+    const float t7 = c_2 * m_2;
+    const float g = p->g;
+    const float t6 = cosine[1];
+    const float t8 = g * t6;
     const float q_1_dot = qd[0];
+    const float t9 = 2.0f * q_1_dot;
+    const float q_2_dot = qd[1];
+    const float t10 = q_2_dot + t9;
+    const float l_1 = p->l_1;
+    const float t11 = l_1 * t10;
+    const float t12 = q_2_dot * t11;
+    const float t13 = t8 - t12;
+    const float t3 = sine[0];
+    const float t14 = t3 * t13;
+    const float t5 = sine[1];
+    const float t15 = g * t5;
+    const float t4 = cosine[0];
+    const float t16 = t4 * t15;
+    const float t17 = t14 + t16;
+    const float t18 = t7 * t17;
     const float d_1 = p->d_1;
-    const float t7 = q_1_dot * d_1;
+    const float t19 = q_1_dot * d_1;
     const float c_1 = p->c_1;
     const float m_1 = p->m_1;
-    const float t8 = c_1 * m_1;
-    const float l_1 = p->l_1;
-    const float m_2 = p->m_2;
-    const float t9 = l_1 * m_2;
-    const float t10 = t8 + t9;
-    const float g = p->g;
-    const float t11 = g * t10;
-    const float t3 = sine[0];
-    const float t12 = t3 * t11;
-    const float t13 = t7 + t12;
-    const float c_2 = p->c_2;
-    const float t14 = c_2 * m_2;
-    const float t4 = cosine[0];
-    const float t15 = g * t4;
-    const float t16 = 2.0f * q_1_dot;
-    const float q_2_dot = qd[1];
-    const float t17 = q_2_dot + t16;
-    const float t18 = l_1 * t17;
-    const float t19 = q_2_dot * t18;
-    const float t20 = t15 - t19;
-    const float t5 = sine[1];
-    const float t21 = t5 * t20;
-    const float t6 = cosine[1];
-    const float t22 = t6 * t3;
-    const float t23 = g * t22;
-    const float t24 = t21 + t23;
-    const float t25 = t14 * t24;
-    const float t26 = t13 + t25;
+    const float t20 = c_1 * m_1;
+    const float t21 = l_1 * m_2;
+    const float t22 = t20 + t21;
+    const float t23 = t22 * t15;
+    const float t24 = t19 + t23;
+    const float t25 = t18 + t24;
+    float rest = t25 - t25;
     const float d_2 = p->d_2;
-    const float t27 = q_2_dot * d_2;
-    const float t28 = q_1_dot * q_1_dot;
-    const float t29 = t28 * t5;
-    const float t30 = l_1 * t29;
-    const float t31 = t5 * t4;
-    const float t32 = t22 + t31;
+    const float t26 = q_2_dot * d_2;
+    const float t27 = q_1_dot * q_1_dot;
+    const float t28 = t27 * t3;
+    const float t29 = l_1 * t28;
+    const float t30 = t4 * t5;
+    const float t31 = t3 * t6;
+    const float t32 = t30 + t31;
     const float t33 = g * t32;
-    const float t34 = t30 + t33;
-    const float t35 = t14 * t34;
-    const float t36 = t27 + t35;
-    float rest = (t26 - t26) * t36;
+    const float t34 = t29 + t33;
+    const float t35 = t7 * t34;
+    const float t36 = t26 + t35;
+    rest *= t36;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    bias_nu[0] = t26;
+    bias_nu[0] = t25;
     bias_nu[1] = t36;
     return DOUBLE_PENDULUM_OK;
 }
@@ -1171,128 +1172,124 @@ double_pendulum_status double_pendulum_forward_dynamics_f(const float q[2], cons
     float sine[4];
     float cosine[4];
     double_pendulum_sincos_group_f(2, angle, sine, cosine);
-    const float l_1 = p->l_1;
-    const float t7 = l_1 * l_1;
-    const float J_2 = p->J_2;
-    const float t8 = J_2 * t7;
-    const float c_2 = p->c_2;
-    const float t9 = c_2 * c_2;
-    const float m_2 = p->m_2;
-    const float t10 = m_2 * t7;
-    const float t3 = sine[0];
-    const float t11 = t3 * t3;
-    const float t12 = t10 * t11;
     const float c_1 = p->c_1;
     const float m_1 = p->m_1;
-    const float t13 = c_1 * m_1;
-    const float t14 = c_1 * t13;
-    const float t15 = t12 + t14;
+    const float t7 = c_1 * m_1;
+    const float t8 = c_1 * t7;
     const float J_1 = p->J_1;
-    const float t16 = J_1 + t15;
-    const float t17 = t9 * t16;
-    const float t18 = t8 + t17;
-    const float t19 = m_2 * t18;
-    const float t20 = J_1 + t14;
-    const float t21 = J_2 * t20;
-    const float t22 = t19 + t21;
-    const float t23 = fabsf(t22);
-    const float t24 = fabsf(m_2);
-    const float t25 = fabsf(c_2);
-    const float t26 = fabsf(J_1);
-    const float t27 = fabsf(m_1);
-    const float t28 = fabsf(c_1);
-    const float t29 = t28 * t28;
-    const float t30 = t27 * t29;
-    const float t31 = fabsf(l_1);
-    const float t32 = t31 * t31;
-    const float t33 = t24 * t32;
-    const float t34 = t30 + t33;
-    const float t35 = t26 + t34;
-    const float t36 = t25 * t35;
-    const float t37 = t25 * t36;
-    const float t38 = fabsf(J_2);
-    const float t39 = t38 * t32;
-    const float t40 = t37 + t39;
-    const float t41 = t24 * t40;
-    const float t42 = t26 + t30;
-    const float t43 = t38 * t42;
-    const float t44 = t41 + t43;
-    const float t45 = t44 * 9.536743e-07f;
-    if (DOUBLE_PENDULUM_RARELY_F(!(t23 > t45))) {
+    const float t9 = J_1 + t8;
+    const float J_2 = p->J_2;
+    const float t10 = J_2 * t9;
+    const float l_1 = p->l_1;
+    const float t11 = l_1 * l_1;
+    const float t12 = J_2 * t11;
+    const float c_2 = p->c_2;
+    const float t13 = c_2 * c_2;
+    const float m_2 = p->m_2;
+    const float t14 = m_2 * t11;
+    const float t3 = sine[0];
+    const float t15 = t3 * t3;
+    const float t16 = t14 * t15;
+    const float t17 = t16 + t9;
+    const float t18 = t13 * t17;
+    const float t19 = t12 + t18;
+    const float t20 = m_2 * t19;
+    const float t21 = t10 + t20;
+    const float t22 = fabsf(t21);
+    const float t23 = fabsf(J_2);
+    const float t24 = fabsf(J_1);
+    const float t25 = fabsf(m_1);
+    const float t26 = fabsf(c_1);
+    const float t27 = t26 * t26;
+    const float t28 = t25 * t27;
+    const float t29 = t24 + t28;
+    const float t30 = t23 * t29;
+    const float t31 = fabsf(m_2);
+    const float t32 = fabsf(l_1);
+    const float t33 = t32 * t32;
+    const float t34 = t23 * t33;
+    const float t35 = fabsf(c_2);
+    const float t36 = t31 * t33;
+    const float t37 = t29 + t36;
+    const float t38 = t35 * t37;
+    const float t39 = t35 * t38;
+    const float t40 = t34 + t39;
+    const float t41 = t31 * t40;
+    const float t42 = t30 + t41;
+    const float t43 = t42 * 9.536743e-07f;
+    if (DOUBLE_PENDULUM_RARELY_F(!(t22 > t43))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }
-    const float t46 = 1.0f / t22;
-    const float t47 = l_1 * c_2;
+    const float t44 = 1.0f / t21;
+    const float t45 = l_1 * c_2;
     const float t4 = cosine[0];
-    const float t48 = t47 * t4;
-    const float t49 = m_2 * t48;
-    const float t50 = 0.5f * J_2;
-    const float t51 = m_2 * t9;
-    const float t52 = 0.5f * t51;
-    const float t53 = t50 + t52;
-    const float t54 = 2.0f * t53;
-    const float t55 = t49 + t54;
+    const float t46 = t45 * t4;
+    const float t47 = m_2 * t46;
+    const float t48 = m_2 * t13;
+    const float t49 = J_2 + t48;
+    const float t50 = 0.5f * t49;
+    const float t51 = 2.0f * t50;
+    const float t52 = t47 + t51;
     const float q_2_dot = qd[1];
     const float d_2 = p->d_2;
-    const float t56 = q_2_dot * d_2;
+    const float t53 = q_2_dot * d_2;
+    const float elbow = u[1];
+    const float t54 = elbow - t53;
     const float q_1_dot = qd[0];
     const float turn_2 = q_1_dot + q_2_dot;
-    const float t57 = m_2 * turn_2;
-    const float t58 = q_1_dot * t57;
-    const float t59 = t47 * t58;
-    const float t60 = t3 * t59;
-    const float t61 = q_2_dot * t3;
-    const float t62 = t47 * t61;
-    const float t63 = q_1_dot * t62;
-    const float t64 = m_2 * t63;
-    const float t65 = t60 - t64;
+    const float t55 = m_2 * turn_2;
+    const float t56 = t45 * t3;
+    const float t57 = q_1_dot * t56;
+    const float t58 = t55 * t57;
+    const float t59 = t54 - t58;
+    const float t60 = q_2_dot * t56;
+    const float t61 = q_1_dot * t60;
+    const float t62 = m_2 * t61;
     const float g = p->g;
-    const float t66 = m_2 * g;
-    const float t67 = c_2 * t66;
+    const float t63 = m_2 * g;
+    const float t64 = c_2 * t63;
     const float t5 = sine[1];
-    const float t68 = t4 * t5;
+    const float t65 = t4 * t5;
     const float t6 = cosine[1];
-    const float t69 = t3 * t6;
-    const float t70 = t68 + t69;
-    const float t71 = t67 * t70;
-    const float t72 = t65 + t71;
-    const float t73 = t56 + t72;
-    const float elbow = u[1];
-    const float t74 = elbow - t73;
-    const float t75 = t55 * t74;
+    const float t66 = t3 * t6;
+    const float t67 = t65 + t66;
+    const float t68 = t64 * t67;
+    const float t69 = t62 - t68;
+    const float t70 = t59 + t69;
+    const float t71 = t52 * t70;
+    const float t72 = l_1 * m_2;
+    const float t73 = t7 + t72;
+    const float t74 = g * t73;
+    const float t75 = t5 * t74;
     const float d_1 = p->d_1;
     const float t76 = q_1_dot * d_1;
-    const float t77 = l_1 * t66;
-    const float t78 = g * t13;
-    const float t79 = t77 + t78;
-    const float t80 = t79 * t5;
-    const float t81 = t80 + t71;
-    const float t82 = t57 * t62;
-    const float t83 = t82 + t64;
-    const float t84 = t81 - t83;
-    const float t85 = t76 + t84;
+    const float t77 = t76 - t69;
+    const float t78 = t75 + t77;
+    const float t79 = t55 * t60;
+    const float t80 = t78 - t79;
     const float shoulder = u[0];
-    const float t86 = t85 - shoulder;
-    const float t87 = t54 * t86;
-    const float t88 = t75 + t87;
-    const float t89 = t46 * t88;
-    const float t90 = -t89;
-    const float t91 = t55 * t86;
-    const float t92 = t49 + t55;
-    const float t93 = 0.5f * t10;
-    const float t94 = 0.5f * t20;
-    const float t95 = t93 + t94;
-    const float t96 = 2.0f * t95;
-    const float t97 = t92 + t96;
-    const float t98 = t74 * t97;
-    const float t99 = t91 + t98;
-    const float t100 = t46 * t99;
-    float rest = (t90 - t90) * t100;
+    const float t81 = t80 - shoulder;
+    const float t82 = t51 * t81;
+    const float t83 = t71 + t82;
+    const float t84 = t44 * t83;
+    const float t85 = -t84;
+    float rest = t85 - t85;
+    const float t86 = t52 * t81;
+    const float t87 = t47 + t47;
+    const float t88 = t14 + t9;
+    const float t89 = 0.5f * t88;
+    const float t90 = t50 + t89;
+    const float t91 = 2.0f * t90;
+    const float t92 = t87 + t91;
+    const float t93 = t92 * t70;
+    const float t94 = t86 + t93;
+    const float t95 = t44 * t94;
+    rest *= t95;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    qdd[0] = t90;
-    qdd[1] = t100;
+    qdd[0] = t85;
+    qdd[1] = t95;
     return DOUBLE_PENDULUM_OK;
 }
 
@@ -1315,56 +1312,56 @@ double_pendulum_status double_pendulum_energy_f(const float q[2], const float qd
     const float q_2_dot = qd[1];
     const float turn_2 = q_1_dot + q_2_dot;
     const float t7 = turn_2 * turn_2;
-    const float J_2 = p->J_2;
-    const float t8 = J_2 * t7;
-    const float t9 = 0.5f * t8;
+    const float c_2 = p->c_2;
+    const float t8 = c_2 * c_2;
+    const float t9 = t7 * t8;
     const float t10 = q_1_dot * q_1_dot;
+    const float l_1 = p->l_1;
+    const float t11 = l_1 * t10;
+    const float t4 = cosine[0];
+    const float t12 = c_2 * t4;
+    const float t13 = q_1_dot * t12;
+    const float t14 = turn_2 * t13;
+    const float t15 = 2.0f * t14;
+    const float t16 = t11 + t15;
+    const float t17 = l_1 * t16;
+    const float t18 = t9 + t17;
+    const float m_2 = p->m_2;
+    const float t19 = m_2 * t18;
+    const float J_2 = p->J_2;
+    const float t20 = J_2 * t7;
     const float c_1 = p->c_1;
     const float m_1 = p->m_1;
-    const float t11 = c_1 * m_1;
-    const float t12 = c_1 * t11;
+    const float t21 = c_1 * m_1;
+    const float t22 = c_1 * t21;
     const float J_1 = p->J_1;
-    const float t13 = J_1 + t12;
-    const float t14 = t10 * t13;
-    const float t15 = 0.5f * t14;
-    const float t16 = t9 + t15;
-    const float c_2 = p->c_2;
-    const float t17 = c_2 * c_2;
-    const float t18 = t7 * t17;
-    const float l_1 = p->l_1;
-    const float t19 = q_1_dot * l_1;
-    const float t20 = c_2 * turn_2;
-    const float t4 = cosine[0];
-    const float t21 = t4 * t20;
-    const float t22 = 2.0f * t21;
-    const float t23 = t19 + t22;
-    const float t24 = t19 * t23;
-    const float t25 = t18 + t24;
-    const float m_2 = p->m_2;
-    const float t26 = m_2 * t25;
+    const float t23 = J_1 + t22;
+    const float t24 = t10 * t23;
+    const float t25 = t20 + t24;
+    const float t26 = t19 + t25;
     const float t27 = 0.5f * t26;
-    const float t28 = t16 + t27;
+    float rest = t27 - t27;
     const float t6 = cosine[1];
-    const float t29 = t11 * t6;
-    const float t30 = l_1 * t6;
-    const float t31 = t4 * t6;
+    const float t28 = t21 * t6;
+    const float t29 = l_1 * t6;
+    const float t30 = t4 * t6;
     const float t3 = sine[0];
     const float t5 = sine[1];
-    const float t32 = t3 * t5;
-    const float t33 = t31 - t32;
-    const float t34 = c_2 * t33;
-    const float t35 = t30 + t34;
-    const float t36 = m_2 * t35;
-    const float t37 = t29 + t36;
+    const float t31 = t3 * t5;
+    const float t32 = t30 - t31;
+    const float t33 = c_2 * t32;
+    const float t34 = t29 + t33;
+    const float t35 = m_2 * t34;
+    const float t36 = t28 + t35;
     const float g = p->g;
-    const float t38 = g * t37;
-    const float t39 = -t38;
-    float rest = (t28 - t28) * t39;
+    const float t37 = g * t36;
+    const float t38 = -t37;
+    rest *= t38;
     if (DOUBLE_PENDULUM_RARELY_F(isnan(rest) != 0)) {
         return DOUBLE_PENDULUM_NOT_FINITE;
     }
-    T_U[0] = t28;
-    T_U[1] = t39;
+    T_U[0] = t27;
+    T_U[1] = t38;
     return DOUBLE_PENDULUM_OK;
 }
 

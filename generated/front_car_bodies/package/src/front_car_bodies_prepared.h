@@ -14,19 +14,13 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[11];
+    double value[5];
 } front_car_bodies_prepared;
 
 front_car_bodies_prepared front_car_bodies_prepare(const front_car_bodies_params *p);
 
 /* u: the smallest inputs that produce the motion, (27); 22 operations instead of 26 */
 front_car_bodies_status front_car_bodies_inverse_dynamics_prepared(const double q[4], const double qd[4], const double qdd[4], const front_car_bodies_prepared *p, double u[2]);
-
-/* q̈: accelerations under the inputs, (15); 128 operations instead of 143 */
-front_car_bodies_status front_car_bodies_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_bodies_prepared *p, double qdd[4]);
-
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 133 operations instead of 148 */
-front_car_bodies_status front_car_bodies_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_bodies_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus
 }
@@ -173,30 +167,12 @@ front_car_bodies_prepared front_car_bodies_prepare(const front_car_bodies_params
     const double v2 = L * m_2;
     const double v3 = L * v2;
     const double v4 = Theta_1 + v3;
-    const double v5 = fabs(Theta_1);
-    const double v6 = fabs(L);
-    const double v7 = fabs(m_2);
-    const double v8 = v7 * v6;
-    const double v9 = v6 * v8;
-    const double v10 = v5 + v9;
-    const double v11 = fabs(Theta_2);
-    const double v12 = v10 * v11;
-    const double v13 = fabs(m_1);
-    const double v14 = v13 + v7;
-    const double v15 = v14 * v11;
-    const double v16 = L * Theta_2;
     front_car_bodies_prepared prepared;
     prepared.value[0] = L;
     prepared.value[1] = Theta_2;
     prepared.value[2] = v1;
     prepared.value[3] = v2;
     prepared.value[4] = v4;
-    prepared.value[5] = m_1;
-    prepared.value[6] = m_2;
-    prepared.value[7] = Theta_1;
-    prepared.value[8] = v12;
-    prepared.value[9] = v15;
-    prepared.value[10] = v16;
     return prepared;
 }
 
@@ -244,370 +220,16 @@ front_car_bodies_status front_car_bodies_inverse_dynamics_prepared(const double 
     const double t3 = sine[0];
     const double t26 = t3 * t25;
     const double t27 = t16 + t26;
+    double rest = t27 - t27;
     const double phi_ddot = qdd[3];
     const double Theta_2 = p->value[1];
     const double t28 = phi_ddot * Theta_2;
-    double rest = (t27 - t27) * t28;
+    rest *= t28;
     if (FRONT_CAR_BODIES_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
     u[0] = t27;
     u[1] = t28;
-    return FRONT_CAR_BODIES_OK;
-}
-
-front_car_bodies_status front_car_bodies_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_bodies_prepared *p, double qdd[4]) {
-    const double phi = q[3];
-    const double t1 = fabs(phi);
-    const double theta = q[2];
-    const double t2 = fabs(theta);
-    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t1))) {
-        return FRONT_CAR_BODIES_ANGLE_RANGE;
-    }
-    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t2))) {
-        return FRONT_CAR_BODIES_ANGLE_RANGE;
-    }
-    const double angle[2] = {phi, theta};
-    double sine[2];
-    double cosine[2];
-    front_car_bodies_sincos_group(2, angle, sine, cosine);
-    const double t3 = sine[0];
-    const double t7 = t3 * t3;
-    const double L = p->value[0];
-    const double t4 = cosine[0];
-    const double t8 = L * t4;
-    const double t5 = sine[1];
-    const double t9 = t5 * t8;
-    const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
-    const double t6 = cosine[1];
-    const double t12 = t6 * t8;
-    const double t13 = t12 * t12;
-    const double t14 = t11 + t13;
-    const double t15 = t8 * t8;
-    const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
-    if (FRONT_CAR_BODIES_RARELY(!(t14 > t17))) {
-        return FRONT_CAR_BODIES_CONSTRAINT_RANK;
-    }
-    const double t18 = t4 * t4;
-    const double m_1 = p->value[5];
-    const double t19 = m_1 * t18;
-    const double m_2 = p->value[6];
-    const double t20 = m_2 + t19;
-    const double t21 = L * t20;
-    const double t22 = L * t21;
-    const double Theta_1 = p->value[7];
-    const double t23 = Theta_1 * t7;
-    const double t24 = t22 + t23;
-    const double Theta_2 = p->value[1];
-    const double t25 = Theta_2 * t24;
-    const double t26 = fabs(t25);
-    const double t34 = p->value[8];
-    const double t35 = t7 * t34;
-    const double t39 = t10 + t13;
-    const double t38 = p->value[9];
-    const double t40 = t38 * t39;
-    const double t41 = t35 + t40;
-    const double t42 = t41 * 3.552713678800501e-15;
-    if (FRONT_CAR_BODIES_RARELY(!(t26 > t42))) {
-        return FRONT_CAR_BODIES_MASS_RANK;
-    }
-    const double t43 = 1.0 / t25;
-    const double t44 = L * t3;
-    const double K_f = u[0];
-    const double t45 = K_f * t44;
-    const double t46 = t3 * t45;
-    const double t47 = t6 * t4;
-    const double t48 = t5 * t3;
-    const double t49 = t47 - t48;
-    const double t50 = K_f * t49;
-    const double theta_dot = qd[2];
-    const double t52 = theta_dot * theta_dot;
-    const double t51 = p->value[3];
-    const double t53 = t51 * t52;
-    const double t54 = t6 * t53;
-    const double t55 = t50 + t54;
-    const double t56 = t12 * t55;
-    const double t57 = t5 * t4;
-    const double t58 = t6 * t3;
-    const double t59 = t57 + t58;
-    const double t60 = K_f * t59;
-    const double t61 = t5 * t53;
-    const double t62 = t60 + t61;
-    const double t63 = t9 * t62;
-    const double t64 = t56 + t63;
-    const double t65 = t46 + t64;
-    const double t66 = Theta_2 * t65;
-    const double t67 = t12 * t66;
-    const double t69 = p->value[4];
-    const double t70 = t3 * t69;
-    const double t71 = Theta_2 * t70;
-    const double phi_dot = qd[3];
-    const double t72 = phi_dot * t3;
-    const double t73 = L * t72;
-    const double t74 = theta_dot * t73;
-    const double t75 = theta_dot + phi_dot;
-    const double x_dot = qd[0];
-    const double t76 = x_dot * t49;
-    const double y_dot = qd[1];
-    const double t77 = y_dot * t59;
-    const double t78 = t76 + t77;
-    const double t79 = t75 * t78;
-    const double t80 = t74 + t79;
-    const double t81 = t6 * t80;
-    const double t82 = x_dot * t6;
-    const double t83 = y_dot * t5;
-    const double t84 = t82 + t83;
-    const double t85 = theta_dot * t84;
-    const double t86 = t49 * t85;
-    const double t87 = t81 - t86;
-    const double t88 = t71 * t87;
-    const double t90 = m_1 * t57;
-    const double t91 = m_2 * t59;
-    const double t92 = t90 + t91;
-    const double t89 = p->value[10];
-    const double t93 = t89 * t92;
-    const double t94 = t8 * t85;
-    const double t95 = t93 * t94;
-    const double t96 = t88 + t95;
-    const double t97 = t67 - t96;
-    const double t98 = t43 * t97;
-    const double t99 = t9 * t66;
-    const double t100 = t5 * t80;
-    const double t101 = t59 * t85;
-    const double t102 = t100 - t101;
-    const double t103 = t71 * t102;
-    const double t104 = m_1 * t47;
-    const double t105 = m_2 * t49;
-    const double t106 = t104 + t105;
-    const double t107 = t89 * t106;
-    const double t108 = t107 * t94;
-    const double t109 = t103 - t108;
-    const double t110 = t99 - t109;
-    const double t111 = t43 * t110;
-    const double t112 = t3 * t66;
-    const double t113 = t86 - t81;
-    const double t114 = t107 * t113;
-    const double t115 = t93 * t102;
-    const double t116 = t114 - t115;
-    const double t117 = t112 - t116;
-    const double t118 = t43 * t117;
-    const double t119 = m_1 * t5;
-    const double t120 = m_2 * t5;
-    const double t121 = t119 + t120;
-    const double t122 = t5 * t121;
-    const double t123 = m_2 * t6;
-    const double t124 = m_1 * t6;
-    const double t125 = t123 + t124;
-    const double t126 = t6 * t125;
-    const double t127 = t122 + t126;
-    const double T = u[1];
-    const double t128 = T * t12;
-    const double t129 = t127 * t128;
-    const double t130 = L * t120;
-    const double t131 = T * t3;
-    const double t132 = t130 * t131;
-    const double t133 = t129 - t132;
-    const double t134 = t12 * t133;
-    const double t135 = T * t9;
-    const double t136 = t127 * t135;
-    const double t137 = L * t123;
-    const double t138 = t137 * t131;
-    const double t139 = t136 + t138;
-    const double t140 = t9 * t139;
-    const double t141 = t134 + t140;
-    const double t142 = t69 * t131;
-    const double t143 = t3 * t142;
-    const double t144 = t141 + t143;
-    const double t145 = t43 * t144;
-    double rest = (t98 - t98) * t111 * t118;
-    rest += t145 - t145;
-    if (FRONT_CAR_BODIES_RARELY(isnan(rest) != 0)) {
-        return FRONT_CAR_BODIES_NOT_FINITE;
-    }
-    qdd[0] = t98;
-    qdd[1] = t111;
-    qdd[2] = t118;
-    qdd[3] = t145;
-    return FRONT_CAR_BODIES_OK;
-}
-
-front_car_bodies_status front_car_bodies_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_bodies_prepared *p, double lambda_B[2]) {
-    const double phi = q[3];
-    const double t1 = fabs(phi);
-    const double theta = q[2];
-    const double t2 = fabs(theta);
-    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t1))) {
-        return FRONT_CAR_BODIES_ANGLE_RANGE;
-    }
-    if (FRONT_CAR_BODIES_RARELY(!(100000.0 >= t2))) {
-        return FRONT_CAR_BODIES_ANGLE_RANGE;
-    }
-    const double angle[2] = {phi, theta};
-    double sine[2];
-    double cosine[2];
-    front_car_bodies_sincos_group(2, angle, sine, cosine);
-    const double t3 = sine[0];
-    const double t7 = t3 * t3;
-    const double L = p->value[0];
-    const double t4 = cosine[0];
-    const double t8 = L * t4;
-    const double t5 = sine[1];
-    const double t9 = t5 * t8;
-    const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
-    const double t6 = cosine[1];
-    const double t12 = t6 * t8;
-    const double t13 = t12 * t12;
-    const double t14 = t11 + t13;
-    const double t15 = t8 * t8;
-    const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
-    if (FRONT_CAR_BODIES_RARELY(!(t14 > t17))) {
-        return FRONT_CAR_BODIES_CONSTRAINT_RANK;
-    }
-    const double t18 = t4 * t4;
-    const double m_1 = p->value[5];
-    const double t19 = m_1 * t18;
-    const double m_2 = p->value[6];
-    const double t20 = m_2 + t19;
-    const double t21 = L * t20;
-    const double t22 = L * t21;
-    const double Theta_1 = p->value[7];
-    const double t23 = Theta_1 * t7;
-    const double t24 = t22 + t23;
-    const double Theta_2 = p->value[1];
-    const double t25 = Theta_2 * t24;
-    const double t26 = fabs(t25);
-    const double t34 = p->value[8];
-    const double t35 = t7 * t34;
-    const double t39 = t10 + t13;
-    const double t38 = p->value[9];
-    const double t40 = t38 * t39;
-    const double t41 = t35 + t40;
-    const double t42 = t41 * 3.552713678800501e-15;
-    if (FRONT_CAR_BODIES_RARELY(!(t26 > t42))) {
-        return FRONT_CAR_BODIES_MASS_RANK;
-    }
-    const double t43 = 1.0 / t25;
-    const double t45 = t5 * t4;
-    const double t46 = m_1 * t45;
-    const double t47 = t6 * t3;
-    const double t48 = t45 + t47;
-    const double t49 = m_2 * t48;
-    const double t50 = t46 + t49;
-    const double t44 = p->value[10];
-    const double t51 = t44 * t50;
-    const double t52 = t6 * t4;
-    const double t53 = t5 * t3;
-    const double t54 = t52 - t53;
-    const double K_f = u[0];
-    const double t55 = K_f * t54;
-    const double theta_dot = qd[2];
-    const double t57 = theta_dot * theta_dot;
-    const double t56 = p->value[3];
-    const double t58 = t56 * t57;
-    const double t59 = t6 * t58;
-    const double t60 = t55 + t59;
-    const double t61 = m_1 * t5;
-    const double t62 = m_2 * t5;
-    const double t63 = t61 + t62;
-    const double t64 = t5 * t63;
-    const double t65 = m_2 * t6;
-    const double t66 = m_1 * t6;
-    const double t67 = t65 + t66;
-    const double t68 = t6 * t67;
-    const double t69 = t64 + t68;
-    const double t71 = p->value[4];
-    const double t72 = t3 * t71;
-    const double t73 = Theta_2 * t72;
-    const double phi_dot = qd[3];
-    const double t74 = phi_dot * t3;
-    const double t75 = L * t74;
-    const double t76 = theta_dot * t75;
-    const double t77 = theta_dot + phi_dot;
-    const double x_dot = qd[0];
-    const double t78 = x_dot * t54;
-    const double y_dot = qd[1];
-    const double t79 = y_dot * t48;
-    const double t80 = t78 + t79;
-    const double t81 = t77 * t80;
-    const double t82 = t76 + t81;
-    const double t83 = t6 * t82;
-    const double t84 = x_dot * t6;
-    const double t85 = y_dot * t5;
-    const double t86 = t84 + t85;
-    const double t87 = theta_dot * t86;
-    const double t88 = t54 * t87;
-    const double t89 = t83 - t88;
-    const double t90 = t73 * t89;
-    const double t91 = t8 * t87;
-    const double t92 = t51 * t91;
-    const double t93 = t90 + t92;
-    const double t94 = t43 * t93;
-    const double t95 = t69 * t94;
-    const double t96 = L * t62;
-    const double t97 = m_1 * t52;
-    const double t98 = m_2 * t54;
-    const double t99 = t97 + t98;
-    const double t100 = t44 * t99;
-    const double t101 = t88 - t83;
-    const double t102 = t100 * t101;
-    const double t103 = t5 * t82;
-    const double t104 = t48 * t87;
-    const double t105 = t103 - t104;
-    const double t106 = t51 * t105;
-    const double t107 = t102 - t106;
-    const double t108 = t43 * t107;
-    const double t109 = t96 * t108;
-    const double t110 = t95 - t109;
-    const double t111 = t60 + t110;
-    const double t112 = t51 * t111;
-    const double t113 = K_f * t48;
-    const double t114 = t5 * t58;
-    const double t115 = t113 + t114;
-    const double t116 = t73 * t105;
-    const double t117 = t100 * t91;
-    const double t118 = t116 - t117;
-    const double t119 = t43 * t118;
-    const double t120 = t69 * t119;
-    const double t121 = L * t65;
-    const double t122 = t121 * t108;
-    const double t123 = t120 + t122;
-    const double t124 = t115 + t123;
-    const double t125 = t100 * t124;
-    const double t126 = t112 - t125;
-    const double t127 = t8 * t126;
-    const double t128 = t73 * t111;
-    const double t129 = L * t3;
-    const double t130 = K_f * t129;
-    const double t131 = t121 * t119;
-    const double t132 = t96 * t94;
-    const double t133 = t131 - t132;
-    const double t134 = t71 * t108;
-    const double t135 = t133 + t134;
-    const double t136 = t130 + t135;
-    const double t137 = t100 * t136;
-    const double t138 = t128 - t137;
-    const double t139 = t54 * t138;
-    const double t140 = t127 - t139;
-    const double t141 = t73 * t124;
-    const double t142 = t51 * t136;
-    const double t143 = t141 - t142;
-    const double t144 = t48 * t143;
-    const double t145 = t140 - t144;
-    const double t146 = t43 * t145;
-    const double t147 = t6 * t138;
-    const double t148 = t5 * t143;
-    const double t149 = t147 + t148;
-    const double t150 = t43 * t149;
-    double rest = (t146 - t146) * t150;
-    if (FRONT_CAR_BODIES_RARELY(isnan(rest) != 0)) {
-        return FRONT_CAR_BODIES_NOT_FINITE;
-    }
-    lambda_B[0] = t146;
-    lambda_B[1] = t150;
     return FRONT_CAR_BODIES_OK;
 }
 

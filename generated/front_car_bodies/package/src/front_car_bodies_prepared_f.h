@@ -14,19 +14,13 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[11];
+    float value[5];
 } front_car_bodies_prepared_f;
 
 front_car_bodies_prepared_f front_car_bodies_prepare_f(const front_car_bodies_params_f *p);
 
 /* u: the smallest inputs that produce the motion, (27); 22 operations instead of 26 */
 front_car_bodies_status front_car_bodies_inverse_dynamics_prepared_f(const float q[4], const float qd[4], const float qdd[4], const front_car_bodies_prepared_f *p, float u[2]);
-
-/* q̈: accelerations under the inputs, (15); 128 operations instead of 143 */
-front_car_bodies_status front_car_bodies_forward_dynamics_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_bodies_prepared_f *p, float qdd[4]);
-
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 133 operations instead of 148 */
-front_car_bodies_status front_car_bodies_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_bodies_prepared_f *p, float lambda_B[2]);
 
 #ifdef __cplusplus
 }
@@ -165,30 +159,12 @@ front_car_bodies_prepared_f front_car_bodies_prepare_f(const front_car_bodies_pa
     const float v2 = L * m_2;
     const float v3 = L * v2;
     const float v4 = Theta_1 + v3;
-    const float v5 = fabsf(Theta_1);
-    const float v6 = fabsf(L);
-    const float v7 = fabsf(m_2);
-    const float v8 = v7 * v6;
-    const float v9 = v6 * v8;
-    const float v10 = v5 + v9;
-    const float v11 = fabsf(Theta_2);
-    const float v12 = v10 * v11;
-    const float v13 = fabsf(m_1);
-    const float v14 = v13 + v7;
-    const float v15 = v14 * v11;
-    const float v16 = L * Theta_2;
     front_car_bodies_prepared_f prepared;
     prepared.value[0] = L;
     prepared.value[1] = Theta_2;
     prepared.value[2] = v1;
     prepared.value[3] = v2;
     prepared.value[4] = v4;
-    prepared.value[5] = m_1;
-    prepared.value[6] = m_2;
-    prepared.value[7] = Theta_1;
-    prepared.value[8] = v12;
-    prepared.value[9] = v15;
-    prepared.value[10] = v16;
     return prepared;
 }
 
@@ -236,370 +212,16 @@ front_car_bodies_status front_car_bodies_inverse_dynamics_prepared_f(const float
     const float t3 = sine[0];
     const float t26 = t3 * t25;
     const float t27 = t16 + t26;
+    float rest = t27 - t27;
     const float phi_ddot = qdd[3];
     const float Theta_2 = p->value[1];
     const float t28 = phi_ddot * Theta_2;
-    float rest = (t27 - t27) * t28;
+    rest *= t28;
     if (FRONT_CAR_BODIES_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_BODIES_NOT_FINITE;
     }
     u[0] = t27;
     u[1] = t28;
-    return FRONT_CAR_BODIES_OK;
-}
-
-front_car_bodies_status front_car_bodies_forward_dynamics_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_bodies_prepared_f *p, float qdd[4]) {
-    const float phi = q[3];
-    const float t1 = fabsf(phi);
-    const float theta = q[2];
-    const float t2 = fabsf(theta);
-    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t1))) {
-        return FRONT_CAR_BODIES_ANGLE_RANGE;
-    }
-    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t2))) {
-        return FRONT_CAR_BODIES_ANGLE_RANGE;
-    }
-    const float angle[4] = {phi, theta, theta, theta};
-    float sine[4];
-    float cosine[4];
-    front_car_bodies_sincos_group_f(2, angle, sine, cosine);
-    const float t3 = sine[0];
-    const float t7 = t3 * t3;
-    const float L = p->value[0];
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
-    const float t5 = sine[1];
-    const float t9 = t5 * t8;
-    const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
-    const float t6 = cosine[1];
-    const float t12 = t6 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
-    if (FRONT_CAR_BODIES_RARELY_F(!(t14 > t17))) {
-        return FRONT_CAR_BODIES_CONSTRAINT_RANK;
-    }
-    const float t18 = t4 * t4;
-    const float m_1 = p->value[5];
-    const float t19 = m_1 * t18;
-    const float m_2 = p->value[6];
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
-    const float Theta_1 = p->value[7];
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
-    const float Theta_2 = p->value[1];
-    const float t25 = Theta_2 * t24;
-    const float t26 = fabsf(t25);
-    const float t34 = p->value[8];
-    const float t35 = t7 * t34;
-    const float t39 = t10 + t13;
-    const float t38 = p->value[9];
-    const float t40 = t38 * t39;
-    const float t41 = t35 + t40;
-    const float t42 = t41 * 1.9073486e-06f;
-    if (FRONT_CAR_BODIES_RARELY_F(!(t26 > t42))) {
-        return FRONT_CAR_BODIES_MASS_RANK;
-    }
-    const float t43 = 1.0f / t25;
-    const float t44 = L * t3;
-    const float K_f = u[0];
-    const float t45 = K_f * t44;
-    const float t46 = t3 * t45;
-    const float t47 = t6 * t4;
-    const float t48 = t5 * t3;
-    const float t49 = t47 - t48;
-    const float t50 = K_f * t49;
-    const float theta_dot = qd[2];
-    const float t52 = theta_dot * theta_dot;
-    const float t51 = p->value[3];
-    const float t53 = t51 * t52;
-    const float t54 = t6 * t53;
-    const float t55 = t50 + t54;
-    const float t56 = t12 * t55;
-    const float t57 = t5 * t4;
-    const float t58 = t6 * t3;
-    const float t59 = t57 + t58;
-    const float t60 = K_f * t59;
-    const float t61 = t5 * t53;
-    const float t62 = t60 + t61;
-    const float t63 = t9 * t62;
-    const float t64 = t56 + t63;
-    const float t65 = t46 + t64;
-    const float t66 = Theta_2 * t65;
-    const float t67 = t12 * t66;
-    const float t69 = p->value[4];
-    const float t70 = t3 * t69;
-    const float t71 = Theta_2 * t70;
-    const float phi_dot = qd[3];
-    const float t72 = phi_dot * t3;
-    const float t73 = L * t72;
-    const float t74 = theta_dot * t73;
-    const float t75 = theta_dot + phi_dot;
-    const float x_dot = qd[0];
-    const float t76 = x_dot * t49;
-    const float y_dot = qd[1];
-    const float t77 = y_dot * t59;
-    const float t78 = t76 + t77;
-    const float t79 = t75 * t78;
-    const float t80 = t74 + t79;
-    const float t81 = t6 * t80;
-    const float t82 = x_dot * t6;
-    const float t83 = y_dot * t5;
-    const float t84 = t82 + t83;
-    const float t85 = theta_dot * t84;
-    const float t86 = t49 * t85;
-    const float t87 = t81 - t86;
-    const float t88 = t71 * t87;
-    const float t90 = m_1 * t57;
-    const float t91 = m_2 * t59;
-    const float t92 = t90 + t91;
-    const float t89 = p->value[10];
-    const float t93 = t89 * t92;
-    const float t94 = t8 * t85;
-    const float t95 = t93 * t94;
-    const float t96 = t88 + t95;
-    const float t97 = t67 - t96;
-    const float t98 = t43 * t97;
-    const float t99 = t9 * t66;
-    const float t100 = t5 * t80;
-    const float t101 = t59 * t85;
-    const float t102 = t100 - t101;
-    const float t103 = t71 * t102;
-    const float t104 = m_1 * t47;
-    const float t105 = m_2 * t49;
-    const float t106 = t104 + t105;
-    const float t107 = t89 * t106;
-    const float t108 = t107 * t94;
-    const float t109 = t103 - t108;
-    const float t110 = t99 - t109;
-    const float t111 = t43 * t110;
-    const float t112 = t3 * t66;
-    const float t113 = t86 - t81;
-    const float t114 = t107 * t113;
-    const float t115 = t93 * t102;
-    const float t116 = t114 - t115;
-    const float t117 = t112 - t116;
-    const float t118 = t43 * t117;
-    const float t119 = m_1 * t5;
-    const float t120 = m_2 * t5;
-    const float t121 = t119 + t120;
-    const float t122 = t5 * t121;
-    const float t123 = m_2 * t6;
-    const float t124 = m_1 * t6;
-    const float t125 = t123 + t124;
-    const float t126 = t6 * t125;
-    const float t127 = t122 + t126;
-    const float T = u[1];
-    const float t128 = T * t12;
-    const float t129 = t127 * t128;
-    const float t130 = L * t120;
-    const float t131 = T * t3;
-    const float t132 = t130 * t131;
-    const float t133 = t129 - t132;
-    const float t134 = t12 * t133;
-    const float t135 = T * t9;
-    const float t136 = t127 * t135;
-    const float t137 = L * t123;
-    const float t138 = t137 * t131;
-    const float t139 = t136 + t138;
-    const float t140 = t9 * t139;
-    const float t141 = t134 + t140;
-    const float t142 = t69 * t131;
-    const float t143 = t3 * t142;
-    const float t144 = t141 + t143;
-    const float t145 = t43 * t144;
-    float rest = (t98 - t98) * t111 * t118;
-    rest += t145 - t145;
-    if (FRONT_CAR_BODIES_RARELY_F(isnan(rest) != 0)) {
-        return FRONT_CAR_BODIES_NOT_FINITE;
-    }
-    qdd[0] = t98;
-    qdd[1] = t111;
-    qdd[2] = t118;
-    qdd[3] = t145;
-    return FRONT_CAR_BODIES_OK;
-}
-
-front_car_bodies_status front_car_bodies_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_bodies_prepared_f *p, float lambda_B[2]) {
-    const float phi = q[3];
-    const float t1 = fabsf(phi);
-    const float theta = q[2];
-    const float t2 = fabsf(theta);
-    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t1))) {
-        return FRONT_CAR_BODIES_ANGLE_RANGE;
-    }
-    if (FRONT_CAR_BODIES_RARELY_F(!(100.0f >= t2))) {
-        return FRONT_CAR_BODIES_ANGLE_RANGE;
-    }
-    const float angle[4] = {phi, theta, theta, theta};
-    float sine[4];
-    float cosine[4];
-    front_car_bodies_sincos_group_f(2, angle, sine, cosine);
-    const float t3 = sine[0];
-    const float t7 = t3 * t3;
-    const float L = p->value[0];
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
-    const float t5 = sine[1];
-    const float t9 = t5 * t8;
-    const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
-    const float t6 = cosine[1];
-    const float t12 = t6 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
-    if (FRONT_CAR_BODIES_RARELY_F(!(t14 > t17))) {
-        return FRONT_CAR_BODIES_CONSTRAINT_RANK;
-    }
-    const float t18 = t4 * t4;
-    const float m_1 = p->value[5];
-    const float t19 = m_1 * t18;
-    const float m_2 = p->value[6];
-    const float t20 = m_2 + t19;
-    const float t21 = L * t20;
-    const float t22 = L * t21;
-    const float Theta_1 = p->value[7];
-    const float t23 = Theta_1 * t7;
-    const float t24 = t22 + t23;
-    const float Theta_2 = p->value[1];
-    const float t25 = Theta_2 * t24;
-    const float t26 = fabsf(t25);
-    const float t34 = p->value[8];
-    const float t35 = t7 * t34;
-    const float t39 = t10 + t13;
-    const float t38 = p->value[9];
-    const float t40 = t38 * t39;
-    const float t41 = t35 + t40;
-    const float t42 = t41 * 1.9073486e-06f;
-    if (FRONT_CAR_BODIES_RARELY_F(!(t26 > t42))) {
-        return FRONT_CAR_BODIES_MASS_RANK;
-    }
-    const float t43 = 1.0f / t25;
-    const float t45 = t5 * t4;
-    const float t46 = m_1 * t45;
-    const float t47 = t6 * t3;
-    const float t48 = t45 + t47;
-    const float t49 = m_2 * t48;
-    const float t50 = t46 + t49;
-    const float t44 = p->value[10];
-    const float t51 = t44 * t50;
-    const float t52 = t6 * t4;
-    const float t53 = t5 * t3;
-    const float t54 = t52 - t53;
-    const float K_f = u[0];
-    const float t55 = K_f * t54;
-    const float theta_dot = qd[2];
-    const float t57 = theta_dot * theta_dot;
-    const float t56 = p->value[3];
-    const float t58 = t56 * t57;
-    const float t59 = t6 * t58;
-    const float t60 = t55 + t59;
-    const float t61 = m_1 * t5;
-    const float t62 = m_2 * t5;
-    const float t63 = t61 + t62;
-    const float t64 = t5 * t63;
-    const float t65 = m_2 * t6;
-    const float t66 = m_1 * t6;
-    const float t67 = t65 + t66;
-    const float t68 = t6 * t67;
-    const float t69 = t64 + t68;
-    const float t71 = p->value[4];
-    const float t72 = t3 * t71;
-    const float t73 = Theta_2 * t72;
-    const float phi_dot = qd[3];
-    const float t74 = phi_dot * t3;
-    const float t75 = L * t74;
-    const float t76 = theta_dot * t75;
-    const float t77 = theta_dot + phi_dot;
-    const float x_dot = qd[0];
-    const float t78 = x_dot * t54;
-    const float y_dot = qd[1];
-    const float t79 = y_dot * t48;
-    const float t80 = t78 + t79;
-    const float t81 = t77 * t80;
-    const float t82 = t76 + t81;
-    const float t83 = t6 * t82;
-    const float t84 = x_dot * t6;
-    const float t85 = y_dot * t5;
-    const float t86 = t84 + t85;
-    const float t87 = theta_dot * t86;
-    const float t88 = t54 * t87;
-    const float t89 = t83 - t88;
-    const float t90 = t73 * t89;
-    const float t91 = t8 * t87;
-    const float t92 = t51 * t91;
-    const float t93 = t90 + t92;
-    const float t94 = t43 * t93;
-    const float t95 = t69 * t94;
-    const float t96 = L * t62;
-    const float t97 = m_1 * t52;
-    const float t98 = m_2 * t54;
-    const float t99 = t97 + t98;
-    const float t100 = t44 * t99;
-    const float t101 = t88 - t83;
-    const float t102 = t100 * t101;
-    const float t103 = t5 * t82;
-    const float t104 = t48 * t87;
-    const float t105 = t103 - t104;
-    const float t106 = t51 * t105;
-    const float t107 = t102 - t106;
-    const float t108 = t43 * t107;
-    const float t109 = t96 * t108;
-    const float t110 = t95 - t109;
-    const float t111 = t60 + t110;
-    const float t112 = t51 * t111;
-    const float t113 = K_f * t48;
-    const float t114 = t5 * t58;
-    const float t115 = t113 + t114;
-    const float t116 = t73 * t105;
-    const float t117 = t100 * t91;
-    const float t118 = t116 - t117;
-    const float t119 = t43 * t118;
-    const float t120 = t69 * t119;
-    const float t121 = L * t65;
-    const float t122 = t121 * t108;
-    const float t123 = t120 + t122;
-    const float t124 = t115 + t123;
-    const float t125 = t100 * t124;
-    const float t126 = t112 - t125;
-    const float t127 = t8 * t126;
-    const float t128 = t73 * t111;
-    const float t129 = L * t3;
-    const float t130 = K_f * t129;
-    const float t131 = t121 * t119;
-    const float t132 = t96 * t94;
-    const float t133 = t131 - t132;
-    const float t134 = t71 * t108;
-    const float t135 = t133 + t134;
-    const float t136 = t130 + t135;
-    const float t137 = t100 * t136;
-    const float t138 = t128 - t137;
-    const float t139 = t54 * t138;
-    const float t140 = t127 - t139;
-    const float t141 = t73 * t124;
-    const float t142 = t51 * t136;
-    const float t143 = t141 - t142;
-    const float t144 = t48 * t143;
-    const float t145 = t140 - t144;
-    const float t146 = t43 * t145;
-    const float t147 = t6 * t138;
-    const float t148 = t5 * t143;
-    const float t149 = t147 + t148;
-    const float t150 = t43 * t149;
-    float rest = (t146 - t146) * t150;
-    if (FRONT_CAR_BODIES_RARELY_F(isnan(rest) != 0)) {
-        return FRONT_CAR_BODIES_NOT_FINITE;
-    }
-    lambda_B[0] = t146;
-    lambda_B[1] = t150;
     return FRONT_CAR_BODIES_OK;
 }
 

@@ -23,15 +23,15 @@
  * constraint_jacobian_dot               0      2      0      0      1      0
  * constraint_pseudoinverse              0      0      0      0      1      0
  * nullspace_projector                   0      3      0      0      1      0
- * nullspace_projector_dot               1      6      0      0      1      0
+ * nullspace_projector_dot               1      5      0      0      1      0
  * weighted_pseudoinverse                0      3      0      0      1      0
  * weighted_nullspace_projector          0      6      0      0      1      0
  * control_matrix                        0      0      0      0      1      0
  * projected_control_matrix              0      0      0      0      1      0
  * projected_control_pseudoinverse       0      0      0      0      1      0
  * orthogonal_complement                 0      1      1      0      1      0
- * projected_mass_matrix                 0      6      0      0      1      0
- * projected_coriolis_matrix             0      8      0      0      1      0
+ * projected_mass_matrix                 0      5      0      0      1      0
+ * projected_coriolis_matrix             0      7      0      0      1      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   0      1      1      0      1      0
@@ -40,16 +40,16 @@
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                0      1      1      0      1      0
  * admissible_velocity                   1      4      0      0      1      0
- * admissible_acceleration               5     11      0      0      1      0
+ * admissible_acceleration               5     10      0      0      1      0
  * projected_configuration               0      0      0      0      0      0
  * inverse_dynamics                      1      4      0      0      1      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  0      0      0      0      0      0
  * actuator_bias                         0      0      0      0      0      0
- * forward_dynamics                      3     14      2      0      1      0
+ * forward_dynamics                      3     13      2      0      1      0
  * multipliers                           1      7      0      0      1      0
- * energy                                2      7      0      0      0      0
+ * energy                                2      6      0      0      0      0
  * singularity                           0      0      0      0      0      0
  * (changes of sign are not counted)
  *
@@ -298,7 +298,8 @@ skate_status skate_mass_matrix_f(const float q[3], const skate_params_f *p, floa
     (void)q;
     const float Theta_s = p->Theta_s;
     const float m_s = p->m_s;
-    float rest = (Theta_s - Theta_s) * m_s;
+    float rest = Theta_s - Theta_s;
+    rest *= m_s;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -369,8 +370,9 @@ skate_status skate_constraint_jacobian_f(const float q[3], const skate_params_f 
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
+    float rest = t2 - t2;
     const float t4 = -t3;
-    float rest = (t2 - t2) * t4;
+    rest *= t4;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -392,8 +394,9 @@ skate_status skate_constraint_jacobian_dot_f(const float q[3], const float qd[3]
     skate_sincos_f(phi, &t2, &t3);
     const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
+    float rest = t4 - t4;
     const float t5 = phi_dot * t2;
-    float rest = (t4 - t4) * t5;
+    rest *= t5;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -413,8 +416,9 @@ skate_status skate_constraint_pseudoinverse_f(const float q[3], const skate_para
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
+    float rest = t2 - t2;
     const float t4 = -t3;
-    float rest = (t2 - t2) * t4;
+    rest *= t4;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -435,9 +439,11 @@ skate_status skate_nullspace_projector_f(const float q[3], const skate_params_f 
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
+    float rest = t4 - t4;
     const float t5 = t2 * t3;
+    rest *= t5;
     const float t6 = t2 * t2;
-    float rest = (t4 - t4) * t5 * t6;
+    rest *= t6;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -463,16 +469,17 @@ skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3]
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    const float phi_dot = qd[0];
-    const float t4 = phi_dot * t3;
+    const float t4 = 2.0f * t3;
     const float t5 = t2 * t4;
-    const float t6 = 2.0f * t5;
+    const float phi_dot = qd[0];
+    const float t6 = phi_dot * t5;
+    float rest = t6 - t6;
     const float t7 = -t6;
-    const float t8 = t3 * t3;
-    const float t9 = 2.0f * t8;
-    const float t10 = (-1.0f) + t9;
-    const float t11 = phi_dot * t10;
-    float rest = (t7 - t7) * t11 * t6;
+    rest *= t7;
+    const float t8 = t3 * t4;
+    const float t9 = (-1.0f) + t8;
+    const float t10 = phi_dot * t9;
+    rest *= t10;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -481,9 +488,9 @@ skate_status skate_nullspace_projector_dot_f(const float q[3], const float qd[3]
     N_B_dot[2] = 0.0f;
     N_B_dot[3] = 0.0f;
     N_B_dot[4] = t7;
-    N_B_dot[5] = t11;
+    N_B_dot[5] = t10;
     N_B_dot[6] = 0.0f;
-    N_B_dot[7] = t11;
+    N_B_dot[7] = t10;
     N_B_dot[8] = t6;
     return SKATE_OK;
 }
@@ -497,6 +504,7 @@ skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
+    float rest = t2 - t2;
     const float m_s = p->m_s;
     const float Theta_s = p->Theta_s;
     const float t4 = m_s * Theta_s;
@@ -509,7 +517,7 @@ skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params
         return SKATE_MASS_RANK;
     }
     const float t10 = -t3;
-    float rest = (t2 - t2) * t10;
+    rest *= t10;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -540,9 +548,11 @@ skate_status skate_weighted_nullspace_projector_f(const float q[3], const skate_
         return SKATE_MASS_RANK;
     }
     const float t10 = t3 * t3;
+    float rest = t10 - t10;
     const float t11 = t2 * t3;
+    rest *= t11;
     const float t12 = t2 * t2;
-    float rest = (t10 - t10) * t11 * t12;
+    rest *= t12;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -568,7 +578,8 @@ skate_status skate_control_matrix_f(const float q[3], const skate_params_f *p, f
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    float rest = (t3 - t3) * t2;
+    float rest = t2 - t2;
+    rest *= t3;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -591,7 +602,8 @@ skate_status skate_projected_control_matrix_f(const float q[3], const skate_para
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    float rest = (t3 - t3) * t2;
+    float rest = t2 - t2;
+    rest *= t3;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -614,7 +626,8 @@ skate_status skate_projected_control_pseudoinverse_f(const float q[3], const ska
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    float rest = (t3 - t3) * t2;
+    float rest = t2 - t2;
+    rest *= t3;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -639,9 +652,6 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
     if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
-        if (!(1.0f > 0.0f)) {
-            return SKATE_CONSTRAINT_RANK;
-        }
         return SKATE_CONSTRAINT_RANK;
     }
     const float t5 = t2 / t3;
@@ -670,13 +680,14 @@ skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_
     const float t4 = t3 * t3;
     const float m_s = p->m_s;
     const float t5 = m_s * t4;
-    const float t6 = t2 * t3;
-    const float t7 = m_s * t6;
-    const float t8 = t2 * t2;
-    const float t9 = m_s * t8;
+    float rest = t5 - t5;
+    const float t6 = m_s * t2;
+    const float t7 = t3 * t6;
+    rest *= t7;
+    const float t8 = t2 * t6;
+    rest *= t8;
     const float Theta_s = p->Theta_s;
-    float rest = (Theta_s - Theta_s) * t5 * t7;
-    rest += t9 - t9;
+    rest += Theta_s - Theta_s;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -688,7 +699,7 @@ skate_status skate_projected_mass_matrix_f(const float q[3], const skate_params_
     G_tilde[5] = t7;
     G_tilde[6] = 0.0f;
     G_tilde[7] = t7;
-    G_tilde[8] = t9;
+    G_tilde[8] = t8;
     return SKATE_OK;
 }
 
@@ -703,18 +714,19 @@ skate_status skate_projected_coriolis_matrix_f(const float q[3], const float qd[
     skate_sincos_f(phi, &t2, &t3);
     const float phi_dot = qd[0];
     const float t4 = phi_dot * t3;
-    const float t5 = t2 * t4;
     const float m_s = p->m_s;
-    const float t6 = m_s * t5;
+    const float t5 = m_s * t2;
+    const float t6 = t4 * t5;
+    float rest = t6 - t6;
     const float t7 = -t6;
+    rest *= t7;
     const float t8 = t3 * t4;
     const float t9 = m_s * t8;
-    const float t10 = phi_dot * t2;
+    rest *= t9;
+    const float t10 = phi_dot * t5;
     const float t11 = t2 * t10;
-    const float t12 = m_s * t11;
-    const float t13 = -t12;
-    float rest = (t7 - t7) * t9 * t13;
-    rest += t6 - t6;
+    const float t12 = -t11;
+    rest += t12 - t12;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -725,7 +737,7 @@ skate_status skate_projected_coriolis_matrix_f(const float q[3], const float qd[
     C_tilde[4] = t7;
     C_tilde[5] = t9;
     C_tilde[6] = 0.0f;
-    C_tilde[7] = t13;
+    C_tilde[7] = t12;
     C_tilde[8] = t6;
     return SKATE_OK;
 }
@@ -760,15 +772,13 @@ skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f 
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
     if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
-        if (!(1.0f > 0.0f)) {
-            return SKATE_CONSTRAINT_RANK;
-        }
         return SKATE_CONSTRAINT_RANK;
     }
     const float m_s = p->m_s;
     const float t5 = m_s / t4;
+    float rest = t5 - t5;
     const float Theta_s = p->Theta_s;
-    float rest = (Theta_s - Theta_s) * t5;
+    rest *= Theta_s;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -790,9 +800,6 @@ skate_status skate_minimal_coriolis_matrix_f(const float q[3], const float qd[3]
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
     if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
-        if (!(1.0f > 0.0f)) {
-            return SKATE_CONSTRAINT_RANK;
-        }
         return SKATE_CONSTRAINT_RANK;
     }
     const float phi_dot = qd[0];
@@ -841,9 +848,6 @@ skate_status skate_minimal_control_matrix_f(const float q[3], const skate_params
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
     if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
-        if (!(1.0f > 0.0f)) {
-            return SKATE_CONSTRAINT_RANK;
-        }
         return SKATE_CONSTRAINT_RANK;
     }
     const float t5 = 1.0f / t3;
@@ -874,9 +878,11 @@ skate_status skate_admissible_velocity_f(const float q[3], const float qd[3], co
     const float t5 = y_dot * t2;
     const float t6 = t4 + t5;
     const float t7 = t3 * t6;
+    float rest = t7 - t7;
     const float t8 = t2 * t6;
+    rest *= t8;
     const float phi_dot = qd[0];
-    float rest = (phi_dot - phi_dot) * t7 * t8;
+    rest *= phi_dot;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -896,35 +902,36 @@ skate_status skate_admissible_acceleration_f(const float q[3], const float qd[3]
     float t2;
     float t3;
     skate_sincos_f(phi, &t2, &t3);
-    const float t4 = t3 * t3;
-    const float x_ddot = qdd[1];
-    const float t5 = x_ddot * t4;
     const float y_ddot = qdd[2];
-    const float t6 = y_ddot * t3;
+    const float t4 = y_ddot * t3;
     const float x_dot = qd[1];
-    const float t7 = x_dot * t3;
+    const float t5 = x_dot * t3;
     const float y_dot = qd[2];
-    const float t8 = y_dot * t2;
-    const float t9 = t7 + t8;
+    const float t6 = y_dot * t2;
+    const float t7 = t5 + t6;
     const float phi_dot = qd[0];
-    const float t10 = phi_dot * t9;
-    const float t11 = t6 - t10;
-    const float t12 = t2 * t11;
-    const float t13 = t5 + t12;
-    const float t14 = t3 * t10;
-    const float t15 = x_ddot * t3;
-    const float t16 = y_ddot * t2;
-    const float t17 = t15 + t16;
-    const float t18 = t2 * t17;
-    const float t19 = t14 + t18;
+    const float t8 = phi_dot * t7;
+    const float t9 = t4 - t8;
+    const float t10 = t2 * t9;
+    const float x_ddot = qdd[1];
+    const float t11 = x_ddot * t3;
+    const float t12 = t3 * t11;
+    const float t13 = t10 + t12;
+    float rest = t13 - t13;
+    const float t14 = t3 * t8;
+    const float t15 = y_ddot * t2;
+    const float t16 = t11 + t15;
+    const float t17 = t2 * t16;
+    const float t18 = t14 + t17;
+    rest *= t18;
     const float phi_ddot = qdd[0];
-    float rest = (phi_ddot - phi_ddot) * t13 * t19;
+    rest *= phi_ddot;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd_admissible[0] = phi_ddot;
     qdd_admissible[1] = t13;
-    qdd_admissible[2] = t19;
+    qdd_admissible[2] = t18;
     return SKATE_OK;
 }
 
@@ -933,7 +940,9 @@ skate_status skate_projected_configuration_f(const float q[3], const skate_param
     const float phi = q[0];
     const float x = q[1];
     const float y = q[2];
-    float rest = (phi - phi) * x * y;
+    float rest = phi - phi;
+    rest *= x;
+    rest *= y;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -956,6 +965,7 @@ skate_status skate_inverse_dynamics_f(const float q[3], const float qd[3], const
     const float phi_ddot = qdd[0];
     const float Theta_s = p->Theta_s;
     const float t4 = phi_ddot * Theta_s;
+    float rest = t4 - t4;
     const float x_ddot = qdd[1];
     const float t5 = x_ddot * t3;
     const float y_ddot = qdd[2];
@@ -963,7 +973,7 @@ skate_status skate_inverse_dynamics_f(const float q[3], const float qd[3], const
     const float t7 = t5 + t6;
     const float m_s = p->m_s;
     const float t8 = m_s * t7;
-    float rest = (t4 - t4) * t8;
+    rest *= t8;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -998,8 +1008,9 @@ skate_status skate_actuator_velocity_f(const float q[3], const float qd[3], cons
     const float y_dot = qd[2];
     const float t5 = y_dot * t2;
     const float t6 = t4 + t5;
+    float rest = t6 - t6;
     const float phi_dot = qd[0];
-    float rest = (phi_dot - phi_dot) * t6;
+    rest *= phi_dot;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -1012,7 +1023,8 @@ skate_status skate_actuator_mass_matrix_f(const float q[3], const skate_params_f
     (void)q;
     const float Theta_s = p->Theta_s;
     const float m_s = p->m_s;
-    float rest = (Theta_s - Theta_s) * m_s;
+    float rest = Theta_s - Theta_s;
+    rest *= m_s;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -1054,6 +1066,7 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
     }
     const float T = u[0];
     const float t10 = T / Theta_s;
+    float rest = t10 - t10;
     const float t11 = 1.0f / m_s;
     const float K = u[1];
     const float t12 = K * t3;
@@ -1064,22 +1077,22 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
     const float t15 = t13 + t14;
     const float phi_dot = qd[0];
     const float t16 = phi_dot * t15;
-    const float t17 = t2 * t16;
-    const float t18 = m_s * t17;
+    const float t17 = m_s * t16;
+    const float t18 = t2 * t17;
     const float t19 = t12 - t18;
     const float t20 = t11 * t19;
+    rest *= t20;
     const float t21 = K * t2;
-    const float t22 = t3 * t16;
-    const float t23 = m_s * t22;
-    const float t24 = t21 + t23;
-    const float t25 = t11 * t24;
-    float rest = (t10 - t10) * t20 * t25;
+    const float t22 = t3 * t17;
+    const float t23 = t21 + t22;
+    const float t24 = t11 * t23;
+    rest *= t24;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
     qdd[1] = t20;
-    qdd[2] = t25;
+    qdd[2] = t24;
     return SKATE_OK;
 }
 
@@ -1126,21 +1139,20 @@ skate_status skate_energy_f(const float q[3], const float qd[3], const skate_par
     const float t1 = phi_dot * phi_dot;
     const float Theta_s = p->Theta_s;
     const float t2 = Theta_s * t1;
-    const float t3 = 0.5f * t2;
     const float x_dot = qd[1];
-    const float t4 = x_dot * x_dot;
+    const float t3 = x_dot * x_dot;
     const float y_dot = qd[2];
-    const float t5 = y_dot * y_dot;
-    const float t6 = t4 + t5;
+    const float t4 = y_dot * y_dot;
+    const float t5 = t3 + t4;
     const float m_s = p->m_s;
-    const float t7 = m_s * t6;
+    const float t6 = m_s * t5;
+    const float t7 = t2 + t6;
     const float t8 = 0.5f * t7;
-    const float t9 = t3 + t8;
-    float rest = t9 - t9;
+    float rest = t8 - t8;
     if (SKATE_RARELY_F(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
-    T_U[0] = t9;
+    T_U[0] = t8;
     T_U[1] = 0.0f;
     return SKATE_OK;
 }

@@ -68,6 +68,7 @@ skate_status skate_inverse_dynamics_sc(const skate_trig *sc, const double q[3], 
     const double phi_ddot = qdd[0];
     const double Theta_s = p->Theta_s;
     const double t4 = phi_ddot * Theta_s;
+    double rest = t4 - t4;
     const double x_ddot = qdd[1];
     const double cos_phi = sc->cos_phi;
     const double t5 = x_ddot * cos_phi;
@@ -77,7 +78,7 @@ skate_status skate_inverse_dynamics_sc(const skate_trig *sc, const double q[3], 
     const double t7 = t5 + t6;
     const double m_s = p->m_s;
     const double t8 = m_s * t7;
-    double rest = (t4 - t4) * t8;
+    rest *= t8;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
@@ -101,6 +102,7 @@ skate_status skate_forward_dynamics_sc(const skate_trig *sc, const double q[3], 
     }
     const double T = u[0];
     const double t10 = T / Theta_s;
+    double rest = t10 - t10;
     const double t11 = 1.0 / m_s;
     const double K = u[1];
     const double cos_phi = sc->cos_phi;
@@ -113,22 +115,22 @@ skate_status skate_forward_dynamics_sc(const skate_trig *sc, const double q[3], 
     const double t15 = t13 + t14;
     const double phi_dot = qd[0];
     const double t16 = phi_dot * t15;
-    const double t17 = sin_phi * t16;
-    const double t18 = m_s * t17;
+    const double t17 = m_s * t16;
+    const double t18 = sin_phi * t17;
     const double t19 = t12 - t18;
     const double t20 = t11 * t19;
+    rest *= t20;
     const double t21 = K * sin_phi;
-    const double t22 = cos_phi * t16;
-    const double t23 = m_s * t22;
-    const double t24 = t21 + t23;
-    const double t25 = t11 * t24;
-    double rest = (t10 - t10) * t20 * t25;
+    const double t22 = cos_phi * t17;
+    const double t23 = t21 + t22;
+    const double t24 = t11 * t23;
+    rest *= t24;
     if (SKATE_RARELY(isnan(rest) != 0)) {
         return SKATE_NOT_FINITE;
     }
     qdd[0] = t10;
     qdd[1] = t20;
-    qdd[2] = t25;
+    qdd[2] = t24;
     return SKATE_OK;
 }
 
