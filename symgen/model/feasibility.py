@@ -9,10 +9,11 @@ from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
 from symgen.model.names import counted
 
-SAMPLES = 5
+# Configurations that are looked at, and how many are enough where ranks are equal and masses are those of bodies.
+SAMPLES, ENOUGH = 5, 3
 
-# Components of a motion this small, at this many configurations, are none.
-HELD, ENOUGH = 1e-7, 3
+# Components of a motion this small are none.
+HELD = 1e-7
 
 # A configuration whose rank depends on which of these is taken for zero is too close to a singularity to tell.
 THRESHOLDS = (1e-9, 1e-5)
@@ -27,21 +28,26 @@ def check_motion(
     """What is wrong with the mechanism as a whole; `spans` has the places of the blocks to point at."""
     points: list[list[float]] = []
     jacobians: list[Rows] = []
+    ranks: list[list[int]] = []
     for q in mechanics.admissible(start, SAMPLES):
         try:
             jacobians.append(mechanics.jacobian(q))
         except (ArithmeticError, ValueError):
             continue
         points.append(q)
+        ranks.append([rank(jacobians[-1], threshold) for threshold in THRESHOLDS])
+        alike = len({value for both in ranks for value in both}) == 1
+        if len(ranks) >= ENOUGH and alike and mechanics.mass_is_sure:
+            break
     if not points:
         yield _no_configuration(mechanics, start, spans["geometric"])
         return
     n = len(mechanics.coordinates)
-    low, high = ([rank(jacobian, threshold) for jacobian in jacobians] for threshold in THRESHOLDS)
-    ranks = [a if a == b else -1 for a, b in zip(low, high, strict=True)]
-    generic = max(ranks)
+    sure = [low if low == high else -1 for low, high in ranks]
+    generic = max(sure)
     if generic < 0:
-        ranks, generic = high, max(high)
+        sure = [high for _, high in ranks]
+        generic = max(sure)
     if generic == n:
         against = f"{counted(n, 'coordinate')} under {counted(generic, 'independent constraint')}"
         yield Mistake(
@@ -50,7 +56,7 @@ def check_motion(
             spans["constraints"],
         )
         return
-    regular = [(q, b) for q, b, its in zip(points, jacobians, ranks, strict=True) if its == generic]
+    regular = [(q, b) for q, b, its in zip(points, jacobians, sure, strict=True) if its == generic]
     yield from _check_masses(mechanics, regular, spans["kinetic_energy"])
     yield from _held(mechanics, regular, spans["constraints"])
     if independent:
