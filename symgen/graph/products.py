@@ -26,6 +26,7 @@ class Products:
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
         self._known: dict[Scalar, Monomial] = {}
+        self._turning: set[Scalar] = set()  # those with a sine or cosine among their factors
 
     def monomial(self, a: Scalar) -> Monomial:
         """`a` as coefficient times powers of factors, whatever the order in which they were multiplied."""
@@ -50,6 +51,8 @@ class Products:
         else:
             result = (1, {a: 1})
         self._known[a] = result
+        if any(factor.op in ("sin", "cos") for factor in result[1]):
+            self._turning.add(a)
         return result
 
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
@@ -57,7 +60,7 @@ class Products:
         (k1, left), (k2, right) = self.monomial(a), self.monomial(b)
         if left == right:
             return a * (Fraction(k1 + sign * k2) / k1)
-        if abs(k1) != abs(k2):
+        if abs(k1) != abs(k2) or a not in self._turning or b not in self._turning:
             return None
         lost = [f for f, c in left.items() for _ in range(c - right.get(f, 0))]
         gained = [f for f, c in right.items() for _ in range(c - left.get(f, 0))]
