@@ -23,7 +23,7 @@ from symgen.dynamics.catalogue import (
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
-from symgen.dynamics.forms.motions import BY_FRAMES
+from symgen.dynamics.forms.motions import BY_FRAMES, cost_factor
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.grouping import grouped as grouped_scalars
 from symgen.dynamics.inverse import CANCELLATION_WORTH, FACTORING_LIMIT, FormChoice, InverseDynamics, derived_on, moved
@@ -185,7 +185,11 @@ def derive_quantities(
         if name in by_frames and not many:
             candidates[ARTICULATED] = moved(mechanics.graph, by_frames[name])
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
-        best = min(costs, key=lambda way: costs[way] * (1 - STRUCTURED_WORTH * (way == ARTICULATED)))
+        formed = {way: _form_along(along.get(way), name) for way in costs}
+        weights = {way: count * cost_factor(formed[way], mechanics) for way, count in costs.items()}
+        if ARTICULATED in weights:
+            weights[ARTICULATED] *= 1 - STRUCTURED_WORTH
+        best = min(weights, key=lambda way: weights[way])
         # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
         if entry.needs == PARTITION and "minors" in costs and costs["minors"] <= costs[best] * (1 + CANCELLATION_WORTH):
             best = "minors"

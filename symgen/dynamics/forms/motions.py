@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 from math import comb
 from typing import Literal, TypeAlias
 
@@ -26,6 +27,9 @@ from symgen.graph.traverse import cost
 MotionName: TypeAlias = Literal["minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt"]
 MOTION_NAMES: tuple[MotionName, ...] = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt")
 MOST_MINORS = 70
+# What `minor` is worth in operations where coordinates have several units: it alone does not add what has different
+# units up, as norms and reflections do (float32 q_ddot of a robot on wheels: 2 units of error in place of 24).
+MINOR_WORTH = Fraction(1, 4)
 BY_FRAMES = "articulated"  # of bodies only, without a null space: forms/articulated.py
 
 
@@ -47,21 +51,31 @@ def few_minors(generic: Genericity) -> bool:
 def cheapest(
     motions: Mapping[MotionName, Motion], part: Literal["accelerations", "multipliers"], mechanics: Mechanics
 ) -> Motion:
-    """The candidate that counts least, outputs and tested denominators together.
+    """The candidate that counts least, outputs and tested denominators together, exact cancellation worth some.
 
     `nullspace` is normwise accurate in the units that B is given in.  For q_ddot that is as good as anything where the
     coordinates have one unit, and masses that differ a lot cost nothing; else, and for lambda, it is left for systems
     in which G is definite along the constraints only.
     """
-    coordinates = mechanics.model.coordinates
-    even = part == "accelerations" and len({(c.unit, c.is_angle) for c in coordinates}) == 1
-    weights = {
+    even = part == "accelerations" and one_unit(mechanics)
+    counted = {
         name: cost((*getattr(one, part), *(guard.denominator for guard in one.guards))).weight
         for name, one in motions.items()
     }
+    weights = {name: count * cost_factor(name, mechanics) for name, count in counted.items()}
     order = sorted(motions, key=lambda name: (name == "nullspace" and not even, weights[name]))
     usable = (name for name in order if name != "schur_qr" or len(order) == 1 or positive_definite(mechanics))
     return motions[next(usable)]
+
+
+def one_unit(mechanics: Mechanics) -> bool:
+    """Whether all coordinates are angles in one unit, or lengths in one unit."""
+    return len({(c.unit, c.is_angle) for c in mechanics.model.coordinates}) == 1
+
+
+def cost_factor(name: str, mechanics: Mechanics) -> Fraction:
+    """The factor by which the counted cost of a form is taken."""
+    return 1 - MINOR_WORTH * (name == "minor" and not one_unit(mechanics))
 
 
 def motion(
