@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[38];
+    double value[28];
 } car_with_trailer_prepared;
 
 car_with_trailer_prepared car_with_trailer_prepare(const car_with_trailer_params *p);
@@ -22,7 +22,7 @@ car_with_trailer_prepared car_with_trailer_prepare(const car_with_trailer_params
 /* q̈: accelerations under the inputs, (15); 358 operations instead of 403 */
 car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double q[5], const double qd[5], const double u[2], const car_with_trailer_prepared *p, double qdd[5]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 328 operations instead of 367 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 379 operations instead of 424 */
 car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5], const double qd[5], const double u[2], const car_with_trailer_prepared *p, double lambda_B[3]);
 
 #ifdef __cplusplus

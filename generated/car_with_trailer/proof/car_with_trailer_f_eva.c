@@ -101,7 +101,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t91, t110, t217, t117, t283, t213, t285, t315, t311. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t90. */
 void eva_multipliers(void) {
     float q[5];
     float qd[5];

@@ -15,6 +15,10 @@ extern "C" {
 typedef struct {
     double sin_theta; /* sin(theta), q[2] */
     double cos_theta; /* cos(theta), q[2] */
+    double sin_left; /* sin(left), q[3] */
+    double cos_left; /* cos(left), q[3] */
+    double sin_right; /* sin(right), q[4] */
+    double cos_right; /* cos(right), q[4] */
     double sin_swivel; /* sin(swivel), q[5] */
     double cos_swivel; /* cos(swivel), q[5] */
     double sin_roll; /* sin(roll), q[6] */

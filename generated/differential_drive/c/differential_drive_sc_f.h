@@ -15,6 +15,10 @@ extern "C" {
 typedef struct {
     float sin_theta; /* sin(theta), q[2] */
     float cos_theta; /* cos(theta), q[2] */
+    float sin_left; /* sin(left), q[3] */
+    float cos_left; /* cos(left), q[3] */
+    float sin_right; /* sin(right), q[4] */
+    float cos_right; /* cos(right), q[4] */
     float sin_swivel; /* sin(swivel), q[5] */
     float cos_swivel; /* cos(swivel), q[5] */
     float sin_roll; /* sin(roll), q[6] */

@@ -68,7 +68,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t98, t238, t245, t323, t329, t367, t373, t415, t421, t503, t509, t601, t607. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t230. */
 void eva_forward_dynamics(void) {
     double q[7];
     double qd[7];
@@ -112,7 +112,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t98, t238, t371, t245, t455, t503, t579, t367, t457, t505, t581, t638, t634. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t98, t238, t371, t245, t455, t503, t579, t367, t459, t505, t581, t638, t634. */
 void eva_multipliers(void) {
     double q[7];
     double qd[7];

@@ -48,7 +48,7 @@ enum { SUMS_EVERYWHERE = 0 };
 #endif
 enum { WAYS = 8, MORE_WAYS = 64 };
 
-enum { SINES = 4, ARRAYS = 5, LONGEST = 7, RESULT = 7, PARAMETERS = 14 };
+enum { SINES = 4, ARRAYS = 5, LONGEST = 10, RESULT = 7, PARAMETERS = 14 };
 
 /* One set of numbers, the same in both types: q, qd, qdd, u, sines and cosines, and the parameters. */
 typedef struct {
@@ -117,6 +117,18 @@ static int inverse_dynamics_prepared_32(float *const *x, const differential_driv
     return (int)differential_drive_inverse_dynamics_prepared_f(x[0], x[1], x[2], &ready, y);
 }
 
+static int forward_dynamics_prepared_64(double *const *x, const differential_drive_params *p, double *y) {
+    const differential_drive_prepared ready = differential_drive_prepare(p);
+    feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
+    return (int)differential_drive_forward_dynamics_prepared(x[0], x[1], x[3], &ready, y);
+}
+
+static int forward_dynamics_prepared_32(float *const *x, const differential_drive_params_f *p, float *y) {
+    const differential_drive_prepared_f ready = differential_drive_prepare_f(p);
+    feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
+    return (int)differential_drive_forward_dynamics_prepared_f(x[0], x[1], x[3], &ready, y);
+}
+
 static int multipliers_prepared_64(double *const *x, const differential_drive_params *p, double *y) {
     const differential_drive_prepared ready = differential_drive_prepare(p);
     feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
@@ -133,10 +145,14 @@ static int inverse_dynamics_sc_64(double *const *x, const differential_drive_par
     differential_drive_trig sc;
     sc.sin_theta = x[4][0];
     sc.cos_theta = x[4][1];
-    sc.sin_swivel = x[4][2];
-    sc.cos_swivel = x[4][3];
-    sc.sin_roll = x[4][4];
-    sc.cos_roll = x[4][5];
+    sc.sin_left = x[4][2];
+    sc.cos_left = x[4][3];
+    sc.sin_right = x[4][4];
+    sc.cos_right = x[4][5];
+    sc.sin_swivel = x[4][6];
+    sc.cos_swivel = x[4][7];
+    sc.sin_roll = x[4][8];
+    sc.cos_roll = x[4][9];
     return (int)differential_drive_inverse_dynamics_sc(&sc, x[0], x[1], x[2], p, y);
 }
 
@@ -144,10 +160,14 @@ static int inverse_dynamics_sc_32(float *const *x, const differential_drive_para
     differential_drive_trig_f sc;
     sc.sin_theta = x[4][0];
     sc.cos_theta = x[4][1];
-    sc.sin_swivel = x[4][2];
-    sc.cos_swivel = x[4][3];
-    sc.sin_roll = x[4][4];
-    sc.cos_roll = x[4][5];
+    sc.sin_left = x[4][2];
+    sc.cos_left = x[4][3];
+    sc.sin_right = x[4][4];
+    sc.cos_right = x[4][5];
+    sc.sin_swivel = x[4][6];
+    sc.cos_swivel = x[4][7];
+    sc.sin_roll = x[4][8];
+    sc.cos_roll = x[4][9];
     return (int)differential_drive_inverse_dynamics_sc_f(&sc, x[0], x[1], x[2], p, y);
 }
 
@@ -155,10 +175,14 @@ static int forward_dynamics_sc_64(double *const *x, const differential_drive_par
     differential_drive_trig sc;
     sc.sin_theta = x[4][0];
     sc.cos_theta = x[4][1];
-    sc.sin_swivel = x[4][2];
-    sc.cos_swivel = x[4][3];
-    sc.sin_roll = x[4][4];
-    sc.cos_roll = x[4][5];
+    sc.sin_left = x[4][2];
+    sc.cos_left = x[4][3];
+    sc.sin_right = x[4][4];
+    sc.cos_right = x[4][5];
+    sc.sin_swivel = x[4][6];
+    sc.cos_swivel = x[4][7];
+    sc.sin_roll = x[4][8];
+    sc.cos_roll = x[4][9];
     return (int)differential_drive_forward_dynamics_sc(&sc, x[0], x[1], x[3], p, y);
 }
 
@@ -166,10 +190,14 @@ static int forward_dynamics_sc_32(float *const *x, const differential_drive_para
     differential_drive_trig_f sc;
     sc.sin_theta = x[4][0];
     sc.cos_theta = x[4][1];
-    sc.sin_swivel = x[4][2];
-    sc.cos_swivel = x[4][3];
-    sc.sin_roll = x[4][4];
-    sc.cos_roll = x[4][5];
+    sc.sin_left = x[4][2];
+    sc.cos_left = x[4][3];
+    sc.sin_right = x[4][4];
+    sc.cos_right = x[4][5];
+    sc.sin_swivel = x[4][6];
+    sc.cos_swivel = x[4][7];
+    sc.sin_roll = x[4][8];
+    sc.cos_roll = x[4][9];
     return (int)differential_drive_forward_dynamics_sc_f(&sc, x[0], x[1], x[3], p, y);
 }
 
@@ -177,10 +205,14 @@ static int multipliers_sc_64(double *const *x, const differential_drive_params *
     differential_drive_trig sc;
     sc.sin_theta = x[4][0];
     sc.cos_theta = x[4][1];
-    sc.sin_swivel = x[4][2];
-    sc.cos_swivel = x[4][3];
-    sc.sin_roll = x[4][4];
-    sc.cos_roll = x[4][5];
+    sc.sin_left = x[4][2];
+    sc.cos_left = x[4][3];
+    sc.sin_right = x[4][4];
+    sc.cos_right = x[4][5];
+    sc.sin_swivel = x[4][6];
+    sc.cos_swivel = x[4][7];
+    sc.sin_roll = x[4][8];
+    sc.cos_roll = x[4][9];
     return (int)differential_drive_multipliers_sc(&sc, x[0], x[1], x[3], p, y);
 }
 
@@ -188,10 +220,14 @@ static int multipliers_sc_32(float *const *x, const differential_drive_params_f 
     differential_drive_trig_f sc;
     sc.sin_theta = x[4][0];
     sc.cos_theta = x[4][1];
-    sc.sin_swivel = x[4][2];
-    sc.cos_swivel = x[4][3];
-    sc.sin_roll = x[4][4];
-    sc.cos_roll = x[4][5];
+    sc.sin_left = x[4][2];
+    sc.cos_left = x[4][3];
+    sc.sin_right = x[4][4];
+    sc.cos_right = x[4][5];
+    sc.sin_swivel = x[4][6];
+    sc.cos_swivel = x[4][7];
+    sc.sin_roll = x[4][8];
+    sc.cos_roll = x[4][9];
     return (int)differential_drive_multipliers_sc_f(&sc, x[0], x[1], x[3], p, y);
 }
 
@@ -201,14 +237,15 @@ static const Kernel kernels[] = {
     {"multipliers", multipliers_64, multipliers_32, {1, 1, 0, 1, 0}, 5u, 0, 0, NULL, NULL},
     {"singularity", singularity_64, singularity_32, {1, 0, 0, 0, 0}, 2u, 0, 0, NULL, NULL},
     {"inverse_dynamics_prepared", inverse_dynamics_prepared_64, inverse_dynamics_prepared_32, {1, 1, 1, 0, 0}, 2u, 1, 0, inverse_dynamics_64, inverse_dynamics_32},
+    {"forward_dynamics_prepared", forward_dynamics_prepared_64, forward_dynamics_prepared_32, {1, 1, 0, 1, 0}, 7u, 1, 0, forward_dynamics_64, forward_dynamics_32},
     {"multipliers_prepared", multipliers_prepared_64, multipliers_prepared_32, {1, 1, 0, 1, 0}, 5u, 0, 0, multipliers_64, multipliers_32},
     {"inverse_dynamics_sc", inverse_dynamics_sc_64, inverse_dynamics_sc_32, {1, 1, 1, 0, 0}, 2u, 1, 1, NULL, NULL},
     {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0}, 7u, 1, 1, NULL, NULL},
     {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0}, 5u, 0, 1, NULL, NULL},
 };
-enum { KERNELS = 9 };
+enum { KERNELS = 10 };
 
-static const size_t sizes[ARRAYS] = {7u, 7u, 7u, 2u, 6u};
+static const size_t sizes[ARRAYS] = {7u, 7u, 7u, 2u, 10u};
 static const float ranges[][2] = {
     {-5.0f, 5.0f}, /* q[0] */
     {-5.0f, 5.0f}, /* q[1] */
@@ -351,10 +388,14 @@ static State read_state(Bytes *bytes) {
     if (s.circle != 0) {
         s.x_f[SINES][0] = sinf(s.x_f[0][2]);
         s.x_f[SINES][1] = cosf(s.x_f[0][2]);
-        s.x_f[SINES][2] = sinf(s.x_f[0][5]);
-        s.x_f[SINES][3] = cosf(s.x_f[0][5]);
-        s.x_f[SINES][4] = sinf(s.x_f[0][6]);
-        s.x_f[SINES][5] = cosf(s.x_f[0][6]);
+        s.x_f[SINES][2] = sinf(s.x_f[0][3]);
+        s.x_f[SINES][3] = cosf(s.x_f[0][3]);
+        s.x_f[SINES][4] = sinf(s.x_f[0][4]);
+        s.x_f[SINES][5] = cosf(s.x_f[0][4]);
+        s.x_f[SINES][6] = sinf(s.x_f[0][5]);
+        s.x_f[SINES][7] = cosf(s.x_f[0][5]);
+        s.x_f[SINES][8] = sinf(s.x_f[0][6]);
+        s.x_f[SINES][9] = cosf(s.x_f[0][6]);
     } else {
         static const float unit[2] = {-1.0f, 1.0f};
         for (size_t i = 0; i < sizes[SINES]; i++) {
