@@ -40,12 +40,14 @@ def with_late_factors(
                 if argument.constant is None and factoring.fixed(argument):
                     found[argument] = found.get(argument, 0) + 1
     several = sorted((factor for factor in found if found[factor] > 1), key=lambda factor: -found[factor])
-    weight = cost(finish(graph, best)).weight if several else 0
+    finished = finish(graph, best)
+    weight = cost(finished).weight if several else 0
     for factor in several[:MOST_FACTORS]:
         changed = _later(graph, factoring, best, factor)
-        if (lighter := cost(finish(graph, changed)).weight) < weight:
-            best, weight = changed, lighter
-    return finish(graph, best)
+        ended = finish(graph, changed)
+        if (lighter := cost(ended).weight) < weight:
+            best, finished, weight = changed, ended, lighter
+    return finished
 
 
 def _later(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar], factor: Scalar) -> list[Scalar]:

@@ -51,6 +51,8 @@ class _Sharing:
     def outputs(self) -> list[Scalar]:
         """The outputs rebuilt."""
         pairs = self._shared()
+        if not pairs:
+            return list(self._outputs)
         image: dict[Scalar, Scalar] = {}
         made: dict[Scalar, Scalar] = {}
         for node in self._order:
