@@ -8,12 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from itertools import combinations
 
 from symgen.dynamics.allocation import InputAllocation
-from symgen.dynamics.driven import driven_minors
-from symgen.dynamics.exterior import ActuationForms, RowForms, unit, wedge_all
-from symgen.dynamics.exterior import square as multivector_square
+from symgen.dynamics.exterior import ActuationForms
 from symgen.dynamics.forms.definiteness import positive_definite
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.dynamics.forms.motion import Motion, Problem
@@ -22,7 +19,8 @@ from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
 from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.pivoted import elementary_symmetric, reflected
+from symgen.dynamics.pivoted import reflected
+from symgen.dynamics.rank_measures import rank_measures
 from symgen.dynamics.solvable import solvable
 from symgen.dynamics.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
 from symgen.graph.calculus import derivative_along
@@ -358,45 +356,5 @@ class Derivation:
         return self.mechanics.kinetic_energy, self.mechanics.potential_energy
 
     def singularity(self) -> Vector:
-        """[det(B B^T) / prod |b_k|^2, e(M~)/e(M)] with rows normalised before products are formed."""
-        graph, mechanics = self.graph, self.mechanics
-        rows = mechanics.constraint_jacobian
-        lengths = [graph.function("sqrt", (dot(graph, row, row),)) for row in rows]
-        unit_rows = tuple(
-            tuple(graph.function("ratio_or_zero", (x, length)) for x in row)
-            for row, length in zip(rows, lengths, strict=True)
-        )
-        present = [graph.function("ratio_or_zero", (length, length)) for length in lengths]
-        possible = elementary_symmetric(graph, present, self.generic.rank)
-        dependent = self.generic.rank < self.r
-        if isinstance(self.space, HouseholderSpace):
-            space = reflected(graph, unit_rows, self.n, self.generic.rank, everywhere=True)
-            constraint = space.square
-            driven = driven_minors(graph, unit_rows, mechanics.inputs, self.n)
-            if driven is not None and not dependent and self.generic.full_actuation:
-                return constraint, graph.function("ratio_or_zero", (driven[0], constraint * driven[1]))
-            seen, _ = space.actuation(mechanics.inputs, self.generic.alpha)
-            regular = graph.function("ratio_or_zero", (constraint, constraint))
-            actuation = self._actuation_measure(seen.square() * regular)
-            return graph.function("ratio_or_zero", (constraint, possible)) if dependent else constraint, actuation
-        forms = RowForms(graph, unit_rows, self.n, self.generic.rank)
-        constraint = graph.one
-        if self.r:
-            constraint = graph.function("ratio_or_zero", (forms.square, possible)) if dependent else forms.square
-        projected = ActuationForms(forms, mechanics.inputs, self.generic.alpha).square()
-        if self.r:
-            # |M_J ^ omega|^2 / |omega|^2 sums the determinants of the projected columns
-            projected = graph.function("ratio_or_zero", (projected, forms.square))
-        return constraint, self._actuation_measure(projected)
-
-    def _actuation_measure(self, projected: Scalar) -> Scalar:
-        """e(M~)/e(M) from e(M~)."""
-        graph, alpha = self.graph, self.generic.alpha
-        if alpha == 0:
-            return graph.one
-        inputs = self.mechanics.inputs
-        whole = graph.sum(
-            multivector_square(graph, wedge_all(unit(graph), [inputs[k] for k in subset]))
-            for subset in combinations(range(self.m), alpha)
-        )
-        return graph.function("ratio_or_zero", (projected, whole))
+        """[det(B B^T) / prod |b_k|^2, e(M~)/e(M)]: how far both ranks are from dropping."""
+        return rank_measures(self.mechanics, self.generic, self.space)

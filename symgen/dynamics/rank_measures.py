@@ -1,0 +1,59 @@
+"""`singularity`: how far the ranks of B and of the projected inputs are from dropping, between 0 and 1."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+from symgen.dynamics.driven import driven_minors
+from symgen.dynamics.exterior import ActuationForms, RowForms, square, unit, wedge_all
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.pivoted import elementary_symmetric, reflected
+from symgen.dynamics.spaces import HouseholderSpace, NullSpace
+from symgen.graph.matrix import Vector, dot
+from symgen.graph.scalar import Scalar
+
+
+def rank_measures(mechanics: Mechanics, generic: Genericity, space: NullSpace) -> Vector:
+    """[det(B B^T) / prod |b_k|^2, e(M~)/e(M)] along a null space, with rows normalised before products are formed."""
+    graph, n, r = mechanics.graph, mechanics.n, mechanics.r
+    rows = mechanics.constraint_jacobian
+    lengths = [graph.function("sqrt", (dot(graph, row, row),)) for row in rows]
+    unit_rows = tuple(
+        tuple(graph.function("ratio_or_zero", (x, length)) for x in row)
+        for row, length in zip(rows, lengths, strict=True)
+    )
+    present = [graph.function("ratio_or_zero", (length, length)) for length in lengths]
+    possible = elementary_symmetric(graph, present, generic.rank)
+    dependent = generic.rank < r
+    if isinstance(space, HouseholderSpace):
+        turned = reflected(graph, unit_rows, n, generic.rank, everywhere=True)
+        constraint = turned.square
+        driven = driven_minors(graph, unit_rows, mechanics.inputs, n)
+        if driven is not None and not dependent and generic.full_actuation:
+            return constraint, graph.function("ratio_or_zero", (driven[0], constraint * driven[1]))
+        seen, _ = turned.actuation(mechanics.inputs, generic.alpha)
+        regular = graph.function("ratio_or_zero", (constraint, constraint))
+        actuation = _actuation_measure(mechanics, generic, seen.square() * regular)
+        return graph.function("ratio_or_zero", (constraint, possible)) if dependent else constraint, actuation
+    forms = RowForms(graph, unit_rows, n, generic.rank)
+    constraint = graph.one
+    if r:
+        constraint = graph.function("ratio_or_zero", (forms.square, possible)) if dependent else forms.square
+    projected = ActuationForms(forms, mechanics.inputs, generic.alpha).square()
+    if r:
+        # |M_J ^ omega|^2 / |omega|^2 sums the determinants of the projected columns
+        projected = graph.function("ratio_or_zero", (projected, forms.square))
+    return constraint, _actuation_measure(mechanics, generic, projected)
+
+
+def _actuation_measure(mechanics: Mechanics, generic: Genericity, projected: Scalar) -> Scalar:
+    """e(M~)/e(M) from e(M~)."""
+    graph, inputs = mechanics.graph, mechanics.inputs
+    if generic.alpha == 0:
+        return graph.one
+    whole = graph.sum(
+        square(graph, wedge_all(unit(graph), [inputs[k] for k in subset]))
+        for subset in combinations(range(mechanics.m), generic.alpha)
+    )
+    return graph.function("ratio_or_zero", (projected, whole))
