@@ -38,30 +38,45 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
 
     What is taken out of sums decides what later steps find, so that short outputs are begun in several ways.
     """
-    start = _improved(graph, factoring, _weighed(_unified(graph, outputs)), _SIGNS_AND_NUMBERS)
+    improved = _Improvement(graph, factoring)
+    start = improved(_weighed(_unified(graph, outputs)), _SIGNS_AND_NUMBERS)
     short = len(reached(outputs)) <= SHORT
-    starts = [start, _improved(graph, factoring, start, (_with_parameters_taken_out,))] if short else [start]
+    starts = [start, improved(start, (_with_parameters_taken_out,))] if short else [start]
     found = []
     for one in dict.fromkeys(starts):
-        found.append(_improved(graph, factoring, one, (_with_collected_factors, *_STEPS)))
+        found.append(improved(one, (_with_collected_factors, *_STEPS)))
         if short:
-            pairs = _improved(graph, factoring, one, (_with_common_factors,))
-            found += [] if pairs is one else [_improved(graph, factoring, pairs, _STEPS)]
+            pairs = improved(one, (_with_common_factors,))
+            found += [] if pairs is one else [improved(pairs, _STEPS)]
     if short:
-        found += [_improved(graph, factoring, one, (with_late_factors,)) for one in dict.fromkeys(found)]
+        found += [improved(one, (with_late_factors,)) for one in dict.fromkeys(found)]
     last = (*_LAST_STEPS, _with_late_shared_factors) if short else _LAST_STEPS[1:]
-    ended = (_improved(graph, factoring, one, last) for one in dict.fromkeys(found))
+    ended = (improved(one, last) for one in dict.fromkeys(found))
     best = min(ended, key=lambda one: one.weight)
-    return list(_improved(graph, factoring, best, (_with_quotients,)).outputs)
+    return list(improved(best, (_with_quotients,)).outputs)
 
 
-def _improved(graph: Graph, factoring: Factoring, best: _Weighed, steps: Sequence[_Step]) -> _Weighed:
-    """The outputs after those steps that save operations."""
-    for step in steps:
-        changed = step(graph, factoring, best.outputs)
-        if tuple(changed) != best.outputs and (found := _weighed(_unified(graph, changed))).weight < best.weight:
-            best = found
-    return best
+class _Improvement:
+    """Outputs after those steps that save operations; the ways meet often, and a step is taken once from each place."""
+
+    def __init__(self, graph: Graph, factoring: Factoring) -> None:
+        self._graph, self._factoring = graph, factoring
+        self._known: dict[tuple[_Step, tuple[Scalar, ...]], _Weighed] = {}
+
+    def __call__(self, best: _Weighed, steps: Sequence[_Step]) -> _Weighed:
+        for step in steps:
+            place = step, best.outputs
+            if place not in self._known:
+                self._known[place] = self._after(step, best)
+            best = self._known[place]
+        return best
+
+    def _after(self, step: _Step, best: _Weighed) -> _Weighed:
+        changed = step(self._graph, self._factoring, best.outputs)
+        if tuple(changed) == best.outputs:
+            return best
+        found = _weighed(_unified(self._graph, changed))
+        return found if found.weight < best.weight else best
 
 
 def _weighed(outputs: Sequence[Scalar]) -> _Weighed:
