@@ -80,8 +80,8 @@ class _Improvement:
 
 
 def _weighed(outputs: Sequence[Scalar]) -> _Weighed:
-    signs = sum(node.op == "neg" for node in reached(outputs))
-    return _Weighed(tuple(outputs), cost(outputs).weight + signs)
+    operations = cost(outputs)
+    return _Weighed(tuple(outputs), operations.weight + operations.signs)
 
 
 def _unified(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 
 from symgen.graph.scalar import Graph, Scalar
 from symgen.records import dataclass
@@ -14,8 +15,18 @@ _NO_FUNCTIONS = frozenset({"add", "sub", "min", "max", "mul", "div", "ratio_or_z
 _NO_FUNCTIONS |= {"const", "symbol", "neg", "abs", "copysign"}
 
 
-def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> list[Scalar]:
+def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> Sequence[Scalar]:
     """Every node the outputs reach, depth first, operands before the node that uses them; `known` ones are left out."""
+    return _whole_order(tuple(outputs)) if known == () else _order(outputs, known)
+
+
+# one step after another goes through the same outputs
+@lru_cache(maxsize=4)
+def _whole_order(outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+    return tuple(_order(outputs, ()))
+
+
+def _order(outputs: Iterable[Scalar], known: Container[Scalar]) -> list[Scalar]:
     order: list[Scalar] = []
     seen: set[Scalar] = set()
     # a node stands on the stack as itself until it is opened, and behind None until its operands are done
@@ -94,8 +105,9 @@ def substitute(graph: Graph, outputs: Iterable[Scalar], replacements: Mapping[Sc
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """Operations by kind; `weight` is the figure choices are made by."""
+    """Operations by kind; `weight` is the figure choices are made by, signs are free."""
 
+    signs: int
     additive: int
     multiplications: int
     divisions: int
@@ -121,6 +133,7 @@ def cost(outputs: Iterable[Scalar]) -> Cost:
     count = Counter([node.op for node in nodes])
     angles = {node.args[0] for node in nodes if node.op == "sin" or node.op == "cos"}
     return Cost(
+        signs=count["neg"],
         additive=count["add"] + count["sub"] + count["min"] + count["max"],
         multiplications=count["mul"],
         divisions=count["div"] + count["ratio_or_zero"],
