@@ -26,10 +26,9 @@ class Switched:
 def inverse(a: Any) -> Any:
     """A⁻¹ by elimination with partial pivoting in the type of A; LinAlgError for a pivot of zero.
 
-    NumPy's own routine would lift float32 to float64.
+    The print inverts, so this does.  NumPy's routine would lift float32 to float64, and its last bits are those of the
+    LAPACK at hand.
     """
-    if a.dtype == np.float64:
-        return np.linalg.inv(a)
     size = a.shape[0]
     work = np.concatenate([a, np.eye(size, dtype=a.dtype)], axis=1)
     for k in range(size):
