@@ -1,5 +1,7 @@
 """Monomials as whole numbers, so that a product of two is one addition; sums of them reduced by s^2 + c^2 = 1.
 
+Squares of the roots of numbers are numbers.
+
 Every atom has a field of 16 bits, to which its power is added: of either sign, `LARGEST_POWER` at most.  A bias makes
 all fields positive; with a bias of 2^15 - 2 the highest bit of a field tells that a power is 2 or more.
 """
@@ -27,7 +29,7 @@ LARGEST_POWER = MIDDLE - 3
 
 
 class Monomials:
-    """The fields of a graph's atoms, and which of them are sines and cosines."""
+    """The fields of a graph's atoms, and which of them are sines, cosines and roots of numbers."""
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
@@ -37,6 +39,7 @@ class Monomials:
         self._squares = 0  # MIDDLE - 2 in every field
         self._sines = 0  # the highest bit of the fields of sines
         self._cosines = 0
+        self._roots = 0
         self._partners: dict[Code, Code] = {}
 
     def unit(self, atom: int) -> Code:
@@ -51,11 +54,13 @@ class Monomials:
             top = MIDDLE << shift
             self._positive += top
             self._squares += top - (2 << shift)
-            name = self._graph.nodes[atom].op
-            if name == "sin":
+            node = self._graph.nodes[atom]
+            if node.op == "sin":
                 self._sines |= top
-            elif name == "cos":
+            elif node.op == "cos":
                 self._cosines |= top
+            elif node.op == "sqrt" and node.args[0].constant is not None:
+                self._roots |= top
         return shift
 
     def read(self, code: Code) -> Monomial:
@@ -83,6 +88,8 @@ class Monomials:
     def reduced(self, terms: Terms) -> Terms:
         """No square of a sine is left, which makes cancellation certain; then squares are put where they save terms."""
         bias, sines = self._squares, self._sines
+        if any((key + bias) & self._roots for key in terms):
+            terms = self._without_squared_roots(terms)
         both = sines | self._cosines
         squared = [key for key in terms if (key + bias) & both]
         if not squared:
@@ -102,6 +109,17 @@ class Monomials:
             bias, sines = self._squares, self._sines
             pending += [put for put in (_put(work, rest, value), _put(work, turned, -value)) if put is not None]
         return self._with_sines(work)
+
+    def _without_squared_roots(self, terms: Terms) -> Terms:
+        work: Terms = {}
+        for key, value in terms.items():
+            while found := (key + self._squares) & self._roots:
+                square = 2 << (found.bit_length() - BITS)
+                number = self._graph.nodes[self._atoms[(square.bit_length() - 2) // BITS]].args[0].constant
+                assert number is not None
+                key, value = key - square, value * number
+            _put(work, key, value.numerator if value.denominator == 1 else value)
+        return work
 
     def _partner(self, square: Code) -> Code:
         """The code of the cosine or sine of the same angle as an atom, given by the code of its square."""

@@ -44,7 +44,10 @@ class Elimination:
         rows, force = mechanics.constraint_jacobian, mechanics.balance
         # u does not feel the lengths of the rows of B: the numbers that their terms have are left out
         numbers = [usual_number(x for x in row if not x.is_zero) for row in rows]
-        primitive = [tuple(divided(self._graph, x, k) for x in row) for row, k in zip(rows, numbers, strict=True)]
+        cancelled = mechanics.factoring.cancelled
+        primitive = [
+            tuple(cancelled(divided(self._graph, x, k)) for x in row) for row, k in zip(rows, numbers, strict=True)
+        ]
         columns = [*primitive, *mechanics.inputs]
         self.inputs = range(len(rows), len(columns))
         self.core = [
