@@ -1,4 +1,7 @@
-"""Numbers for scalars: double precision, for decisions at generation time that are made with wide margins."""
+"""Numbers for scalars: double precision, for decisions at generation time that are made with wide margins.
+
+Every machine gets the same ones, up to functions other than roots, sines and cosines.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +12,13 @@ from fractions import Fraction
 
 from symgen.diagnostics import SymgenBug
 from symgen.graph.scalar import Scalar
+from symgen.graph.sines import cosine, sine
 from symgen.graph.traverse import topological
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
     "sqrt": math.sqrt,
-    "sin": math.sin,
-    "cos": math.cos,
+    "sin": sine,
+    "cos": cosine,
     "tan": math.tan,
     "asin": math.asin,
     "acos": math.acos,

@@ -3,8 +3,8 @@
 The smallest pivot of G = L D L^T in units of its diagonal entry, and the smallest diagonal entry in units of its terms,
 are minimised over configurations and parameters within their ranges, from many seeded starts, by moving one number at a
 time (Hooke and Jeeves' pattern search).  A coordinate without mass, or a quaternion's, shows as a pivot that vanishes
-somewhere.  Steps are taken in double precision where they gain more than rounding, which differs between machines,
-could; what decides is the pivot at their end, in 40 digits.
+somewhere.  Steps are taken in double precision, with sines and cosines that are the same on every machine; what decides
+is the pivot at their end, in 40 digits.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ STARTS = 4
 HALVINGS = 11
 # Between what inertias of one machine differ by and what is left of a pivot that vanishes after the last halving.
 SMALLEST = 1e-4
-# A step counts that makes the smallest pivot, 1 at most, smaller by this; rounding moves it by far less.
+# A step counts that makes the smallest pivot, 1 at most, smaller by this: less is rounding.
 GAIN = 1e-9
 
 
