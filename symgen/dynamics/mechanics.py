@@ -291,6 +291,13 @@ class Mechanics:
         return subtract_vectors(matvec(self.graph, self.control_matrix, self.u), self.bias_force)
 
     @cached_property
+    def given_force(self) -> Vector:
+        """M u + Q_a less the gradient of the written potential: f without the weights and inertial forces of bodies."""
+        driven = matvec(self.graph, self.control_matrix, self.u)
+        slopes = gradient(self.graph, self._written_potential, self.q)
+        return tuple(u + a - f for u, a, f in zip(driven, self.applied_force, slopes, strict=True))
+
+    @cached_property
     def bias_force(self) -> Vector:
         """C q_dot + Q - Q_a."""
         conservative = self._conservative_force(tuple(self.graph.zero for _ in self.q))

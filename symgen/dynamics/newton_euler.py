@@ -18,7 +18,7 @@ from symgen.dynamics.bodies import Bodies, Vector3
 from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Scalar
-from symgen.model.mechanism import WORLD, Body, RotorInertia
+from symgen.model.mechanism import WORLD, Body, Frame, RotorInertia
 from symgen.model.triples import Rows, applied, plus, transposed
 
 
@@ -61,6 +61,12 @@ def newton_euler(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3, lump
     return _Recursion(bodies, qd, qdd, gravity).forces(lumped)
 
 
+def inertial_wrenches(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> dict[str, Wrench]:
+    """What moving its own bodies so takes of each frame, and nothing of rotors; arguments as for `newton_euler`."""
+    recursion = _Recursion(bodies, qd, qdd, gravity)
+    return recursion.wrenches(recursion.moving())
+
+
 class _Recursion:
     def __init__(self, bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> None:
         self.bodies, self.graph, self.kinematics = bodies, bodies.graph, bodies.kinematics
@@ -75,19 +81,13 @@ class _Recursion:
 
     def forces(self, lumped: bool) -> Vector:
         """One generalized force for each coordinate."""
-        loaded = self._loaded()
-        frames = [frame for frame in self.bodies.mechanism.frames if frame.name in loaded]
-        for frame in frames:
-            self.motions[frame.name] = self._motion(frame.name)
-        wrenches = {frame.name: Wrench(self.none, self.none) for frame in frames}
+        frames = self.moving()
         rotors = list(self.bodies.mechanism.rotor_inertias)
         if lumped:
             lumps, rotors = self._lumps([frame.name for frame in frames])
             wrenches = {name: self._inertial_about_origin(name, lump) for name, lump in lumps.items()}
         else:
-            for body in self.bodies.mechanism.bodies:
-                if body.frame != WORLD:
-                    wrenches[body.frame] = _sum(wrenches[body.frame], self._inertial(body))
+            wrenches = self.wrenches(frames)
         totals = [self.graph.zero] * len(self.bodies.q)
         for frame in reversed(frames):
             wrench, joint = wrenches[frame.name], self.kinematics.joint(frame.name)
@@ -107,6 +107,22 @@ class _Recursion:
             torque = self.bodies.scalars.value(rotor.inertia) * acceleration
             self._work(totals, (rate,), (torque,))
         return tuple(totals)
+
+    def moving(self) -> list[Frame]:
+        """The frames that carry bodies, from the root outwards, their motions known from here on."""
+        loaded = self._loaded()
+        frames = [frame for frame in self.bodies.mechanism.frames if frame.name in loaded]
+        for frame in frames:
+            self.motions[frame.name] = self._motion(frame.name)
+        return frames
+
+    def wrenches(self, frames: Sequence[Frame]) -> dict[str, Wrench]:
+        """What the bodies of each frame take, about its origin."""
+        found = {frame.name: Wrench(self.none, self.none) for frame in frames}
+        for body in self.bodies.mechanism.bodies:
+            if body.frame != WORLD:
+                found[body.frame] = _sum(found[body.frame], self._inertial(body))
+        return found
 
     def _loaded(self) -> set[str]:
         """Frames that carry bodies, by themselves or further out."""

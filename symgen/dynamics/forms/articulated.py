@@ -1,8 +1,9 @@
 """q_ddot and lambda of bodies by articulated inertias: reflections in the metric of G^-1, and G itself never formed.
 
 The forces of the constraints enter as wrenches on the frames that their points belong to, so that the columns of B^T
-are brought inwards joint by joint, too.  Operations grow with the number of frames, and errors stay those of a chain of
-turns; dense factors lose what cancels between entries of G that were rounded one by one.
+are brought inwards joint by joint, too; so do weights and what rates take of the bodies.  Operations grow with the
+number of frames, and errors stay those of a chain of turns; dense factors lose what cancels between entries of G that
+were rounded one by one.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.schur import along_factor
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.newton_euler import inertial_wrenches
 from symgen.dynamics.pivoted import reflected
 from symgen.graph.calculus import gradient
 from symgen.graph.matrix import Vector
@@ -65,7 +67,19 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
     rows, graph = mechanics.constraint_jacobian, mechanics.graph
     guards = reflected(graph, rows, mechanics.n, generic.rank).guards if rows else ()
     columns = [factor.lowered(direct, wrenches) for direct, wrenches in _forces(mechanics)]
-    return mechanics, along_factor(Problem(mechanics, guards), factor, columns)
+    force = factor.lowered(mechanics.given_force, _weights_and_inertial_forces(mechanics))
+    return mechanics, along_factor(Problem(mechanics, guards), factor, columns, force)
+
+
+def _weights_and_inertial_forces(mechanics: Mechanics) -> dict[str, Six]:
+    """What bodies put on their frames while no rate changes.
+
+    As a force of the coordinates each would hold what all frames further out need, which is taken off again on the way
+    inwards: in chains the difference of two numbers a hundred times larger than the torques.
+    """
+    rest = (mechanics.graph.zero,) * mechanics.n
+    wrenches = inertial_wrenches(mechanics.bodies, mechanics.qd, rest, mechanics.bodies.gravity)
+    return {name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in wrenches.items()}
 
 
 def _forces(mechanics: Mechanics) -> list[tuple[Vector, Mapping[str, Six]]]:

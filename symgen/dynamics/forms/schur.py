@@ -39,15 +39,16 @@ class Factor(Protocol):
 def schur_qr(problem: Problem) -> Motion:
     """By A = Q R with reflections: valid wherever G is positive definite and B has full rank."""
     factor = Cholesky(problem.graph, problem.mass_matrix, diagonal_sizes(problem.graph, problem.mass_matrix))
-    return along_factor(problem, factor, [factor.lowered(row) for row in problem.rows])
+    columns = [factor.lowered(row) for row in problem.rows]
+    return along_factor(problem, factor, columns, factor.lowered(problem.force))
 
 
-def along_factor(problem: Problem, factor: Factor, columns: Sequence[Vector]) -> Motion:
-    """The same for any factor of G; `columns` are those of A."""
+def along_factor(problem: Problem, factor: Factor, columns: Sequence[Vector], force: Vector) -> Motion:
+    """The same for any factor of G; `columns` are those of A, `force` is L^-1 f."""
     graph, r = problem.graph, problem.r
     weights = tuple(1 / pivot for pivot in factor.pivots)
     turned = WeightedReflections(graph, columns, factor.pivots, weights)
-    free = turned.apply_transposed(factor.lowered(problem.force))
+    free = turned.apply_transposed(force)
     # R^T D^-1 z = a, with the first r weights of D^-1
     given = _solve_lower(graph, turned.triangle, factor.pivots, problem.bias)
     multipliers = _solve_upper(turned.triangle, [f + z for f, z in zip(free, given, strict=False)])
