@@ -19,6 +19,7 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.content import divided, usual_number
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import cost
 
 # Right-hand sides longer than this are turned as they stand: multiplied out, they would not get shorter.
 LONGEST_TURNED = 200
@@ -44,11 +45,8 @@ class Elimination:
         rows, force = mechanics.constraint_jacobian, mechanics.balance
         # u does not feel the lengths of the rows of B: the numbers that their terms have are left out
         numbers = [usual_number(x for x in row if not x.is_zero) for row in rows]
-        cancelled = mechanics.factoring.cancelled
-        primitive = [
-            tuple(cancelled(divided(self._graph, x, k)) for x in row) for row, k in zip(rows, numbers, strict=True)
-        ]
-        columns = [*primitive, *mechanics.inputs]
+        primitive = [tuple(divided(self._graph, x, k) for x in row) for row, k in zip(rows, numbers, strict=True)]
+        columns = [*self._cancelled(primitive), *mechanics.inputs]
         self.inputs = range(len(rows), len(columns))
         self.core = [
             Row({j: column[i] for j, column in enumerate(columns) if not column[i].is_zero}, force[i])
@@ -100,6 +98,30 @@ class Elimination:
             if factor in self._nonzero
         }
         return {factor: power for factor, power in common.items() if power > 0}
+
+    def _cancelled(self, rows: Sequence[Vector]) -> list[Vector]:
+        """The rows with what cancels inside of entries left out.
+
+        A shorter entry is taken where it gains more by itself than all rows and f lose that it had in common with them.
+        """
+        found = [list(row) for row in rows]
+        weight: int | None = None
+        for row in found:
+            for j, entry in enumerate(row):
+                shorter = self._mechanics.factoring.cancelled(entry)
+                if shorter is entry:
+                    continue
+                weight = self._weight(found) if weight is None else weight
+                row[j] = shorter
+                now = self._weight(found)
+                if now - weight < _sums_and_products(entry) - _sums_and_products(shorter):
+                    weight = now
+                else:
+                    row[j] = entry
+        return [tuple(row) for row in found]
+
+    def _weight(self, rows: Sequence[Sequence[Scalar]]) -> int:
+        return cost([*(x for row in rows for x in row), *self._mechanics.balance]).weight
 
     # steps -----------------------------------------------------------------------------------------------------------
 
@@ -286,3 +308,8 @@ class Elimination:
         for factor, power in content.items():
             taken = taken * self._graph.power(factor, Fraction(power))
         return -taken if homogeneous else row.right - taken
+
+
+def _sums_and_products(scalar: Scalar) -> int:
+    found = cost([scalar])
+    return found.additive + found.multiplications
