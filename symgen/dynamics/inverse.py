@@ -106,8 +106,21 @@ class InverseDynamics:
             else:
                 system = System.fresh(self._model, self._generic, self._lumped)
             made = _BUILDERS[name](self, system)
-            self._offers[name] = made if isinstance(made, str) else Offer(name, system, made)
+            offer = made if isinstance(made, str) else Offer(name, system, made)
+            self._offers[name] = self._in_body_axes(offer) if name == "range" else offer
         return self._offers[name]
+
+    def _in_body_axes(self, offer: Offer | str) -> Offer | str:
+        """The range form, or that with the twists of free bodies for rates, whichever counts less."""
+        if isinstance(offer, str) or not self._model.mechanism.has_mass:
+            return offer
+        from symgen.dynamics.body_axes import BodyAxes, free_bodies  # models given by energies start without it
+
+        if not free_bodies(offer.system.mechanics):
+            return offer
+        system = System(BodyAxes(self._model, self._lumped), self._generic)
+        made = range_form(system.mechanics, self._generic)
+        return offer if made is None or made.weight >= offer.form.weight else Offer(offer.way, system, made)
 
     def verdict(self, offer: Offer, first_only: bool = False) -> Verdict:
         """Whether the form may be chosen by itself."""

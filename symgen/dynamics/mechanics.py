@@ -208,15 +208,19 @@ class Mechanics:
     def _inertial_force_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
         """The same without the energies of the bodies, whose differentiation would undo the recursion."""
         graph = self.graph
-        from symgen.dynamics.newton_euler import newton_euler  # models given by energies start without it
-
-        force = newton_euler(self.bodies, self.qd, acceleration, gravity, self.lumped)
+        force = self._forces_of_bodies(acceleration, gravity)
         if self._written_energy.is_zero:
             return force
         motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
         rates = derivative_along(graph, gradient(graph, self._written_energy, self.qd), motion)
         shifts = gradient(graph, self._written_energy, self.q)
         return tuple(f + p - t for f, p, t in zip(force, rates, shifts, strict=True))
+
+    def _forces_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
+        """What Newton and Euler's equations ask of each coordinate."""
+        from symgen.dynamics.newton_euler import newton_euler  # models given by energies start without it
+
+        return newton_euler(self.bodies, self.qd, acceleration, gravity, self.lumped)
 
     # constraints and inputs ------------------------------------------------------------------------------------------
 
@@ -242,6 +246,16 @@ class Mechanics:
             for row in rows
         ]
         return (*self.geometric_jacobian, *(tuple(row) for row in kinematic))
+
+    @cached_property
+    def coordinate_rows(self) -> Matrix:
+        """Rows with the rank of B in the model's coordinates, whatever moves the system here."""
+        return self.constraint_jacobian
+
+    @cached_property
+    def twist_determinant(self) -> Scalar:
+        """The determinant of what moves the system here by the rates of its coordinates."""
+        return self.graph.one
 
     def constraint_jacobian_dot(self, velocity: Vector) -> Matrix:
         """B_dot along a velocity."""

@@ -11,8 +11,9 @@ it turns (base parameters: Khalil and Dombre, Modeling, Identification and Contr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 from symgen.dynamics.bodies import Bodies, Vector3
 from symgen.graph.calculus import derivative_along, gradient
@@ -52,13 +53,21 @@ class Lump:
     tensor: tuple[Vector3, Vector3, Vector3]
 
 
-def newton_euler(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3, lumped: bool = False) -> Vector:
+def newton_euler(
+    bodies: Bodies,
+    qd: Vector,
+    qdd: Vector,
+    gravity: Vector3,
+    lumped: bool = False,
+    twists: Mapping[str, Sequence[int]] = MappingProxyType({}),
+) -> Vector:
     """d/dt dT/dq_dot - dT/dq + dU/dq of all bodies and rotors for the accelerations `qdd`.
 
     `qd` is the symbols of the rates, or zeros for a mechanism at rest; `gravity` may be zero to leave out weights.
     `lumped` tells whether parameters are regrouped first: cheaper where frames share parameters.
+    The frames of `twists` give force and moment about their origin, in their axes, in six places of the result.
     """
-    return _Recursion(bodies, qd, qdd, gravity).forces(lumped)
+    return _Recursion(bodies, qd, qdd, gravity).forces(lumped, twists)
 
 
 def inertial_wrenches(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> dict[str, Wrench]:
@@ -79,7 +88,7 @@ class _Recursion:
         self.none: Vector3 = (zero, zero, zero)
         self.motions = {WORLD: Motion(self.none, self.none, _negative(gravity), (self.none, self.none, self.none))}
 
-    def forces(self, lumped: bool) -> Vector:
+    def forces(self, lumped: bool, twists: Mapping[str, Sequence[int]]) -> Vector:
         """One generalized force for each coordinate."""
         frames = self.moving()
         rotors = list(self.bodies.mechanism.rotor_inertias)
@@ -95,8 +104,12 @@ class _Recursion:
             absolute = self.kinematics.twist(frame.name).angular
             # a moment that works on the frame's own rate alone need not be handed to the parent and taken off again
             handed = self._terms(absolute) >= self._terms(joint.turning)
-            self._work(totals, joint.turning if handed else absolute, wrench.moment)
-            self._work(totals, joint.place_rate, carried)
+            if frame.name in twists:
+                for j, load in zip(twists[frame.name], (*wrench.force, *wrench.moment), strict=True):
+                    totals[j] = totals[j] + load
+            else:
+                self._work(totals, joint.turning if handed else absolute, wrench.moment)
+                self._work(totals, joint.place_rate, carried)
             if frame.parent != WORLD:
                 moment = self._cross(joint.place, carried)
                 moment = plus(applied(joint.axes, wrench.moment), moment) if handed else moment

@@ -14,14 +14,14 @@ from collections.abc import Callable, Sequence
 
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, unit, wedge_all
-from symgen.dynamics.factoring import Factoring
 from symgen.dynamics.forms.definite import Definite
 from symgen.dynamics.forms.elimination import Elimination
 from symgen.dynamics.forms.form import Form, form
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.spaces import HouseholderSpace
+from symgen.dynamics.spaces import LONGEST_PRODUCT, HouseholderSpace
+from symgen.dynamics.square import by_columns
 from symgen.graph.content import divided, usual_number
 from symgen.graph.matrix import Matrix, Vector, dot, transpose
 from symgen.graph.scalar import Graph, Scalar
@@ -50,7 +50,7 @@ def range_form(
         return None
     graph = mechanics.graph
     core = tuple(tuple(row.coefficients.get(j, graph.zero) for j in names) for row in rows)
-    solved = _Core(elimination, mechanics.factoring, names, core, tuple(row.right for row in rows))
+    solved = _Core(elimination, mechanics, names, core, tuple(row.right for row in rows))
     definite = Definite(mechanics)
     u, guards = solved.inputs(internal)
     open_guards = [guard for guard in guards if not definite.holds(guard.denominator)]
@@ -64,11 +64,11 @@ class _Core:
     """The rows A x = b that elimination leaves, solved for any x, and the inputs that belong to it."""
 
     def __init__(
-        self, elimination: Elimination, factoring: Factoring, names: Sequence[int], core: Matrix, right: Vector
+        self, elimination: Elimination, mechanics: Mechanics, names: Sequence[int], core: Matrix, right: Vector
     ) -> None:
-        self._elimination, self._graph = elimination, factoring.graph
+        self._elimination, self._mechanics, self._graph = elimination, mechanics, mechanics.graph
         self._names, self._core, self._right = names, core, right
-        self._size, self._factoring = len(core), factoring
+        self._size, self._factoring = len(core), mechanics.factoring
 
     def inputs(self, internal: int) -> tuple[Vector, tuple[Guard, ...]]:
         """The u of least norm, and the guards of the core and of the internal forces."""
@@ -82,7 +82,8 @@ class _Core:
             particular, null, guard, measure = self._by_minors(internal)
             guards.append(guard)
         else:
-            particular, null, guard = self._by_reflections()
+            square = not internal and self._size <= LONGEST_PRODUCT
+            particular, null, guard = self._by_columns() if square else self._by_reflections()
             measure = None
             guards.append(guard)
         u = self._inputs_of(particular, homogeneous=False)
@@ -133,8 +134,15 @@ class _Core:
     def _guarded(self, denominator: Scalar, degree: int) -> tuple[Guard, Scalar]:
         """The guard of the core's minors, and what they are of their bound."""
         scale = self._scale(denominator)
-        guard = Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale)
-        return guard, denominator / scale
+        return self._tested(denominator, scale, degree), denominator / scale
+
+    def _tested(self, denominator: Scalar, scale: Scalar, degree: int) -> Guard:
+        """The guard of the core; with twists for rates the coordinates' own determinant belongs to it."""
+        turns = self._mechanics.twist_determinant
+        bound = magnitude(self._graph, [turns])[0]
+        for _ in range(degree):
+            denominator, scale = denominator * turns, scale * bound
+        return Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale)
 
     def _scale(self, minors: Scalar) -> Scalar:
         """The sum of absolute terms, in which terms of minors that cancel in sign are equal, with factors taken out."""
@@ -146,11 +154,19 @@ class _Core:
         # a number in front becomes part of the threshold
         return min((given, number * divided(graph, shorter, number)), key=lambda scale: cost([scale]).weight)
 
+    def _by_columns(self) -> tuple[Vector, list[Vector], Guard]:
+        """The solution of a square core; its determinant is measured by the lengths of rows, which feel no units."""
+        graph = self._graph
+        solution = by_columns(graph, self._core, self._right)
+        lengths = graph.product(dot(graph, row, row) for row in self._core)
+        return solution.values, [], self._tested(graph.product(solution.squares), lengths, 2)
+
     def _by_reflections(self) -> tuple[Vector, list[Vector], Guard]:
         """The solution of least norm, an orthonormal null-space basis, and the product of the pivots."""
         space = HouseholderSpace(self._graph, self._core, len(self._names))
         (measure,) = space.guards
-        guard = Guard(Status.ACTUATION_RANK, measure.denominator, 2, (self._regularity(),), measure.scale)
+        assert measure.scale is not None
+        guard = self._tested(measure.denominator, measure.scale, 2)
         count = len(self._names) - self._size
         return space.lift(self._right), list(transpose(space.basis, count)) if count else [], guard
 
@@ -167,6 +183,9 @@ class _Core:
         Inputs left in the core or for the end count as rows of their own, so that they are held at zero.
         """
         graph = self._graph
+        if self._mechanics.twist_determinant.constant is None:
+            (guard,) = HouseholderSpace(graph, self._mechanics.coordinate_rows, self._mechanics.n).guards
+            return guard
         whole = [
             (*column, *effect)
             for column, effect in zip(transpose(self._core, len(self._names)), self._unit_columns(), strict=True)
