@@ -245,7 +245,10 @@ TABLE
 - *sines by addition*: a sine and cosine of its own for each angle.
 - *zeros of G and C*: what stands where they are zero as numbers at run time, against τ by these matrices.
 - *body-fixed axes*: the range form whose rows and multipliers stay in the axes of the model, against the range form.
-- A small minus is a product that happens to be shared; the slider-crank does not take the range form.
+- A small minus is a product that happens to be shared; the slider-crank does not take the range form. Where bodies are
+  given, τ comes from their frames, and the matrices of a small mechanism can be shorter; so is *u as generated*, which
+  eliminates on the way through the frames.
+- Left out are the chains of 16 and 32 links: with the zeros of B kept, there are too many minors to be written down.
 - No shipped model has several blocks of B. For two skates and a rod on one plane (`tests/dynamics/test_blocks.py`)
   B⁺ weighs 87 block by block and 158 taken together.
 """
