@@ -217,9 +217,12 @@ class BodyAxes(Mechanics):
         if not along:
             return applied(inward, _triple(substitute(graph, pull, self._places)))
         rest = substitute(graph, pull, dict.fromkeys(leaves, graph.zero))
-        turned = applied(inward, _triple(substitute(graph, rest, self._places)))
-        here = plus(applied(inward, joint.place), at)
-        return plus(here, turned) if sign == 1 else minus(turned, here)
+        rest = substitute(graph, [sign * entry for entry in rest], self._places)
+        x, y, z = plus(applied(inward, joint.place), at)
+        # term by term: what points share is added first, and no sum of two products turns into another angle
+        for entry, row in zip(rest, joint.axes, strict=True):
+            x, y, z = x + row[0] * entry, y + row[1] * entry, z + row[2] * entry
+        return sign * x, sign * y, sign * z
 
     @cached_property
     def _places(self) -> dict[Scalar, Scalar]:
