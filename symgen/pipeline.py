@@ -19,7 +19,7 @@ from symgen.diagnostics import ModelError, Notice
 from symgen.dynamics.catalogue import BY_NAME
 from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.inverse import FormChoice
-from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities
+from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities, short_of_inputs
 from symgen.dynamics.structure import Structure, analyse
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
@@ -325,4 +325,11 @@ def _notices(derived: _Derived, options: Options, certificate: Certificate | Non
     kernels = {kernel.name for kernel in derived.program.kernels}
     idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
     unverified = () if certificate is None else certificate.notes
-    return (*absent, *_size(derived, options), *idle, *map(Notice, unverified))
+    return (*absent, *_short(derived), *_size(derived, options), *idle, *map(Notice, unverified))
+
+
+def _short(derived: _Derived) -> tuple[Notice, ...]:
+    """That u cannot produce every motion."""
+    generic = derived.derivations.generic
+    asked = any(kernel.name == "inverse_dynamics" for kernel in derived.program.kernels)
+    return (Notice(f"inverse_dynamics: {short_of_inputs(generic)}"),) if asked and not generic.full_actuation else ()

@@ -210,11 +210,19 @@ def derive_quantities(
 
 
 def _remarked(derived: Derived, generic: Genericity) -> Derived:
-    """What dependent rows leave open is said where the quantity is called."""
-    if derived.name != MOTIONS[1] or generic.rank == generic.r:
-        return derived
-    which = f"not unique, as the constraints depend on each other (rank {generic.rank} of {generic.r})"
-    return replace(derived, remark=f"{which}: these are the smallest; u and q̈ are not affected")
+    """What dependent rows leave open, or inputs cannot produce, is said where the quantity is called."""
+    if derived.name == MOTIONS[1] and generic.rank < generic.r:
+        which = f"not unique, as the constraints depend on each other (rank {generic.rank} of {generic.r})"
+        return replace(derived, remark=f"{which}: these are the smallest; u and q̈ are not affected")
+    if derived.name == "inverse_dynamics" and not generic.full_actuation:
+        return replace(derived, remark=short_of_inputs(generic))
+    return derived
+
+
+def short_of_inputs(generic: Genericity) -> str:
+    """What u is where inputs span fewer directions than the system has."""
+    spans = f"the inputs span {generic.alpha} of {generic.delta} directions"
+    return f"{spans}: of the motions that they cannot produce it is the part they can, see inverse_dynamics_residual"
 
 
 def _named(mechanics: Mechanics, generic: Genericity, quantity: str, name: str) -> tuple[Derived, FormChoice]:
