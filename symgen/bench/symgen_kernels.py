@@ -13,6 +13,7 @@ from symgen.dynamics.inverse import forms_of
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.select import ABSOLUTE, derive_quantities
 from symgen.emit.c import emit_c
+from symgen.emit.c_causes import cause_names
 from symgen.emit.operations import count_operations
 from symgen.emit.pairs import pair_names
 from symgen.emit.python import emit_python
@@ -116,6 +117,6 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
         )
         kept = CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"})
         units = (kept, CUnit(adaptor, is_adaptor=True))
-    functions = (function, *sorted(pair_names(model.name, suffix)))
+    functions = (function, *cause_names(kernel, function), *sorted(pair_names(model.name, suffix)))
     operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}
     return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, functions, operations)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from symgen.emit.about import STATUS_MEANING, count_lines, renaming_lines, shape_text, symbol_lines, unit_text
+from symgen.emit.c_causes import Cause, CauseView, cause_names, cause_view, causes_of, operands_of, place
 from symgen.emit.comments import c_comment, c_comment_lines, indent_of
 from symgen.emit.defaults import default_values
 from symgen.emit.finite import SUM, FiniteTest
 from symgen.emit.literals import c_literal
-from symgen.emit.locals import Names, all_statements, array_arguments, check_operands, names_of, used_locals
+from symgen.emit.locals import Names, all_statements, array_arguments, names_of, used_locals
 from symgen.emit.pairs import GROUP_NAMES, PairsView, group_lines, leading_group, pair_names, pairs_view
 from symgen.emit.quantities import meaning
 from symgen.emit.render import render
@@ -19,13 +20,15 @@ from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.emit.statements import CStatements
 from symgen.emit.surroundings import (
     LibraryPair,
+    apart_macro,
+    apart_name,
     both_name,
     library_pair,
     rare_macro,
     rare_name,
     surrounding_names,
 )
-from symgen.ir.kernel import Kernel, Load, Local, Operand, Program, Statement, Status
+from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
 from symgen.model.model import Model
 from symgen.naming import file_stem
 from symgen.records import dataclass
@@ -44,11 +47,12 @@ class MemberView:
 
 @dataclass(frozen=True, slots=True)
 class FunctionView:
-    """One function: comment, prototype without semicolon, body lines."""
+    """One function: comment, prototype without semicolon, body lines, and the functions it needs."""
 
     comment: tuple[str, ...]
     prototype: str
     body: tuple[str, ...]
+    causes: tuple[CauseView, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +73,7 @@ class CView:
     pairs: PairsView | None
     both: LibraryPair | None
     rare: str
+    apart: str
     includes_math: bool
 
 
@@ -103,7 +108,9 @@ def _own_names(model: Model, program: Program) -> set[str]:
     own |= pair_names(prefix, suffix) | surrounding_names(prefix, suffix)
     own |= {f"{prefix}_status", f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"}
     own |= {status_name(model, status) for status in Status}
-    own |= {f"{prefix}_{kernel.name}{suffix}" for kernel in program.kernels}
+    for kernel in program.kernels:
+        function = f"{prefix}_{kernel.name}{suffix}"
+        own |= {function, *cause_names(kernel, function)}
     return own
 
 
@@ -130,6 +137,7 @@ def _view(model: Model, program: Program) -> CView:
         pairs=pairs_view(prefix, suffix, program),
         both=library_pair(prefix, program),
         rare=rare_macro(prefix, program),
+        apart=apart_macro(prefix, program),
         includes_math=uses_library(program),
     )
 
@@ -170,21 +178,52 @@ def _kernel(model: Model, program: Program, kernel: Kernel, names: Names, parame
     size = len(kernel.outputs)
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
-    prototype = f"{model.name}_status {model.name}_{kernel.name}{SUFFIX[program.scalar]}({', '.join(arguments)})"
+    function = f"{model.name}_{kernel.name}{SUFFIX[program.scalar]}"
     comment = c_comment_lines(f"{meaning(kernel)}; {shape_text(kernel)}")
-    return FunctionView(comment, prototype, kernel_body(model, program, kernel, names))
-
-
-def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) -> tuple[str, ...]:
-    """The lines of a function of one state; the parameters, or what stands for them, are the members of `*p`."""
-    used = used_locals(kernel)
-    suffix = SUFFIX[program.scalar]
-    sincos = None if program.sincos is None else f"{model.name}_sincos{suffix}"
-    group = () if sincos is None else leading_group(kernel)
-    both, rare = both_name(model.name, suffix), rare_name(model.name, suffix)
-    printer = CStatements(
-        program.scalar, names.locals, used, sincos, lambda status: status_name(model, status), both, rare
+    return FunctionView(
+        comment,
+        f"{model.name}_status {function}({', '.join(arguments)})",
+        kernel_body(model, program, kernel, names, function),
+        kernel_causes(model, program, kernel, names, function, {"p": f"const {parameters_type} *p"}),
     )
+
+
+def kernel_causes(
+    model: Model, program: Program, kernel: Kernel, names: Names, function: str, types: Mapping[str, str]
+) -> tuple[CauseView, ...]:
+    """What tells the causes of failures apart beside the body of `function`; `types` declares what is no array."""
+    printer = _printer(model, program, kernel, names, ())
+    declared = {"": f"static {apart_name(model.name, SUFFIX[program.scalar])} {model.name}_status", **types}
+    return tuple(cause_view(cause, kernel, names, printer, declared) for cause in causes_of(kernel, function))
+
+
+def _printer(
+    model: Model, program: Program, kernel: Kernel, names: Names, causes: tuple[Cause, ...]
+) -> CStatements:
+    suffix = SUFFIX[program.scalar]
+
+    def call(check: Check) -> str:
+        return next(cause.call(kernel, names) for cause in causes if cause.check is check)
+
+    return CStatements(
+        program.scalar,
+        names.locals,
+        used_locals(kernel),
+        None if program.sincos is None else f"{model.name}_sincos{suffix}",
+        lambda status: status_name(model, status),
+        both_name(model.name, suffix),
+        rare_name(model.name, suffix),
+        call if causes else None,
+    )
+
+
+def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names, function: str) -> tuple[str, ...]:
+    """The lines of `function`, of one state; the parameters, or what stands for them, are the members of `*p`."""
+    suffix = SUFFIX[program.scalar]
+    causes = causes_of(kernel, function)
+    printer = _printer(model, program, kernel, names, causes)
+    used, group = printer.used, () if program.sincos is None else leading_group(kernel)
+    rare = rare_name(model.name, suffix)
     loads = [load for load in kernel.loads if load.local in used]
     loaded = {load.argument for load in loads}
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
@@ -192,7 +231,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
     lines = [f"(void){name};" for name in (*(a.name for a in array_arguments(kernel)), "p") if name not in loaded]
     waiting: dict[str, str] = {}
     for load in loads:
-        waiting[load.local] = f"const {scalar} {names.locals[load.local]} = {_place(load, names)};"
+        waiting[load.local] = f"const {scalar} {names.locals[load.local]} = {place(load, names)};"
 
     def due(operands: Iterable[Operand]) -> list[str]:
         # read where first needed: fewer values are alive across the calls of the sine and cosine
@@ -213,7 +252,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
             lines += [*due(statement.operands), *printer.statement(statement)]
             lines += [line for target in statement.targets for line in finite.factor(names.locals[target])]
         for check in block.checks:
-            lines += [*due(check_operands(check)), *printer.check(check)]
+            lines += [*due(operands_of(check, causes)), *printer.check(check)]
     lines += due(kernel.outputs)
     lines += finite.remaining()
     if any(isinstance(output, Local) for output in kernel.outputs):
@@ -224,13 +263,6 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names) ->
     ]
     lines.append(f"return {status_name(model, Status.OK)};")
     return tuple(lines)
-
-
-def _place(load: Load, names: Names) -> str:
-    """Where a value is read."""
-    if load.argument == "p":
-        return f"p->{names.members[load.member]}"
-    return f"sc->{load.member}" if load.argument == "sc" else f"{load.argument}[{load.index}]"
 
 
 def _read_back(group: Sequence[Statement], scalar: str, names: Names) -> dict[str, str]:

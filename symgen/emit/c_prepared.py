@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from symgen.emit.c import c_members, kernel_body, status_name, uses_library
+from symgen.emit.c import FunctionView, c_members, kernel_body, kernel_causes, status_name, uses_library
+from symgen.emit.c_causes import cause_names
 from symgen.emit.comments import c_comment_lines
 from symgen.emit.locals import Names, array_arguments, names_of
 from symgen.emit.operations import count_operations
@@ -13,21 +14,12 @@ from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.emit.statements import CStatements
-from symgen.emit.surroundings import LibraryPair, library_pair, rare_macro, surrounding_names
+from symgen.emit.surroundings import LibraryPair, apart_macro, library_pair, rare_macro, surrounding_names
 from symgen.ir.kernel import Block, Kernel, Program, Status
 from symgen.ir.prepare import Prepared, prepare
 from symgen.model.model import Model
 from symgen.naming import file_stem
 from symgen.records import dataclass
-
-
-@dataclass(frozen=True, slots=True)
-class PreparedFunctionView:
-    """One kernel: comment, prototype without semicolon, body lines."""
-
-    comment: tuple[str, ...]
-    prototype: str
-    body: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +34,11 @@ class PreparedView:
     size: int
     prepare: str
     prepare_body: tuple[str, ...]
-    functions: tuple[PreparedFunctionView, ...]
+    functions: tuple[FunctionView, ...]
     pairs: PairsView | None
     both: LibraryPair | None
     rare: str
+    apart: str
     includes_math: bool
 
 
@@ -79,6 +72,7 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
         pairs=pairs,
         both=library_pair(model.name, stated),
         rare=rare_macro(model.name, stated),
+        apart=apart_macro(model.name, stated),
         includes_math=uses_library(whole),
     )
     return {
@@ -88,7 +82,10 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
 
 
 def _names(model: Model, program: Program, whole: Program, prepared: Prepared, suffix: str) -> Names:
-    own = {f"{model.name}_{kernel.name}_prepared{suffix}" for kernel in prepared.kernels} | {"prepared"}
+    own = {"prepared"}
+    for kernel in prepared.kernels:
+        function = f"{model.name}_{kernel.name}_prepared{suffix}"
+        own |= {function, *cause_names(kernel, function)}
     own |= {f"{model.name}_{name}{suffix}" for name in ("prepared", "prepare", "params")}
     own |= pair_names(model.name, suffix) | surrounding_names(model.name, suffix)
     own |= {status_name(model, status) for status in Status}
@@ -114,7 +111,7 @@ def _prepare_body(model: Model, program: Program, prepared: Prepared, names: Nam
 
 def _function(
     model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str
-) -> PreparedFunctionView:
+) -> FunctionView:
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {struct} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
@@ -122,5 +119,6 @@ def _function(
     (plain,) = (k for k in program.kernels if k.name == kernel.name)
     now, before = (count_operations(k.statements).total for k in (kernel, plain))
     comment = c_comment_lines(f"{meaning(kernel)}; {now} operations instead of {before}")
-    body = kernel_body(model, program, kernel, names)
-    return PreparedFunctionView(comment, f"{model.name}_status {name}({', '.join(arguments)})", body)
+    body = kernel_body(model, program, kernel, names, name)
+    causes = kernel_causes(model, program, kernel, names, name, {"p": f"const {struct} *p"})
+    return FunctionView(comment, f"{model.name}_status {name}({', '.join(arguments)})", body, causes)

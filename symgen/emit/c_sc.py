@@ -4,28 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from symgen.emit.c import c_names, kernel_body, status_name, uses_library
+from symgen.emit.c import FunctionView, c_names, kernel_body, kernel_causes, status_name, uses_library
+from symgen.emit.c_causes import cause_names
 from symgen.emit.comments import c_comment, c_comment_lines
 from symgen.emit.locals import Names, array_arguments, names_of
 from symgen.emit.pairs import PairsView, pair_names, pairs_view
 from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
-from symgen.emit.surroundings import LibraryPair, library_pair, rare_macro, surrounding_names
+from symgen.emit.surroundings import LibraryPair, apart_macro, library_pair, rare_macro, surrounding_names
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.model.model import Model
 from symgen.naming import file_stem
 from symgen.records import dataclass
-
-
-@dataclass(frozen=True, slots=True)
-class GivenFunctionView:
-    """One kernel: comment, prototype without semicolon, body lines."""
-
-    comment: tuple[str, ...]
-    prototype: str
-    body: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +30,11 @@ class GivenTrigView:
     scalar: str
     struct: str
     members: tuple[tuple[str, str], ...]
-    functions: tuple[GivenFunctionView, ...]
+    functions: tuple[FunctionView, ...]
     pairs: PairsView | None
     both: LibraryPair | None
     rare: str
+    apart: str
     includes_math: bool
 
 
@@ -54,7 +47,10 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
     plain = file_stem(model.name)
     stem, struct = f"{plain}_sc{suffix}", f"{model.name}_trig{suffix}"
     whole = replace(program, kernels=tuple(made.kernel for made in given))
-    own = {f"{model.name}_{kernel.name}_sc{suffix}" for kernel in whole.kernels} | {"sc", struct}
+    own = {"sc", struct}
+    for kernel in whole.kernels:
+        function = f"{model.name}_{kernel.name}_sc{suffix}"
+        own |= {function, *cause_names(kernel, function)}
     own |= pair_names(model.name, suffix) | surrounding_names(model.name, suffix)
     own |= {status_name(model, status) for status in Status}
     # the members of the parameter struct are those of the other header
@@ -70,6 +66,7 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
         pairs=pairs_view(model.name, suffix, whole),
         both=library_pair(model.name, whole),
         rare=rare_macro(model.name, whole),
+        apart=apart_macro(model.name, whole),
         includes_math=uses_library(whole),
     )
     return {f"c/{stem}.h": render("c/sc.h.jinja", view), f"c/{stem}.c": render("c/sc.c.jinja", view)}
@@ -87,11 +84,16 @@ def _members(model: Model, given: list[GivenTrig]) -> tuple[tuple[str, str], ...
 
 def _function(
     model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str
-) -> GivenFunctionView:
+) -> FunctionView:
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = [f"const {struct} *sc"]
     arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {model.name}_params{suffix} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
-    prototype = f"{model.name}_status {model.name}_{kernel.name}_sc{suffix}({', '.join(arguments)})"
-    comment = c_comment_lines(meaning(kernel))
-    return GivenFunctionView(comment, prototype, kernel_body(model, program, kernel, names))
+    function = f"{model.name}_{kernel.name}_sc{suffix}"
+    types = {"sc": f"const {struct} *sc", "p": f"const {model.name}_params{suffix} *p"}
+    return FunctionView(
+        c_comment_lines(meaning(kernel)),
+        f"{model.name}_status {function}({', '.join(arguments)})",
+        kernel_body(model, program, kernel, names, function),
+        kernel_causes(model, program, kernel, names, function, types),
+    )

@@ -22,7 +22,8 @@ class CStatements:
 
     `sincos` names the file's own sine/cosine function, None calls the library's, both halves through the function
     `both` where there is one; `status` maps a status to its enumerator; `rare` is the macro around failing checks;
-    locals outside `used` are not printed where a statement has two targets.
+    locals outside `used` are not printed where a statement has two targets; `cause` is the call that tells what a
+    check fails of which keeps that apart.
     """
 
     scalar: Scalar
@@ -32,6 +33,7 @@ class CStatements:
     status: Callable[[Status], str] = str
     both: str | None = None
     rare: str = ""
+    cause: Callable[[Check], str] | None = None
 
     def operand(self, operand: Operand) -> str:
         """A local's identifier or a constant."""
@@ -88,14 +90,16 @@ class CStatements:
         """The early return of a failed check as lines."""
         relation = ">=" if check.inclusive else ">"
         # what tells one failure from another is off the regular way as a whole
-        first = () if check.first is None else replace(self, rare="").block(check.first)
         failed = f"!({self.operand(check.value)} {relation} {self.operand(check.limit)})"
-        return (
-            f"if ({self.rare}({failed})) {{" if self.rare else f"if ({failed}) {{",
-            *(f"    {line}" for line in first),
-            f"    return {self.status(check.status)};",
-            "}",
-        )
+        opened = f"if ({self.rare}({failed})) {{" if self.rare else f"if ({failed}) {{"
+        if check.apart and self.cause is not None:
+            return (opened, f"    return {self.cause(check)};", "}")
+        return (opened, *(f"    {line}" for line in self.failure(check)), "}")
+
+    def failure(self, check: Check) -> tuple[str, ...]:
+        """What stands where a check has failed, up to the return of its status."""
+        first = () if check.first is None else replace(self, rare="").block(check.first)
+        return (*first, f"return {self.status(check.status)};")
 
 
 @dataclass(frozen=True, slots=True)

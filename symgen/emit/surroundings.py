@@ -1,4 +1,4 @@
-"""What stands in a C file before its kernels: a macro for rare conditions, and both halves of the library's pair."""
+"""What stands in a C file before its kernels: macros for what is rare, and both halves of the library's pair."""
 
 from __future__ import annotations
 
@@ -24,6 +24,12 @@ def rare_macro(name: str, program: Program) -> str:
     return rare_name(name, SUFFIX[program.scalar]) if any(map(_is_tested, program.kernels)) else ""
 
 
+def apart_macro(name: str, program: Program) -> str:
+    """The macro before functions that only a failure calls; empty where there are none."""
+    kept = any(check.apart for kernel in program.kernels for block in kernel.blocks for check in block.checks)
+    return apart_name(name, SUFFIX[program.scalar]) if kept else ""
+
+
 def library_pair(name: str, program: Program) -> LibraryPair | None:
     """The pair of a file whose names begin with `name`; None where sine and cosine are portable or never both used."""
     if program.sincos is not None or not any(map(_uses_both, program.kernels)):
@@ -38,6 +44,11 @@ def rare_name(name: str, suffix: str) -> str:
     return f"{name}_rarely{suffix}".upper()
 
 
+def apart_name(name: str, suffix: str) -> str:
+    """The macro before functions that only a failure calls, of a file whose names begin with `name`."""
+    return f"{name}_apart{suffix}".upper()
+
+
 def both_name(name: str, suffix: str) -> str:
     """The function over the library's sine and cosine of a file whose names begin with `name`."""
     return f"{name}_libm{suffix}"
@@ -45,7 +56,7 @@ def both_name(name: str, suffix: str) -> str:
 
 def surrounding_names(name: str, suffix: str) -> set[str]:
     """Every name that stands before the kernels of a file."""
-    return {rare_name(name, suffix), both_name(name, suffix)}
+    return {rare_name(name, suffix), apart_name(name, suffix), both_name(name, suffix)}
 
 
 def _is_tested(kernel: Kernel) -> bool:

@@ -106,6 +106,8 @@ class Check:
 
     `first` is evaluated only on failure: if one of its checks fails, that status is returned instead (it tells a
     drop of the constraint rank from a drop of the actuation rank without work on the way of a regular state).
+    `apart` says that `first` computes all it needs from what is loaded and from the pairs, so that no value of the
+    regular way has to wait for it: languages that are compiled keep it in a function of its own.
     """
 
     status: Status
@@ -113,6 +115,7 @@ class Check:
     limit: Operand
     inclusive: bool = False
     first: Block | None = None
+    apart: bool = False
 
 
 @dataclass(frozen=True, slots=True)

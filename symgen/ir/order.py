@@ -32,10 +32,7 @@ _ANYWHERE = frozenset({"add", "sub", "mul", "neg", "abs", "copysign", "min", "ma
 
 def relaxed(kernel: Kernel) -> Kernel:
     """The kernel in an order in which fewer values wait, where they do not fit into registers; else itself."""
-    late = any(s.operation == "sincos" for block in kernel.blocks[_HEAD:] for s in block.statements)
-    # without tests nothing waits across one: compilers find orders of their own, and from the written one better ones
-    tested = any(block.checks for block in kernel.blocks[_HEAD:])
-    if late or not tested or not REGISTERS < len(kernel.statements) <= LONGEST:
+    if not _is_ordered(kernel):
         return kernel
     body = _Body(kernel)
     waiting = body.waiting(body.written)
@@ -43,6 +40,21 @@ def relaxed(kernel: Kernel) -> Kernel:
         return kernel
     order = body.backwards()
     return body.kernel(order) if body.waiting(order) < waiting else kernel
+
+
+def waits(kernel: Kernel) -> int:
+    """How many values wait at once in a kernel whose order is looked at; 0 for others."""
+    if not _is_ordered(kernel):
+        return 0
+    body = _Body(kernel)
+    return body.waiting(body.written)
+
+
+def _is_ordered(kernel: Kernel) -> bool:
+    late = any(s.operation == "sincos" for block in kernel.blocks[_HEAD:] for s in block.statements)
+    # without tests nothing waits across one: compilers find orders of their own, and from the written one better ones
+    tested = any(block.checks for block in kernel.blocks[_HEAD:])
+    return tested and not late and REGISTERS < len(kernel.statements) <= LONGEST
 
 
 class _Body:

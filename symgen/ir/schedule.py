@@ -32,7 +32,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
-from symgen.ir.order import relaxed
+from symgen.ir.order import REGISTERS, relaxed, waits
 from symgen.ir.sincos import angle_limit, sincos
 from symgen.model.quantities import QUANTITIES
 from symgen.records import dataclass
@@ -50,7 +50,7 @@ def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalars: Seque
     The order of statements is worked out once; the thresholds, which differ, are filled in last.
     """
     limits = _Limits(mechanics)
-    kernels = [relaxed(_kernel(mechanics, derived, limits)) for derived in quantities]
+    kernels = [_ordered_kernel(mechanics, derived, limits) for derived in quantities]
     programs: dict[Scalar, Program] = {}
     for scalar in scalars:
         filler = _Filler(limits.values(scalar))
@@ -169,13 +169,23 @@ class _Filler:
         return self._values.get(operand.name, operand) if isinstance(operand, Local) else operand
 
 
-def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
+def _ordered_kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
+    """The kernel in which fewest values wait; what only a failure needs is computed there if registers run out."""
+    kernel = relaxed(_kernel(mechanics, derived, limits))
+    waiting = waits(kernel)
+    if waiting < REGISTERS or not any(check.first for block in kernel.blocks for check in block.checks):
+        return kernel
+    apart = relaxed(_kernel(mechanics, derived, limits, apart=True))
+    return apart if waits(apart) < waiting else kernel
+
+
+def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, apart: bool = False) -> Kernel:
     tests = limits.tests(derived.guards)
     roots = [node for test in tests for node in (test.size, test.limit)]
     regular = share_angles(mechanics.graph, [*derived.outputs, *roots])
     outputs = regular[: len(derived.outputs)]
     image = dict(zip(roots, regular[len(outputs) :], strict=True))
-    writer = _Writer(mechanics, ARGUMENTS[derived.name])
+    writer = _Writer(mechanics, ARGUMENTS[derived.name], apart)
     order = topological(regular)
     arguments = _angles_among(order)
     # what only a failure looks at must not decide which angles a regular state evaluates
@@ -229,9 +239,10 @@ def _told(graph: Graph, test: _Test, image: dict[Node, Node]) -> _Test:
 class _Writer:
     """Turns scalars into statements, each once per kernel."""
 
-    def __init__(self, mechanics: Mechanics, arguments: Sequence[str]) -> None:
+    def __init__(self, mechanics: Mechanics, arguments: Sequence[str], apart: bool) -> None:
         self._graph: Graph = mechanics.graph
         self._arguments = arguments
+        self._apart = apart
         self._written: dict[Node, Operand] = {}
         self._pairs: dict[Node, tuple[str, str]] = {}
         self._done: dict[tuple[str, tuple[Operand, ...]], Local] = {}
@@ -296,14 +307,20 @@ class _Writer:
         """The check of a test; what only a failure needs is written into its own block."""
         first = None
         if test.first:
-            saved = dict(self._written), dict(self._pairs), dict(self._done)
+            saved = dict(self._written), dict(self._pairs), dict(self._done), self._labels
+            apart, self._apart = self._apart, False
+            if apart:
+                self._written = {n: value for n, value in self._written.items() if n.op in ("sin", "cos")}
+                self._done, self._labels = {}, {}
             inner = [image[node] for t in test.first for node in (t.size, t.limit)]
             angles = [angle for angle in _angles(inner) if angle not in self._pairs]
             statements = self.write(inner)
             sizes, ranges = self.range_checks(angles)
             first = Block((*statements, *sizes), (*ranges, *(self.check(t, image) for t in test.first)))
-            self._written, self._pairs, self._done = saved
-        return Check(test.status, self.operand(image[test.size]), self.operand(image[test.limit]), first=first)
+            self._written, self._pairs, self._done, self._labels = saved
+            self._apart = apart
+        size, limit = self.operand(image[test.size]), self.operand(image[test.limit])
+        return Check(test.status, size, limit, first=first, apart=self._apart and first is not None)
 
     def write(self, outputs: Sequence[Node]) -> list[Statement]:
         """The statements that are still missing for the outputs."""

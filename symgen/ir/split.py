@@ -39,7 +39,7 @@ def split(kernel: Kernel) -> Split:
 
 def without_first(kernel: Kernel) -> Kernel:
     """The kernel whose checks only pass or fail: what tells one failure from another goes, with all it alone needs."""
-    blocks = [replace(block, checks=tuple(replace(c, first=None) for c in block.checks)) for block in kernel.blocks]
+    blocks = [replace(block, checks=tuple(_plain(c) for c in block.checks)) for block in kernel.blocks]
     needed = names_in(kernel.outputs)
     kept: list[Block] = []
     for block in reversed(blocks):
@@ -52,6 +52,10 @@ def without_first(kernel: Kernel) -> Kernel:
         kept.append(replace(block, statements=tuple(reversed(statements))))
     loads = tuple(load for load in kernel.loads if load.local in needed)
     return replace(kernel, loads=loads, blocks=tuple(reversed(kept)))
+
+
+def _plain(check: Check) -> Check:
+    return replace(check, first=None, apart=False)
 
 
 def names_in(operands: Iterable[Operand]) -> set[str]:
