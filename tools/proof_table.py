@@ -2,7 +2,9 @@
 
 Eva's alarms are counted, with the status that it could not prove.  Gappa's bounds of the rounding error stand beside
 the errors measured at random states of the same box.  What intervals cannot keep from 0 is taken from the page of the
-proof folder.  OUT/<model>/proof.json gets the same, for the report.  The exit status is 1 if a tool fails.
+proof folder; where there are alarms without such a denominator, they are told by kind with the statement of the first,
+and with the functions and angles of which intervals know too little.  OUT/<model>/proof.json gets the same, for the
+report.  The exit status is 1 if a tool fails.
 """
 
 from __future__ import annotations
@@ -19,6 +21,9 @@ from pathlib import Path
 SECONDS = 90  # what takes longer is said to take too long; it fails nothing
 WORKERS = 2
 TOO_LONG, FAILED = "too long", "failed"
+DENOMINATORS, ANGLES = "Denominators that intervals cannot keep from 0", "Angles that make intervals overflow"
+ALARM = re.compile(r"^\[eva:alarm\] (\S+?):(\d+): Warning:\s+([\w ,-]+)\.", re.MULTILINE)
+WITHOUT_BOUNDS = re.compile(r"Neither code nor specification for function (\w+)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +37,12 @@ class Row:
     measured: dict[int, float]
     without: str
     denominators: tuple[str, ...]
+    others: tuple[str, ...]
 
 
 def main(folder: Path, out: Path, models: list[str]) -> int:
     """Print the table, write the files; 1 if a tool failed."""
-    print("| model | Eva: unproven in u | Gappa: error of u at most | measured | denominators that remain |")
+    print("| model | Eva: unproven in u | Gappa: error of u at most | measured | what remains |")
     print("|---|---|---|---|---|", flush=True)
     broken = False
     with ThreadPoolExecutor(WORKERS) as pool:
@@ -55,18 +61,22 @@ def examine(folder: Path, model: str) -> Row:
         name: hashlib.sha256((folder / "c" / name).read_bytes()).hexdigest() for name in (f"{model}.c", f"{model}_f.c")
     }
     bounds, measured, without = rounding(folder, model)
-    return Row(model, sources, alarms(folder, model), bounds, measured, without, remaining(folder))
+    unproven, told = alarms(folder, model)
+    denominators = named(folder, DENOMINATORS)
+    others = () if denominators else origins(told, folder)
+    return Row(model, sources, unproven, bounds, measured, without, denominators, others)
 
 
 def line(row: Row) -> str:
     """A row of the table."""
     largest = ", ".join(f"{bound:.2g}" for bound in row.bounds.values()) or row.without
     found = ", ".join(f"{row.measured[entry]:.2g}" for entry in row.bounds if entry in row.measured) or "–"
-    return f"| {row.model} | {row.unproven} | {largest} | {found} | {'<br>'.join(row.denominators) or 'none'} |"
+    remains = "<br>".join((*row.denominators, *row.others)) or ("none" if row.unproven == "0" else "not known")
+    return f"| {row.model} | {row.unproven} | {largest} | {found} | {remains} |"
 
 
-def alarms(folder: Path, model: str) -> str:
-    """The number of alarms and of statuses that are not proved."""
+def alarms(folder: Path, model: str) -> tuple[str, str]:
+    """The number of alarms and of statuses that are not proved, or why there is none; and all that Eva says."""
     # Frama-C looks for files from where its caller stands
     here = folder.resolve()
     command = ["frama-c", "-eva", "-eva-precision", "1", "-warn-special-float", "non-finite"]
@@ -76,8 +86,22 @@ def alarms(folder: Path, model: str) -> str:
     found = re.search(r"(\d+) alarms? generated", told)
     status = re.search(r"Assertions +\d+ valid +(\d+) unknown +(\d+) invalid", told)
     if not found or not status:
-        return told if told == TOO_LONG else FAILED
-    return str(int(found[1]) + int(status[1]) + int(status[2]))
+        return (told if told == TOO_LONG else FAILED), ""
+    return str(int(found[1]) + int(status[1]) + int(status[2])), told
+
+
+def origins(told: str, folder: Path) -> tuple[str, ...]:
+    """Eva's alarms by kind, each with the first statement, then what they may come from; nothing without alarms."""
+    kinds: dict[str, list[str]] = {}
+    for file, number, kind in ALARM.findall(told):
+        statement = (folder / "c" / Path(file).name).read_text().splitlines()[int(number) - 1]
+        kinds.setdefault(kind, []).append(re.sub(r"^\s*(const )?(float |double )?|;$", "", statement))
+    if not kinds:
+        return ()
+    found = [f"{len(places)} × {kind}, first `{places[0]}`" for kind, places in kinds.items()]
+    found += [f"no bounds are known of `{name}`" for name in dict.fromkeys(WITHOUT_BOUNDS.findall(told))]
+    angles = named(folder, ANGLES)
+    return (*found, f"sines over several quadrants: {', '.join(angles)} (`range:`)") if angles else tuple(found)
 
 
 def rounding(folder: Path, model: str) -> tuple[dict[int, float], dict[int, float], str]:
@@ -105,9 +129,9 @@ def measure(folder: Path, model: str) -> dict[int, float]:
     return {entry: float(error) for entry, error in enumerate(told.split())}
 
 
-def remaining(folder: Path) -> tuple[str, ...]:
-    """The denominators of u that intervals do not keep from 0."""
-    page = (folder / "proof" / "README.md").read_text()
+def named(folder: Path, heading: str) -> tuple[str, ...]:
+    """What the page of the proof folder names of u under a heading."""
+    page = (folder / "proof" / "README.md").read_text().partition(f"## {heading}\n")[2].partition("\n## ")[0]
     found = re.search(r"^\| inverse_dynamics\([^|]*\| (.*) \|$", page, re.MULTILINE)
     return tuple(found[1].split("<br>")) if found else ()
 

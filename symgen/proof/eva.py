@@ -53,7 +53,7 @@ class DriverView:
 
 @dataclass(frozen=True, slots=True)
 class EvaView:
-    """Everything the template of a driver file prints."""
+    """Everything the template of a driver file prints; `tanh` is the library's function, empty where none is called."""
 
     stem: str
     model: str
@@ -63,6 +63,7 @@ class EvaView:
     ok: str
     not_finite: str
     has_parameters: bool
+    tanh: str
     drivers: tuple[DriverView, ...]
 
 
@@ -81,6 +82,7 @@ def emit_eva(model: Model, program: Program) -> dict[str, str]:
         ok=status_name(model, Status.OK),
         not_finite=status_name(model, Status.NOT_FINITE),
         has_parameters=bool(model.parameters),
+        tanh=_tanh(program),
         drivers=tuple(_driver(model, program, kernel, members) for kernel in program.kernels),
     )
     return {f"proof/{stem}_eva.c": render("proof/eva.c.jinja", view)}
@@ -95,6 +97,11 @@ def decisive_angles(kernel: Kernel) -> tuple[Load, ...]:
         if needed.intersection(statement.targets):
             needed |= {o.name for o in statement.operands if isinstance(o, Local)}
     return tuple(load for load in loaded_angles(kernel) if load.local in needed)
+
+
+def cut_coordinates(model: Model, program: Program, kernel: Kernel) -> frozenset[int]:
+    """The places in q of the coordinates that the kernel's driver cuts into slices."""
+    return frozenset(view.index for view in _slices(program, kernel, box(model), model.trig_range == "wide"))
 
 
 def _driver(model: Model, program: Program, kernel: Kernel, members: dict[str, str]) -> DriverView:
@@ -130,6 +137,11 @@ def _slices(
         )
         for index, cuts in found.items()
     )
+
+
+def _tanh(program: Program) -> str:
+    called = any(s.operation == "tanh" for kernel in program.kernels for s in kernel.statements)
+    return ("tanh" if program.scalar == "float64" else "tanhf") if called else ""
 
 
 def _texts(scalar: Scalar, pair: Range) -> tuple[str, str]:

@@ -9,10 +9,11 @@ from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program
 from symgen.model.model import Model
 from symgen.naming import file_stem
 from symgen.proof.box import box
-from symgen.proof.eva import emit_eva
+from symgen.proof.eva import MOST_RUNS, emit_eva
 from symgen.proof.fuzz import emit_fuzz
 from symgen.proof.gappa import QUANTITY, emit_gappa, obstacle
 from symgen.proof.intervals import enclose
+from symgen.proof.quadrants import overflowing_angles
 
 _LONGEST = 160
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
@@ -58,6 +59,19 @@ def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> It
     else:
         yield "None."
     yield ""
+    rows = [row for kernel in program.kernels for row in _overflowing(model, program, kernel)]
+    if rows:
+        yield "## Angles that make intervals overflow"
+        yield ""
+        yield "Coordinates that decide about a denominator are cut where the reduction of the sine changes quadrant, as"
+        yield f"long as that makes at most {MOST_RUNS} runs. Sine and cosine of these angles, which pass several"
+        yield "quadrants, have bounds in the hundreds, and products of them exceed every float: expect alarms about"
+        yield "values that are not finite. A `range:` within one quadrant ends that."
+        yield ""
+        yield "| kernel | angles |"
+        yield "|---|---|"
+        yield from rows
+        yield ""
     kernel = next((kernel for kernel in program.kernels if kernel.name == QUANTITY), None)
     if program.scalar == "float32" and kernel is not None and (why := obstacle(model, kernel)):
         yield "## Rounding"
@@ -67,7 +81,14 @@ def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> It
 
 
 def _doubtful(model: Model, kernel: Kernel) -> Iterator[str]:
-    names = enclose(kernel, box(model)).doubtful
+    yield from _row(kernel, enclose(kernel, box(model)).doubtful)
+
+
+def _overflowing(model: Model, program: Program, kernel: Kernel) -> Iterator[str]:
+    yield from _row(kernel, overflowing_angles(model, program, kernel))
+
+
+def _row(kernel: Kernel, names: Sequence[str]) -> Iterator[str]:
     if names:
         spelled = "<br>".join(f"`{_text(kernel, name)}`" for name in names)
         yield f"| {kernel.name}({', '.join(argument.name for argument in array_arguments(kernel))}) | {spelled} |"

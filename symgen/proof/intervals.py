@@ -10,10 +10,11 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from symgen.ir.kernel import Kernel, Literal, Local, Operand, Statement
+from symgen.ir.kernel import Function, Kernel, Literal, Local, Operand, Statement
 from symgen.model.model import Range
 
 Interval = tuple[float, float]
+Pair = Callable[[Operand, Interval], tuple[Interval, ...]]
 EVERYTHING: Interval = (-math.inf, math.inf)
 _SLACK = 1e-14
 
@@ -26,21 +27,42 @@ class Enclosure:
     doubtful: tuple[str, ...]
 
 
-def enclose(kernel: Kernel, ranges: Mapping[str, Sequence[Range]]) -> Enclosure:
-    """Bounds for all arguments in their ranges."""
+def exact_pair(_: Operand, angle: Interval) -> tuple[Interval, ...]:
+    """Sine and cosine as they are, whatever computes them."""
+    low, high = angle
+    return _cosine((low - math.pi / 2, high - math.pi / 2)), _cosine(angle)
+
+
+def computed_pair(function: Function, angle: Interval) -> tuple[Interval, ...]:
+    """Sine and cosine as intervals go through the statements of the portable ones, every quadrant in one interval."""
+    bounds = dict(zip(function.parameters, (angle,), strict=True))
+    for statement in function.statements:
+        _enter(bounds, statement, exact_pair)
+    return tuple(bounds[name] for name in function.results)
+
+
+def enclose(kernel: Kernel, ranges: Mapping[str, Sequence[Range]], pair: Pair = exact_pair) -> Enclosure:
+    """Bounds for all arguments in their ranges; `pair` gives those of sine and cosine of an operand."""
     bounds: dict[str, Interval] = {}
     for load in kernel.loads:
         low, high = ranges[load.argument][load.index]
         bounds[load.local] = (float(low), float(high))
     doubtful = []
     for statement in kernel.statements:
-        operands = [_bounds(operand, bounds) for operand in statement.operands]
-        if statement.operation == "div" and operands[1][0] <= 0 <= operands[1][1]:
+        if statement.operation == "div":
             divisor = statement.operands[1]
-            doubtful.append(divisor.name if isinstance(divisor, Local) else "0")
-        for target, value in zip(statement.targets, _values(statement, operands), strict=True):
-            bounds[target] = _widened(value)
+            low, high = _bounds(divisor, bounds)
+            if low <= 0 <= high:
+                doubtful.append(divisor.name if isinstance(divisor, Local) else "0")
+        _enter(bounds, statement, pair)
     return Enclosure(bounds, tuple(dict.fromkeys(doubtful)))
+
+
+def _enter(bounds: dict[str, Interval], statement: Statement, pair: Pair) -> None:
+    """Adds what a statement computes."""
+    operands = [_bounds(operand, bounds) for operand in statement.operands]
+    for target, value in zip(statement.targets, _values(statement, operands, pair), strict=True):
+        bounds[target] = _widened(value)
 
 
 def _bounds(operand: Operand, bounds: Mapping[str, Interval]) -> Interval:
@@ -49,10 +71,9 @@ def _bounds(operand: Operand, bounds: Mapping[str, Interval]) -> Interval:
     return bounds[operand.name]
 
 
-def _values(statement: Statement, operands: Sequence[Interval]) -> tuple[Interval, ...]:
+def _values(statement: Statement, operands: Sequence[Interval], pair: Pair) -> tuple[Interval, ...]:
     if statement.operation == "sincos":
-        low, high = operands[0]
-        return _cosine((low - math.pi / 2, high - math.pi / 2)), _cosine((low, high))
+        return pair(statement.operands[0], operands[0])
     if statement.operation == "mul" and statement.operands[0] == statement.operands[1]:
         low, high = _magnitude(operands[0])
         return ((low * low, high * high),)
@@ -104,6 +125,7 @@ _RULES: dict[str, Callable[..., Interval]] = {
     "abs": _magnitude,
     "sqrt": _root,
     "min": lambda a, b: (min(a[0], b[0]), min(a[1], b[1])),
+    "tanh": lambda a: (math.tanh(a[0]), math.tanh(a[1])),
     "max": lambda a, b: (max(a[0], b[0]), max(a[1], b[1])),
     "copysign": lambda a, b: (
         (_magnitude(a) if b[0] > 0 else (-_magnitude(a)[1], -_magnitude(a)[0])) if b[0] > 0 or b[1] < 0
