@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
+from symgen.dynamics.early_factors import early_factors, with_early_factor
 from symgen.dynamics.factoring import Factoring
 from symgen.dynamics.late_factors import with_late_factors
 from symgen.dynamics.opposites import with_one_difference
@@ -53,7 +54,8 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
     last = (*_LAST_STEPS, _with_late_shared_factors) if short else _LAST_STEPS[1:]
     ended = (improved(one, last) for one in dict.fromkeys(found))
     best = min(ended, key=lambda one: one.weight)
-    return list(improved(best, (_with_quotients,)).outputs)
+    quotients = improved(best, (_with_quotients,))
+    return list(improved(quotients, (_with_early_factors,)).outputs)
 
 
 class _Improvement:
@@ -231,6 +233,16 @@ def _with_shared_products(graph: Graph, _: Factoring, outputs: Sequence[Scalar])
 
 def _with_late_shared_factors(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     return with_late_factors(graph, factoring, outputs, with_shared_products)
+
+
+def _with_early_factors(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    best = _weighed(outputs)
+    for factor in early_factors(factoring, outputs):
+        changed = _with_quotients(graph, factoring, with_early_factor(graph, factoring, best.outputs, factor))
+        found = _weighed(_unified(graph, changed))
+        if found.weight < best.weight:
+            best = found
+    return list(best.outputs)
 
 
 def _with_one_difference(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:

@@ -88,7 +88,7 @@ class Monomials:
     def reduced(self, terms: Terms) -> Terms:
         """No square of a sine is left, which makes cancellation certain; then squares are put where they save terms."""
         bias, sines = self._squares, self._sines
-        if any((key + bias) & self._roots for key in terms):
+        if self._roots and any((key + bias) & self._roots for key in terms):
             terms = self._without_squared_roots(terms)
         both = sines | self._cosines
         squared = [key for key in terms if (key + bias) & both]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
+from symgen.dynamics.early_factors import early_factors, with_early_factor
 from symgen.dynamics.factoring import Factoring
 from symgen.dynamics.grouping import grouped
 from symgen.dynamics.late_factors import with_late_factors
@@ -105,3 +106,21 @@ def test_an_operation_made_twice_counts_once(graph: Graph) -> None:
     outputs = [a * twin, b * (f * g)]
     assert multiplications(outputs) == 4
     assert multiplications(grouped(graph, Factoring(graph, [f, g]), outputs)) == 3
+
+
+def test_a_parameter_is_multiplied_early_where_its_products_exist(graph: Graph) -> None:
+    """p (x a + y b) beside p x and p y needs no product with p of its own; q p x beside p x needs no q p."""
+    a, b, _, f, g, h, k, x, y, _ = symbols(graph)
+    factoring = Factoring(graph, (f, g))
+    outputs = [f * x + a, f * y + b, f * (x * h + y * k), (g * f) * x, (f / (h * k)) * (x - y)]
+    assert early_factors(factoring, outputs) == [f]
+    found = with_early_factor(graph, factoring, outputs, f)
+    assert multiplications(found) == multiplications(outputs) - 2
+    assert values(found) == pytest.approx(values(outputs))
+
+
+def test_what_has_no_product_with_a_parameter_keeps_it(graph: Graph) -> None:
+    a, b, _, f, _, h, k, x, y, _ = symbols(graph)
+    factoring = Factoring(graph, (f,))
+    outputs = [f * x + a, f * (x * h + y * k), f * b]
+    assert with_early_factor(graph, factoring, outputs, f) == outputs

@@ -100,3 +100,16 @@ def test_squares_become_sines_where_both_terms_stand() -> None:
     multiplier = Multiplier(graph, lambda _: False)
     found = multiplier.polynomial(graph.sub(m, graph.mul(m, graph.mul(c, c))))
     assert found == {tuple(sorted(((m.serial, 1), (graph.trig("sin", a).serial, 2)))): 1}
+
+
+def test_squared_roots_of_numbers_are_numbers() -> None:
+    graph = Graph()
+    x = graph.symbol("x")
+    root = graph.function("sqrt", (graph.const(3),))
+    multiplier = Multiplier(graph, lambda _: False)
+    fifth = graph.mul(graph.power(root, Fraction(5)), x)
+    assert multiplier.polynomial(fifth) == {tuple(sorted(((x.serial, 1), (root.serial, 1)))): 9}
+    cancelled = graph.sub(graph.mul(root, graph.sub(graph.mul(root, x), x)), graph.mul(graph.const(3), x))
+    assert multiplier.polynomial(cancelled) == {tuple(sorted(((x.serial, 1), (root.serial, 1)))): -1}
+    letter = graph.function("sqrt", (x,))
+    assert multiplier.polynomial(graph.add(graph.mul(letter, root), root)) is not None

@@ -1,0 +1,91 @@
+"""Parameter factors taken from where they are multiplied in late, if products with them exist: p (a sin x + b cos x)
+as a (p sin x) + b (p cos x) where p sin x and p cos x are needed elsewhere.
+
+What stands without them is shorter by a product, and the sines themselves need not wait for another use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from symgen.dynamics.factoring import Factoring
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import topological
+
+# Operations up to which graphs are gone through again for each parameter.
+MOST_OPERATIONS = 2000
+
+
+def with_early_factor(
+    graph: Graph, factoring: Factoring, outputs: Sequence[Scalar], factor: Scalar
+) -> list[Scalar]:
+    """The outputs with `factor` left out of products whose other part can be had multiplied by it for nothing."""
+    return _Early(graph, factoring, outputs, factor).outputs()
+
+
+def early_factors(factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """The parameters that stand in two products with states or more, in the order in which they are met."""
+    order = topological(outputs)
+    if len(order) > MOST_OPERATIONS:
+        return []
+    found: dict[Scalar, int] = {}
+    for node in order:
+        if node.op == "mul" and not factoring.fixed(node):
+            for argument in node.args:
+                if argument.op == "symbol" and factoring.fixed(argument):
+                    found[argument] = found.get(argument, 0) + 1
+    return [factor for factor, count in found.items() if count > 1]
+
+
+class _Early:
+    """The outputs on the way to other ones: `_image` of each node, `_without` and `_times` the factor."""
+
+    def __init__(self, graph: Graph, factoring: Factoring, outputs: Sequence[Scalar], factor: Scalar) -> None:
+        self._graph, self._factoring, self._outputs, self._factor = graph, factoring, outputs, factor
+        self._image: dict[Scalar, Scalar] = {}
+        # divided by the factor where that saves an operation, and multiplied by it where that costs none
+        self._without: dict[Scalar, Scalar] = {factor: graph.one}
+        self._times: dict[Scalar, Scalar] = {}
+
+    def outputs(self) -> list[Scalar]:
+        """The outputs rebuilt."""
+        order = topological(self._outputs)
+        for node in order:
+            if node.op == "mul" and self._factor in node.args and not self._factoring.fixed(node):
+                other = node.args[node.args[0] is self._factor]
+                # of angles and symbols: sums would only be multiplied out
+                if not other.args or other.op in ("sin", "cos"):
+                    self._times[other] = node
+        for node in order:
+            self._image[node] = self._rebuilt(node)
+        return [self._image[output] for output in self._outputs]
+
+    def _rebuilt(self, node: Scalar) -> Scalar:
+        graph = self._graph
+        args = tuple(self._image[argument] for argument in node.args)
+        if node.op == "mul" and (product := self._early(node)) is not None:
+            return product
+        if node.op == "div" and node.args[0] in self._without:
+            self._without[node] = graph.raw("div", (self._without[node.args[0]], args[1]))
+        elif node.op in ("add", "sub", "neg") and all(argument in self._times for argument in node.args):
+            self._times[node] = graph.raw(node.op, tuple(self._multiplied(argument) for argument in node.args))
+        return node if args == node.args else graph.raw(node.op, args, node.payload)
+
+    def _early(self, node: Scalar) -> Scalar | None:
+        """A product in which the factor meets what can be had multiplied by it; else it is carried on."""
+        for one, other in (node.args, node.args[::-1]):
+            if one in self._without and other in self._times and self._times[other] is not node:
+                return self._product(self._without[one], self._multiplied(other))
+        for one, other in (node.args, node.args[::-1]):
+            if one in self._without:
+                self._without[node] = self._product(self._without[one], self._image[other])
+            elif one in self._times and other not in self._without:
+                self._times[node] = self._graph.raw("mul", (self._multiplied(one), self._image[other]))
+        return None
+
+    def _multiplied(self, node: Scalar) -> Scalar:
+        found = self._times[node]
+        return self._image.get(found, found)
+
+    def _product(self, a: Scalar, b: Scalar) -> Scalar:
+        return b if a.is_one else a if b.is_one else self._graph.raw("mul", (a, b))
