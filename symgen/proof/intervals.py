@@ -51,8 +51,8 @@ def enclose(kernel: Kernel, ranges: Mapping[str, Sequence[Range]], pair: Pair = 
     for statement in kernel.statements:
         if statement.operation == "div":
             divisor = statement.operands[1]
-            low, high = _bounds(divisor, bounds)
-            if low <= 0 <= high:
+            least, most = _bounds(divisor, bounds)
+            if least <= 0 <= most:
                 doubtful.append(divisor.name if isinstance(divisor, Local) else "0")
         _enter(bounds, statement, pair)
     return Enclosure(bounds, tuple(dict.fromkeys(doubtful)))
