@@ -11,11 +11,12 @@ body in every direction; there the rows of the coordinates are singular, so that
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 
 from symgen.dynamics.bodies import Vector3
 from symgen.dynamics.forms.definite import Definite
+from symgen.dynamics.free_bodies import FreeBody, free_bodies, with_leaves
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.newton_euler import newton_euler
 from symgen.graph.calculus import gradient
@@ -23,121 +24,10 @@ from symgen.graph.content import divided, usual_number
 from symgen.graph.matrix import Matrix, Vector, dot
 from symgen.graph.scalar import Scalar
 from symgen.graph.translate import translate
-from symgen.graph.traverse import reached, substitute
-from symgen.model.components import components_in, without_components
+from symgen.graph.traverse import substitute
 from symgen.model.expression import Expression
-from symgen.model.mechanism import WORLD, component
 from symgen.model.model import Model
 from symgen.model.triples import Rows, applied, minus, plus, transposed
-from symgen.records import dataclass
-
-
-@dataclass(frozen=True, slots=True)
-class FreeBody:
-    """A frame of the world that three coordinates move along its axes and three others turn.
-
-    `places` and `angles` are the numbers of these coordinates, `points` the points (or the frame itself) that geometric
-    constraints hold, with their places in the frame.
-    """
-
-    frame: str
-    places: tuple[int, int, int]
-    angles: tuple[int, int, int]
-    points: tuple[tuple[str, Vector3], ...]
-
-
-def free_bodies(mechanics: Mechanics) -> tuple[FreeBody, ...]:
-    """The frames whose six coordinates do nothing but move them, driven and braked by nothing but constraints."""
-    if not mechanics.model.mechanism.has_mass or mechanics.change is not None:
-        return ()
-    parents = {frame.parent for frame in mechanics.model.mechanism.frames}
-    frames = [f.name for f in mechanics.model.mechanism.frames if f.parent == WORLD and f.name not in parents]
-    return tuple(found for name in frames if (found := _free_body(mechanics, name)) is not None)
-
-
-def _free_body(mechanics: Mechanics, frame: str) -> FreeBody | None:
-    q, qd, kinematics = mechanics.q, mechanics.qd, mechanics.bodies.kinematics
-    joint = kinematics.joint(frame)
-    places = [q.index(x) for x in joint.place if x in q]
-    turned = reached(joint.turning)
-    angles = [j for j, rate in enumerate(qd) if rate in turned]
-    own = {*places, *angles}
-    if len(places) != 3 or len(angles) != 3 or len(own) != 6:
-        return None
-    symbols = {x for j in own for x in (q[j], qd[j])}
-    for other in mechanics.model.mechanism.frames:
-        if other.name != frame:
-            there = kinematics.joint(other.name)
-            if symbols & reached((*there.place, *(x for row in there.axes for x in row))):
-                return None
-    points = _held_points(mechanics, frame)
-    if points is None or not _only_held(mechanics, points, own):
-        return None
-    return FreeBody(frame, (places[0], places[1], places[2]), (angles[0], angles[1], angles[2]), points)
-
-
-def _held_points(mechanics: Mechanics, frame: str) -> tuple[tuple[str, Vector3], ...] | None:
-    """The points of the frame whose places are used; None where anything else of the frame is."""
-    kinematics = mechanics.bodies.kinematics
-    found: dict[str, Vector3] = {}
-    for name in components_in(mechanics.model):
-        one = component(name)
-        point = kinematics.points.get(one.owner)
-        held = frame in ((one.owner,) if point is None else (point.frame, point.carrier))
-        if not held and one.axes != frame:
-            continue
-        at = kinematics.space.origin if point is None else kinematics.space.values(point.at)
-        placed = point is None or (point.frame == frame and all(map(mechanics.factoring.fixed, at)))
-        if one.axes != WORLD or one.what not in ("x", "y", "z") or not placed:
-            return None
-        found[one.owner] = at
-    return tuple(found.items())
-
-
-def _only_held(mechanics: Mechanics, points: Sequence[tuple[str, Vector3]], own: set[int]) -> bool:
-    """Whether geometric constraints feel the six coordinates through places of points only, and nothing else does."""
-    model, graph = mechanics.model, mechanics.graph
-    names, leaves = _with_leaves(mechanics, [owner for owner, _ in points])
-    coordinates = {x for j in own for x in (mechanics.q[j], mechanics.qd[j])}
-    moved = {model.coordinates[j].name for j in own}
-    whole = coordinates | {leaf for three in leaves.values() for leaf in three}
-
-    def feels(expression: Expression, symbols: Iterable[Scalar]) -> bool:
-        return not reached([translate(graph, expression, names)]).isdisjoint(symbols)
-
-    driven = [
-        *(name for control in model.inputs for name, _ in control.acts_on),
-        *(force.coordinate for force in model.applied_forces),
-        *(rotor.coordinate for rotor in model.mechanism.rotor_inertias),
-    ]
-    works = [
-        model.kinetic_energy,
-        model.potential_energy,
-        *(control.velocity for control in model.inputs if control.velocity is not None),
-        *(force.velocity for force in model.forces),
-        *(row.expression for row in model.constraints if row.kind != "geometric"),
-    ]
-    held = [row.expression for row in model.constraints if row.kind == "geometric"]
-    return (
-        moved.isdisjoint(driven)
-        and not any(feels(expression, whole) for expression in works)
-        and not any(feels(expression, coordinates) for expression in held)
-    )
-
-
-def _with_leaves(mechanics: Mechanics, owners: Sequence[str]) -> tuple[dict[str, Scalar], dict[str, Vector3]]:
-    """The names of formulas with symbols in place of the components of points."""
-    graph, model = mechanics.graph, mechanics.model
-    names, leaves = dict(mechanics.names), dict[str, Vector3]()
-    for owner in owners:
-        x, y, z = (graph.symbol(f"{owner}.{axis} held") for axis in "xyz")
-        leaves[owner] = (x, y, z)
-        names |= {f"{owner}.{axis}": leaf for axis, leaf in zip("xyz", (x, y, z), strict=True)}
-    apart = without_components(model.definitions)
-    for definition in model.definitions:
-        if definition not in apart:
-            names[definition.name] = translate(graph, definition.value, names)
-    return names, leaves
 
 
 class BodyAxes(Mechanics):
@@ -150,7 +40,7 @@ class BodyAxes(Mechanics):
         super().__init__(model, lumped=lumped)
         self.free = free_bodies(self)
         owners = [owner for body in self.free for owner, _ in body.points]
-        self._leaf_names, self._leaves = _with_leaves(self, owners)
+        self._leaf_names, self._leaves = with_leaves(self, owners)
         self._arms = {body.frame: _arms(self, body) for body in self.free}
 
     @cached_property
@@ -180,7 +70,7 @@ class BodyAxes(Mechanics):
         for body in self.free:
             rates = [self.qd[j] for j in body.angles]
             x, y, z = (
-                _triple(gradient(self.graph, w, rates)) for w in self.bodies.kinematics.joint(body.frame).turning
+                _triple(gradient(self.graph, w, rates)) for w in self.bodies.kinematics.twist(body.frame).angular
             )
             found[body.frame] = (x, y, z)
         return found
@@ -201,26 +91,24 @@ class BodyAxes(Mechanics):
                 own = self._in_body_axes(body, owner, at, pulls)
                 force = plus(force, own)
                 moment = plus(moment, self._moment(self._arms[body.frame][1][owner], own))
-            for j, entry in zip((*body.places, *body.angles), (*force, *moment), strict=True):
+            for j, entry in zip(body.coordinates, (*force, *moment), strict=True):
                 row[j] = entry
         return tuple(row)
 
     def _in_body_axes(self, body: FreeBody, owner: str, at: Vector3, pull: Vector3) -> Vector3:
         """A force in body axes; one along the place of its own point takes that place as it is in body axes."""
-        graph, joint = self.graph, self.bodies.kinematics.joint(body.frame)
-        inward, leaves = transposed(joint.axes), self._leaves[owner]
+        graph, kinematics = self.graph, self.bodies.kinematics
+        axes, leaves = kinematics.axes(body.frame), self._leaves[owner]
+        inward = transposed(axes)
         slopes = [gradient(graph, entry, leaves) for entry in pull]
-        sign = slopes[0][0].constant
-        along = sign in (1, -1) and all(
-            slope.constant == (sign if i == j else 0) for i, row in enumerate(slopes) for j, slope in enumerate(row)
-        )
-        if not along:
+        sign = -1 if (-slopes[0][0]).is_one else 1
+        if any(not (sign * x - int(i == j)).is_zero for i, row in enumerate(slopes) for j, x in enumerate(row)):
             return applied(inward, _triple(substitute(graph, pull, self._places)))
         rest = substitute(graph, pull, dict.fromkeys(leaves, graph.zero))
         rest = substitute(graph, [sign * entry for entry in rest], self._places)
-        x, y, z = plus(applied(inward, joint.place), at)
+        x, y, z = plus(applied(inward, kinematics.position(body.frame)), at)
         # term by term: what points share is added first, and no sum of two products turns into another angle
-        for entry, row in zip(rest, joint.axes, strict=True):
+        for entry, row in zip(rest, axes, strict=True):
             x, y, z = x + row[0] * entry, y + row[1] * entry, z + row[2] * entry
         return sign * x, sign * y, sign * z
 
@@ -234,7 +122,7 @@ class BodyAxes(Mechanics):
         }
 
     def _forces_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
-        twists = {body.frame: (*body.places, *body.angles) for body in self.free}
+        twists = {body.frame: body.coordinates for body in self.free}
         forces = list(newton_euler(self.bodies, self.qd, acceleration, gravity, self.lumped, twists))
         for body in self.free:
             reference, _, length = self._arms[body.frame]

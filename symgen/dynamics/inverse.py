@@ -105,22 +105,24 @@ class InverseDynamics:
                 system = System(derivation.mechanics, self._generic)
             else:
                 system = System.fresh(self._model, self._generic, self._lumped)
+            if name == "range":
+                system = self._in_body_axes(system)
             made = _BUILDERS[name](self, system)
-            offer = made if isinstance(made, str) else Offer(name, system, made)
-            self._offers[name] = self._in_body_axes(offer) if name == "range" else offer
+            self._offers[name] = made if isinstance(made, str) else Offer(name, system, made)
         return self._offers[name]
 
-    def _in_body_axes(self, offer: Offer | str) -> Offer | str:
-        """The range form, or that with the twists of free bodies for rates, whichever counts less."""
-        if isinstance(offer, str) or not self._model.mechanism.has_mass:
-            return offer
-        from symgen.dynamics.body_axes import BodyAxes, free_bodies  # models given by energies start without it
+    def _in_body_axes(self, system: System) -> System:
+        """The system with the twists of free bodies for rates, where its equations count less that way."""
+        if not self._model.mechanism.has_mass:
+            return system
+        from symgen.dynamics.free_bodies import free_bodies  # models given by energies start without it
 
-        if not free_bodies(offer.system.mechanics):
-            return offer
-        system = System(BodyAxes(self._model, self._lumped), self._generic)
-        made = range_form(system.mechanics, self._generic)
-        return offer if made is None or made.weight >= offer.form.weight else Offer(offer.way, system, made)
+        if not free_bodies(system.mechanics):
+            return system
+        from symgen.dynamics.body_axes import BodyAxes
+
+        turned = System(BodyAxes(self._model, self._lumped), self._generic)
+        return turned if cost(turned.given).weight < cost(system.given).weight else system
 
     def verdict(self, offer: Offer, first_only: bool = False) -> Verdict:
         """Whether the form may be chosen by itself."""
@@ -272,11 +274,16 @@ def _nullspace(forms: InverseDynamics, system: System) -> Form | str:
 def _range(_: InverseDynamics, system: System) -> Form | str:
     if system.driven is not None:
         return system.driven
-    mechanics = system.mechanics
-    change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
-    seen = mechanics if change.is_identity else Mechanics(mechanics.model, mechanics, change, mechanics.lumped)
-    made = range_form(seen, system.generic)
+    made = range_form(_in_absolute_angles(system.mechanics), system.generic)
     return "its steps leave more than a few rows, or M does not select rows" if made is None else made
+
+
+def _in_absolute_angles(mechanics: Mechanics) -> Mechanics:
+    """The system in absolute angles, where it has relative ones and its rates are those of the coordinates."""
+    if not mechanics.twist_determinant.is_one:
+        return mechanics
+    change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
+    return mechanics if change.is_identity else Mechanics(mechanics.model, mechanics, change, mechanics.lumped)
 
 
 _BUILDERS: dict[str, Callable[[InverseDynamics, System], Form | str]] = {

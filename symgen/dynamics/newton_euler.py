@@ -65,7 +65,8 @@ def newton_euler(
 
     `qd` is the symbols of the rates, or zeros for a mechanism at rest; `gravity` may be zero to leave out weights.
     `lumped` tells whether parameters are regrouped first: cheaper where frames share parameters.
-    The frames of `twists` give force and moment about their origin, in their axes, in six places of the result.
+    The frames of `twists` hand nothing on: force and moment about their origin, in their axes, stand in six places of
+    the result.
     """
     return _Recursion(bodies, qd, qdd, gravity).forces(lumped, twists)
 
@@ -107,9 +108,9 @@ class _Recursion:
             if frame.name in twists:
                 for j, load in zip(twists[frame.name], (*wrench.force, *wrench.moment), strict=True):
                     totals[j] = totals[j] + load
-            else:
-                self._work(totals, joint.turning if handed else absolute, wrench.moment)
-                self._work(totals, joint.place_rate, carried)
+                continue
+            self._work(totals, joint.turning if handed else absolute, wrench.moment)
+            self._work(totals, joint.place_rate, carried)
             if frame.parent != WORLD:
                 moment = self._cross(joint.place, carried)
                 moment = plus(applied(joint.axes, wrench.moment), moment) if handed else moment

@@ -15,7 +15,7 @@ from symgen.graph.scalar import Graph, Scalar
 from symgen.records import dataclass
 
 # What is left when this many rows are is solved by minors.
-LAST = 3
+LAST = 4
 
 
 @dataclass(frozen=True, slots=True)

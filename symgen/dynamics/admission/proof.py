@@ -68,6 +68,9 @@ class Proof:
                 return all(map(self.shown, node.args))
             case "add" if self._nonnegative(node):
                 return any(map(self.shown, node.args))
+            case "add" | "sub":
+                length = _added_to(node)
+                return length is not None and self.shown(length)
             case _:
                 return False
 
@@ -122,6 +125,15 @@ class Proof:
                 return [node, *self._forced(node.args[0]), *self._forced(node.args[1])]
             case _:
                 return [node]
+
+
+def _added_to(node: Scalar) -> Scalar | None:
+    """The length that a sum adds to a scalar with the scalar's own sign: |x + copysign(l, x)| = |x| + l."""
+    one, other = node.args
+    for signed, rest in ((one, other), (other, one)):
+        if signed.op == "copysign" and signed.args[1] is (rest if node.op == "add" else -rest):
+            return signed.args[0]
+    return None
 
 
 def _becomes_zero(node: Scalar, zeros: Sequence[Scalar]) -> bool:
