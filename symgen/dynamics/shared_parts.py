@@ -11,11 +11,11 @@ from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import TypeAlias
 
+from symgen.dynamics.terms import Term, product_of, sum_of, terms_of
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import reached, topological
 
-_Term: TypeAlias = tuple[int, Scalar]
-_Pair: TypeAlias = tuple[_Term, _Term]
+_Pair: TypeAlias = tuple[Term, Term]
 
 # Longer sums and products stay as they are.
 MOST_TERMS = 24
@@ -45,7 +45,7 @@ class _Sharing:
         # angles stay as they are: what else takes their sines and cosines has to find them
         angles = reached(node for node in self._order if node.op in ("sin", "cos"))
         roots = [node for node in self._order if node.op in ops and node not in inside and node not in angles]
-        self._terms = {node: _taken_apart(node, inside) for node in roots}
+        self._terms = {node: terms_of(node, inside) for node in roots}
         self._long = {node for node in roots if len(self._terms[node]) > MOST_TERMS}
 
     def outputs(self) -> list[Scalar]:
@@ -93,7 +93,7 @@ class _Sharing:
         return found
 
     def _built(
-        self, terms: Sequence[_Term], pairs: Mapping[Scalar, _Pair], image: Mapping[Scalar, Scalar],
+        self, terms: Sequence[Term], pairs: Mapping[Scalar, _Pair], image: Mapping[Scalar, Scalar],
         made: dict[Scalar, Scalar],
     ) -> Scalar:
         """A sum or product of terms, of which some stand for pairs."""
@@ -103,33 +103,11 @@ class _Sharing:
                 made[part] = self._built(pairs[part], pairs, image, made)
             parts.append((sign, made[part] if part in pairs else image[part]))
         if self._ops is _PRODUCT:
-            total = parts[0][1]
-            for _, factor in parts[1:]:
-                total = self._graph.raw("mul", (total, factor))
-            return total
-        start = next((k for k, (sign, _) in enumerate(parts) if sign > 0), 0)
-        sign, total = parts[start]
-        total = total if sign > 0 else self._graph.raw("neg", (total,))
-        for k, (sign, part) in enumerate(parts):
-            if k != start:
-                total = self._graph.raw("add" if sign > 0 else "sub", (total, part))
-        return total
+            return product_of(self._graph, [factor for _, factor in parts])
+        return sum_of(self._graph, parts)
 
 
-def _taken_apart(node: Scalar, inside: Collection[Scalar]) -> list[_Term]:
-    found = []
-    stack = [(1, node)]
-    while stack:
-        sign, part = stack.pop()
-        if part is node or part in inside:
-            left, right = part.args
-            stack += [(-sign if part.op == "sub" else sign, right), (sign, left)]
-        else:
-            found.append((sign, part))
-    return found
-
-
-def _pairs(terms: Sequence[_Term]) -> set[_Pair]:
+def _pairs(terms: Sequence[Term]) -> set[_Pair]:
     """The pairs of different terms, the older one first and positive."""
     found = set()
     for k, one in enumerate(terms):
@@ -139,7 +117,7 @@ def _pairs(terms: Sequence[_Term]) -> set[_Pair]:
     return found
 
 
-def _pair(one: _Term, other: _Term) -> _Pair:
+def _pair(one: Term, other: Term) -> _Pair:
     (sign, a), (second, b) = (one, other) if one[1].serial < other[1].serial else (other, one)
     return (1, a), (sign * second, b)
 
@@ -148,7 +126,7 @@ def _age(pair: _Pair) -> tuple[int, int]:
     return -pair[0][1].serial, -pair[1][1].serial
 
 
-def _with(terms: Sequence[_Term], pair: _Pair, whole: Scalar) -> list[_Term]:
+def _with(terms: Sequence[Term], pair: _Pair, whole: Scalar) -> list[Term]:
     """The terms with `whole` in the place of the first that belongs to the pair."""
     (_, a), (_, b) = pair
     first = next(k for k, (_, part) in enumerate(terms) if part is a)

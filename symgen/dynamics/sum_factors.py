@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 
+from symgen.dynamics.terms import product_of, sum_of, terms_of
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import topological
 from symgen.records import dataclass
@@ -50,27 +51,13 @@ def with_common_factors(
         args = tuple(image[argument] for argument in node.args)
         image[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
         if node.op in _SUMS and (node not in inside or uses[node] > 1):
-            terms = [_Term(sign, term, _factors(term, whole)) for sign, term in _terms(node, inside)]
+            terms = [_Term(sign, term, _factors(term, whole)) for sign, term in terms_of(node, inside)]
             groups = _grouped(terms, numbers=apart is not None)
             if any(group.common for group in groups):
                 quotients = _Quotients(graph, whole, image)
                 signs = _signs(groups)
-                image[node] = _sum(graph, [(s, quotients.product(g, s)) for s, g in zip(signs, groups, strict=True)])
+                image[node] = sum_of(graph, [(s, quotients.product(g, s)) for s, g in zip(signs, groups, strict=True)])
     return [image[output] for output in outputs]
-
-
-def _terms(node: Scalar, inside: Collection[Scalar]) -> list[tuple[int, Scalar]]:
-    """The signed terms of a sum in their order, the sums `inside` taken apart."""
-    found = []
-    stack = [(1, node)]
-    while stack:
-        sign, term = stack.pop()
-        if term is node or term in inside:
-            left, right = term.args
-            stack += [(-sign if term.op == "sub" else sign, right), (sign, left)]
-        else:
-            found.append((sign, term))
-    return found
 
 
 def _factors(term: Scalar, whole: Collection[Scalar]) -> tuple[Scalar, ...]:
@@ -130,10 +117,10 @@ class _Quotients:
     def product(self, group: _Group, sign: int) -> Scalar:
         """The group, divided by a sign."""
         rests = [(sign * term.sign, self._rest(term.product, Counter(group.common))) for term in group.terms]
-        inner = _sum(self.graph, [(s, self.graph.one if rest is None else rest) for s, rest in rests])
+        inner = sum_of(self.graph, [(s, self.graph.one if rest is None else rest) for s, rest in rests])
         if not group.common:
             return inner
-        return self.graph.raw("mul", (_product(self.graph, [self.image[f] for f in group.common]), inner))
+        return self.graph.raw("mul", (product_of(self.graph, [self.image[f] for f in group.common]), inner))
 
     def _rest(self, node: Scalar, gone: Counter[Scalar]) -> Scalar | None:
         """The product without the factors in `gone`, which loses them; None where nothing is left."""
@@ -146,21 +133,3 @@ class _Quotients:
             gone[node] -= 1
             return None
         return self.image[node]
-
-
-def _product(graph: Graph, factors: Sequence[Scalar]) -> Scalar:
-    first, *others = factors
-    for factor in others:
-        first = graph.raw("mul", (first, factor))
-    return first
-
-
-def _sum(graph: Graph, terms: Sequence[tuple[int, Scalar]]) -> Scalar:
-    """The sum of signed scalars, a positive one first if there is one."""
-    start = next((place for place, (sign, _) in enumerate(terms) if sign > 0), 0)
-    sign, total = terms[start]
-    total = total if sign > 0 else graph.raw("neg", (total,))
-    for place, (sign, term) in enumerate(terms):
-        if place != start:
-            total = graph.raw("add" if sign > 0 else "sub", (total, term))
-    return total
