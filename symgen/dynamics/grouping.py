@@ -22,7 +22,7 @@ from symgen.graph.traverse import cost, reached, topological
 from symgen.records import dataclass
 
 _Step: TypeAlias = Callable[[Graph, Factoring, Sequence[Scalar]], list[Scalar]]
-# Outputs of so many nodes are regrouped in one way only.
+# Longer outputs are regrouped in one way only.
 SHORT = 400
 
 
@@ -41,21 +41,19 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
     """
     improved = _Improvement(graph, factoring)
     start = improved(_weighed(_unified(graph, outputs)), _SIGNS_AND_NUMBERS)
-    short = len(reached(outputs)) <= SHORT
-    starts = [start, improved(start, (_with_parameters_taken_out,))] if short else [start]
+    best = _best_of_several(improved, start) if len(reached(outputs)) <= SHORT else improved(start, _ONE_WAY)
+    return list(improved(best, (_with_quotients, _with_early_factors)).outputs)
+
+
+def _best_of_several(improved: _Improvement, start: _Weighed) -> _Weighed:
     found = []
-    for one in dict.fromkeys(starts):
+    for one in dict.fromkeys((start, improved(start, (_with_parameters_taken_out,)))):
         found.append(improved(one, (_with_collected_factors, *_STEPS)))
-        if short:
-            pairs = improved(one, (_with_common_factors,))
-            found += [] if pairs is one else [improved(pairs, _STEPS)]
-    if short:
-        found += [improved(one, (with_late_factors,)) for one in dict.fromkeys(found)]
-    last = (*_LAST_STEPS, _with_late_shared_factors) if short else _LAST_STEPS[1:]
-    ended = (improved(one, last) for one in dict.fromkeys(found))
-    best = min(ended, key=lambda one: one.weight)
-    quotients = improved(best, (_with_quotients,))
-    return list(improved(quotients, (_with_early_factors,)).outputs)
+        pairs = improved(one, (_with_common_factors,))
+        found += [] if pairs is one else [improved(pairs, _STEPS)]
+    found += [improved(one, (with_late_factors,)) for one in dict.fromkeys(found)]
+    ended = (improved(one, (*_LAST_STEPS, _with_late_shared_factors)) for one in dict.fromkeys(found))
+    return min(ended, key=lambda one: one.weight)
 
 
 class _Improvement:
@@ -253,3 +251,4 @@ _SIGNS_AND_NUMBERS = (_with_one_difference, _with_numbers_joined)
 _STEPS = (_with_numbers_moved, _with_parameters_joined)
 # what two sums held is found in more of them once those two are one: short outputs are gone through twice
 _LAST_STEPS = (_with_shared_sums, _with_shared_sums, _with_shared_products)
+_ONE_WAY = (_with_common_factors, _with_collected_factors, *_STEPS, with_late_factors, *_LAST_STEPS[1:])

@@ -11,9 +11,11 @@ from symgen.dynamics.factoring import Factoring
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost, topological
 
-# Factors tried, those of most values first, and operations up to which graphs are gone through again for each.
+# Factors tried, those of most values first: each takes going through all operations again.
 MOST_FACTORS = 8
-MOST_OPERATIONS = 2000
+# Of graphs with more operations fewer are tried, none of still longer ones.
+LONG, FEW_FACTORS = 600, 3
+MOST_OPERATIONS = 3000
 
 Step: TypeAlias = Callable[[Graph, Sequence[Scalar]], list[Scalar]]
 
@@ -42,7 +44,7 @@ def with_late_factors(
     several = sorted((factor for factor in found if found[factor] > 1), key=lambda factor: -found[factor])
     finished = finish(graph, best)
     weight = cost(finished).weight if several else 0
-    for factor in several[:MOST_FACTORS]:
+    for factor in several[: MOST_FACTORS if len(order) <= LONG else FEW_FACTORS]:
         changed = _later(graph, factoring, best, factor)
         ended = finish(graph, changed)
         if (lighter := cost(ended).weight) < weight:
