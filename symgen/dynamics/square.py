@@ -1,81 +1,109 @@
-"""Square systems A x = b by reflections of the equations, column by column, the last rows by minors.
+"""Square systems A x = b by reflections of the unknowns, sparse rows first, the last rows by minors.
 
-Reflections of the unknowns' space, which take the rows of A as vectors, touch all columns at each step.  Reflections of
-the equations touch only those in which the column has entries: a force at the point that moments are taken about has
-three.  The column with the fewest is next.  Orthogonal steps leave det(A)^2 the product of the squared pivots and of
-the squared determinant of what is left: every denominator vanishes only where A is singular (Golub and Van Loan, Matrix
-Computations, 5.2; a column y becomes -sign(y_1) |y| e_1 without ever storing a reflector).
+A reflection that brings a row to one entry mixes only the unknowns that the row holds: a platform's balance of moments
+about the head of a leg does not hold that leg.  det(A)^2 is the product of the squared pivots and of the squared
+determinant of what is left, so that every denominator vanishes only where A is singular.  Rows keep to themselves, and
+minors have one factor of each: small rows keep their digits beside large ones, as they would not if the equations were
+reflected (Golub and Van Loan, Matrix Computations, 5.2; Higham, Accuracy and Stability of Numerical Algorithms, 19.4).
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from symgen.dynamics.exterior import cross_product
 from symgen.graph.matrix import Matrix, Vector, dot
 from symgen.graph.scalar import Graph, Scalar
 from symgen.records import dataclass
 
-# What is left when this many rows are is solved by minors.
-LAST = 4
+# As many rows as this are solved by minors.
+LAST = 3
 
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """x, and factors whose product is det(A)^2."""
+    """x, factors whose product is det(A)^2 over |a|^2, and the squared lengths of all rows but that one, a."""
 
     values: Vector
     squares: Vector
+    lengths: Vector
 
 
-def by_columns(graph: Graph, matrix: Matrix, right: Vector) -> Solution:
+@dataclass(frozen=True, slots=True)
+class _Reflection:
+    """Turns a row y into s |y| in one of its columns, the first; s is the sign of the entry there.
+
+    With e = y / (s |y|) another row a gets e.a there and a_i - f_i (a_1 + e.a) elsewhere, f_i = y_i / (y_1 + s |y|).
+    """
+
+    columns: tuple[int, ...]
+    along: Vector
+    across: Vector
+    inverse: Scalar
+    square: Scalar
+
+    @classmethod
+    def of(cls, graph: Graph, row: Sequence[Scalar], columns: Sequence[int]) -> _Reflection:
+        """The one for the entries of a row in these columns, which are not all that may be 0."""
+        held = tuple(j for j in columns if not row[j].is_zero)
+        first, *others = (row[j] for j in held)
+        square = graph.sum(row[j] * row[j] for j in held)
+        # a column alone stays as it is
+        signed = graph.function("copysign", (graph.function("sqrt", (square,)), first)) if others else first
+        inverse = 1 / signed
+        if not others:
+            return cls(held, (graph.one,), (), inverse, square)
+        slope = 1 / (first + signed)
+        return cls(held, tuple(row[j] * inverse for j in held), tuple(y * slope for y in others), inverse, square)
+
+    def turn(self, graph: Graph, row: list[Scalar]) -> None:
+        """Another row for the turned unknowns."""
+        given = [row[j] for j in self.columns]
+        if not self.across or all(entry.is_zero for entry in given):
+            return
+        first, *others = self.columns
+        row[first] = dot(graph, self.along, given)
+        share = given[0] + row[first]
+        for j, f in zip(others, self.across, strict=True):
+            row[j] = row[j] - f * share
+
+    def unknowns(self, graph: Graph, values: dict[int, Scalar]) -> None:
+        """The unknowns from the turned ones."""
+        if not self.across:
+            return
+        first, *others = self.columns
+        taken = dot(graph, self.across, [values[j] for j in others])
+        share = taken - values[first]
+        values[first] = -(self.along[0] * share + taken)
+        for j, e in zip(others, self.along[1:], strict=True):
+            values[j] = values[j] - e * share
+
+
+def by_rows(graph: Graph, matrix: Matrix, right: Vector) -> Solution:
     """The solution of a square system with more than `LAST` rows."""
     size = len(matrix)
-    rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
-    columns, squares = list(range(size)), list[Scalar]()
-    solved: list[tuple[int, list[Scalar], Scalar]] = []
-    while len(rows) > LAST:
-        column = min(columns, key=lambda j: sum(not row[j].is_zero for row in rows))
-        columns.remove(column)
-        held = [row for row in rows if not row[column].is_zero]
-        rows = [row for row in rows if row[column].is_zero]
-        pivot_row, inverse, square, turned = _reflected(graph, held, column, [*columns, size])
-        rows += turned
-        solved.append((column, pivot_row, inverse))
-        squares.append(square)
-    left = [[*(row[j] for j in columns), row[size]] for row in rows]
-    *minors, determinant = cross_product(graph, tuple(map(tuple, left)), LAST + 1)
+    left = {i: list(row) for i, row in enumerate(matrix)}
+    columns, turned = list(range(size)), list[_Reflection]()
+    values, lengths = dict[int, Scalar](), list[Scalar]()
+    while len(left) > LAST:
+        i = min(left, key=lambda i: sum(not left[i][j].is_zero for j in columns))
+        row = left.pop(i)
+        reflection = _Reflection.of(graph, row, columns)
+        before = [other.columns[0] for other in turned]
+        lengths.append(graph.sum([*(row[j] * row[j] for j in before), reflection.square]))
+        taken = graph.sum(row[j] * values[j] for j in before)
+        values[reflection.columns[0]] = (right[i] - taken) * reflection.inverse
+        for other in left.values():
+            reflection.turn(graph, other)
+        turned.append(reflection)
+        columns.remove(reflection.columns[0])
+    rests = [right[i] - graph.sum(row[j] * x for j, x in values.items()) for i, row in left.items()]
+    bordered = [(*(row[j] for j in columns), rest) for row, rest in zip(left.values(), rests, strict=True)]
+    *minors, determinant = cross_product(graph, tuple(bordered), LAST + 1)
     inverse = 1 / determinant
-    found = {j: -minor * inverse for j, minor in zip(columns, minors, strict=True)}
-    for column, row, inverse in reversed(solved):
-        taken = graph.sum(row[j] * x for j, x in found.items() if not row[j].is_zero)
-        found[column] = (row[size] - taken) * inverse
-    return Solution(tuple(found[j] for j in range(size)), (*squares, determinant * determinant))
-
-
-def _reflected(
-    graph: Graph, rows: list[list[Scalar]], column: int, others: list[int]
-) -> tuple[list[Scalar], Scalar, Scalar, list[list[Scalar]]]:
-    """The row that keeps the column, 1 over its pivot, the square of that, and the rows that lose it.
-
-    With y the column, s the sign of its first entry and e = y/|y|, another column a becomes s e.a (the sign of the row
-    is free) and a_i - y_i (a_1 + s e.a)/(y_1 + s |y|).
-    """
-    entries = [row[column] for row in rows]
-    if len(rows) == 1:
-        return rows[0], 1 / entries[0], entries[0] * entries[0], []
-    square = graph.sum(y * y for y in entries)
-    length = graph.function("sqrt", (square,))
-    signed = graph.function("copysign", (length, entries[0]))
-    inverse, slope = 1 / signed, 1 / (entries[0] + signed)
-    along = [y * inverse for y in entries]
-    across = [y * slope for y in entries[1:]]
-    pivot_row, turned = list(rows[0]), [list(row) for row in rows[1:]]
-    for j in others:
-        given = [row[j] for row in rows]
-        if all(a.is_zero for a in given):
-            continue
-        pivot_row[j] = dot(graph, along, given)
-        share = given[0] + pivot_row[j]
-        for row, y in zip(turned, across, strict=True):
-            row[j] = row[j] - y * share
-    # e.y = s |y|
-    return pivot_row, inverse, square, turned
+    values |= {j: -minor * inverse for j, minor in zip(columns, minors, strict=True)}
+    for reflection in reversed(turned):
+        reflection.unknowns(graph, values)
+    lengths += [dot(graph, matrix[i], matrix[i]) for i in left]
+    squares = [*(reflection.square for reflection in turned[1:]), determinant * determinant]
+    return Solution(tuple(values[j] for j in range(size)), tuple(squares), tuple(lengths[1:]))

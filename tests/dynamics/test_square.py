@@ -1,4 +1,4 @@
-"""Square systems by reflections of the equations."""
+"""Square systems by reflections of the unknowns."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from itertools import permutations
 
 import pytest
 
-from symgen.dynamics.square import by_columns
+from symgen.dynamics.square import by_rows
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Graph
 from symgen.graph.traverse import topological
@@ -24,17 +24,17 @@ def determinant(matrix: list[list[float]]) -> float:
     )
 
 
-def solved(matrix: list[list[float]], right: list[float]) -> tuple[list[float], float]:
-    """x and the product of the factors, with every entry that is not 0 a symbol."""
+def solved(matrix: list[list[float]], right: list[float]) -> tuple[list[float], float, float]:
+    """x, the product of the factors and that of the lengths, with every entry that is not 0 a symbol."""
     graph, at = Graph(), dict[str, float]()
     rows = []
     for i, row in enumerate(matrix):
         at |= {f"a{i}{j}": x for j, x in enumerate(row)}
         rows.append(tuple(graph.symbol(f"a{i}{j}") if x else graph.zero for j, x in enumerate(row)))
     at |= {f"b{i}": x for i, x in enumerate(right)}
-    found = by_columns(graph, tuple(rows), tuple(graph.symbol(f"b{i}") for i in range(len(right))))
-    *values, product = Evaluator([*found.values, graph.product(found.squares)])(at)
-    return values, product
+    found = by_rows(graph, tuple(rows), tuple(graph.symbol(f"b{i}") for i in range(len(right))))
+    *values, product, bound = Evaluator([*found.values, graph.product(found.squares), graph.product(found.lengths)])(at)
+    return values, product, bound
 
 
 def residual(matrix: list[list[float]], x: list[float], right: list[float]) -> float:
@@ -52,9 +52,13 @@ def test_solution_and_squared_determinant(size: int, zeros: float) -> None:
             if abs(size_of) > 0.05:
                 break
         right = [source.uniform(-2, 2) for _ in range(size)]
-        x, product = solved(matrix, right)
+        x, product, first = solved(matrix, right)
         assert residual(matrix, x, right) < 1e-11
-        assert product == pytest.approx(size_of**2, rel=1e-10)
+        # without the squared length of the row with the most zeros
+        length = min(matrix, key=lambda row: sum(x != 0 for x in row))
+        assert product * math.fsum(x * x for x in length) == pytest.approx(size_of**2, rel=1e-10)
+        # Hadamard's bound without the same row
+        assert product <= first * (1 + 1e-12)
 
 
 def test_pivots_that_vanish_are_no_matter() -> None:
@@ -65,21 +69,33 @@ def test_pivots_that_vanish_are_no_matter() -> None:
     at = {f"a{i}{j}": float(i + j == n - 1) * (i + 1) for i in range(n) for j in range(n)} | {
         f"b{i}": 1.0 for i in range(n)
     }
-    found = by_columns(graph, rows, tuple(graph.symbol(f"b{i}") for i in range(n)))
+    found = by_rows(graph, rows, tuple(graph.symbol(f"b{i}") for i in range(n)))
     assert Evaluator(found.values)(at) == pytest.approx([1 / (n - j) for j in range(n)], rel=1e-14)
 
 
-def test_a_column_with_one_entry_takes_no_root() -> None:
+def test_a_row_with_one_entry_takes_no_root() -> None:
     source = random.Random(5)
-    matrix = [[source.uniform(1, 2) for _ in range(5)] for _ in range(5)]
-    for i in range(1, 5):
-        matrix[i][2] = 0.0
-    right = [1.0, -1.0, 2.0, 0.5, 0.0]
-    x, _ = solved(matrix, right)
+    matrix = [[source.uniform(1, 2) for _ in range(4)] for _ in range(4)]
+    matrix[1] = [0.0, 0.0, 1.5, 0.0]
+    right = [1.0, -1.0, 2.0, 0.5]
+    x, product, bound = solved(matrix, right)
     assert residual(matrix, x, right) < 1e-11
+    assert product * 1.5**2 == pytest.approx(determinant(matrix) ** 2)
+    assert product <= bound
     graph = Graph()
     rows = tuple(
-        tuple(graph.symbol(f"a{i}{j}") if x else graph.zero for j, x in enumerate(r)) for i, r in enumerate(matrix)
+        tuple(graph.symbol(f"a{i}{j}") if x else graph.zero for j, x in enumerate(row)) for i, row in enumerate(matrix)
     )
-    found = by_columns(graph, rows, tuple(map(graph.const, (1, 2, 3, 4, 5))))
+    found = by_rows(graph, rows, tuple(map(graph.const, (1, 2, 3, 4))))
     assert all(node.op != "sqrt" for node in topological(found.values))
+
+
+def test_small_rows_keep_their_digits() -> None:
+    # equations of very different size, each known to its own digits
+    source = random.Random(11)
+    matrix = [[source.uniform(-2, 2) for _ in range(6)] for _ in range(6)]
+    x = [source.uniform(-2, 2) for _ in range(6)]
+    scaled = [[entry * 2.0 ** (-9 * i) for entry in row] for i, row in enumerate(matrix)]
+    right = [math.fsum(a * b for a, b in zip(row, x, strict=True)) for row in scaled]
+    found, _, _ = solved(scaled, right)
+    assert found == pytest.approx(x, rel=1e-11)

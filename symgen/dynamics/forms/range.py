@@ -21,7 +21,7 @@ from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.spaces import LONGEST_PRODUCT, HouseholderSpace
-from symgen.dynamics.square import by_columns
+from symgen.dynamics.square import by_rows
 from symgen.graph.content import divided, usual_number
 from symgen.graph.matrix import Matrix, Vector, dot, transpose
 from symgen.graph.scalar import Graph, Scalar
@@ -83,7 +83,7 @@ class _Core:
             guards.append(guard)
         else:
             square = not internal and self._size <= LONGEST_PRODUCT
-            particular, null, guard = self._by_columns() if square else self._by_reflections()
+            particular, null, guard = self._by_rows() if square else self._by_reflections()
             measure = None
             guards.append(guard)
         u = self._inputs_of(particular, homogeneous=False)
@@ -154,12 +154,12 @@ class _Core:
         # a number in front becomes part of the threshold
         return min((given, number * divided(graph, shorter, number)), key=lambda scale: cost([scale]).weight)
 
-    def _by_columns(self) -> tuple[Vector, list[Vector], Guard]:
-        """The solution of a square core; its determinant is measured by the lengths of rows, which feel no units."""
+    def _by_rows(self) -> tuple[Vector, list[Vector], Guard]:
+        """The solution of a square core; its determinant is measured by the lengths of its rows."""
         graph = self._graph
-        solution = by_columns(graph, self._core, self._right)
-        lengths = graph.product(dot(graph, row, row) for row in self._core)
-        return solution.values, [], self._tested(graph.product(solution.squares), lengths, 2)
+        solution = by_rows(graph, self._core, self._right)
+        measured = self._tested(graph.product(solution.squares), graph.product(solution.lengths), 2)
+        return solution.values, [], measured
 
     def _by_reflections(self) -> tuple[Vector, list[Vector], Guard]:
         """The solution of least norm, an orthonormal null-space basis, and the product of the pivots."""
