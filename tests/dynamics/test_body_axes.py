@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Sequence
 from functools import cache
 
 import pytest
+from flint import arb, ctx
 from shipped import ROOT
 
 from symgen.dynamics.body_axes import BodyAxes
@@ -17,8 +19,9 @@ from symgen.dynamics.genericity import genericity
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.inverse import InverseDynamics, Offer
 from symgen.dynamics.mechanics import Mechanics
-from symgen.graph.evaluate import Evaluator
-from symgen.graph.traverse import cost
+from symgen.graph.evaluate import FUNCTIONS, Evaluator
+from symgen.graph.scalar import Scalar
+from symgen.graph.traverse import cost, topological
 from symgen.model.load import load_text
 from symgen.model.model import Model
 
@@ -172,3 +175,35 @@ def test_models_without_such_bodies() -> None:
     for name in ("arm7", "delta", "rapkm_bodies", "rolling_disc"):
         text = (ROOT / "models" / f"{name}.yaml").read_text("utf-8")
         assert free_bodies(Mechanics(load_text(text, f"{name}.yaml"))) == ()
+
+
+def exactly(outputs: Sequence[Scalar], at: dict[str, float]) -> list[float]:
+    """The scalars to 60 digits, rounded."""
+    found: dict[Scalar, arb] = {}
+    with ctx.workdps(60):
+        for node in topological(outputs):
+            args = [found[argument] for argument in node.args]
+            match node.op:
+                case "symbol":
+                    found[node] = arb(at[str(node.payload)])
+                case "copysign":
+                    found[node] = abs(args[0]) if float(args[1]) >= 0 else -abs(args[0])
+                case _ if node.constant is not None:
+                    found[node] = arb(node.constant.numerator) / node.constant.denominator
+                case "sin" | "cos" | "sqrt":
+                    found[node] = getattr(args[0], node.op)()
+                case _:
+                    found[node] = FUNCTIONS[node.op](*args)
+        return [float(found[output]) for output in outputs]
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("where", ["steep", "flat"])
+def test_digits_are_kept_towards_singularities(where: str, gap: float) -> None:
+    model, (_, twists) = described(), both("as shipped")
+    for seed in range(5):
+        at = state(model, seed)
+        close = {"theta": math.pi / 2 - gap} if where == "steep" else {k: gap * at[k] for k in ("z", "theta", "phi")}
+        expected = exactly(twists.outputs, at | close)
+        found = Evaluator(twists.outputs)(at | close)
+        assert found == pytest.approx(expected, rel=1e-11, abs=1e-13 * max(map(abs, expected)))
