@@ -22,7 +22,7 @@ LAST = 3
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """x, factors whose product is det(A)^2 over |a|^2, and the squared lengths of all rows but that one, a."""
+    """x, factors whose product is det(A)^2, and the squared lengths of the rows, whose product bounds it."""
 
     values: Vector
     squares: Vector
@@ -105,5 +105,5 @@ def by_rows(graph: Graph, matrix: Matrix, right: Vector) -> Solution:
     for reflection in reversed(turned):
         reflection.unknowns(graph, values)
     lengths += [dot(graph, matrix[i], matrix[i]) for i in left]
-    squares = [*(reflection.square for reflection in turned[1:]), determinant * determinant]
-    return Solution(tuple(values[j] for j in range(size)), tuple(squares), tuple(lengths[1:]))
+    squares = [*(reflection.square for reflection in turned), determinant * determinant]
+    return Solution(tuple(values[j] for j in range(size)), tuple(squares), tuple(lengths))
