@@ -17,10 +17,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      51     72      1      1      3      0
- * forward_dynamics     163    283     11      6      3      0
- * multipliers          148    252     14      6      3      0
- * singularity           58    109     13      4      3      0
+ * inverse_dynamics      52     68      1      1      3      0
+ * forward_dynamics     163    268     11      6      3      0
+ * multipliers          148    237     14      6      3      0
+ * singularity           58    106     13      4      3      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -25,7 +25,7 @@ differential_drive_status differential_drive_inverse_dynamics_prepared_f(const f
 /* q̈: accelerations under the inputs, (15); 935 operations instead of 1118 */
 differential_drive_status differential_drive_forward_dynamics_prepared_f(const float q[7], const float qd[7], const float u[2], const differential_drive_prepared_f *p, float qdd[7]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 673 operations instead of 749 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 666 operations instead of 742 */
 differential_drive_status differential_drive_multipliers_prepared_f(const float q[7], const float qd[7], const float u[2], const differential_drive_prepared_f *p, float lambda_B[5]);
 
 #ifdef __cplusplus

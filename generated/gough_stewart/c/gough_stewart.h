@@ -28,7 +28,7 @@
  *   gamma is gamma_
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics     413    590     11      6      5      0
+ * inverse_dynamics     261    355      8      4      5      0
  * forward_dynamics    1199   1833     39     12      5      0
  * multipliers         1141   1752     48     12      5      0
  * singularity          681    992     49     13      5      0

@@ -28,29 +28,29 @@
  * constraint_jacobian_dot              12     18      0      0      6      0
  * constraint_pseudoinverse            134    206     14      4      6      0
  * nullspace_projector                 105    172      4      4      6      0
- * nullspace_projector_dot             375    537     14      4      6      0
- * weighted_pseudoinverse              319    521      1      0      6      0
+ * nullspace_projector_dot             375    534     14      4      6      0
+ * weighted_pseudoinverse              319    519      1      0      6      0
  * weighted_nullspace_projector        202    318     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix             99    173      1      0      6      0
  * projected_control_pseudoinverse      55    124      1      0      6      0
  * orthogonal_complement                37     92      3      0      6      0
  * projected_mass_matrix               265    393      4      4      6      0
- * projected_coriolis_matrix           706    976     14      4      6      0
+ * projected_coriolis_matrix           706    975     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                  73    128      1      0      6      0
- * minimal_coriolis_matrix             364    570      2      0      6      0
+ * minimal_coriolis_matrix             338    539      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix               25     56      1      0      6      0
- * admissible_velocity                  92    136      4      4      6      0
- * admissible_acceleration             181    253      8      4      6      0
+ * admissible_velocity                  92    135      4      4      6      0
+ * admissible_acceleration             181    252      8      4      6      0
  * projected_configuration             219    242     16      8     12      0
  * inverse_dynamics                     51     76      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * forward_dynamics                    335    483     14      6      6      0
- * multipliers                         208    299     24      7      6      0
+ * multipliers                         208    300     24      7      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          55     91     17      4      6      0
  * (changes of sign are not counted)

@@ -109,7 +109,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t81, t149, t240, t320, t204, t412, t464, t255, t316, t414, t485, t548, t544. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t81, t149, t240, t317, t204, t406, t458, t255, t313, t408, t476, t539, t535. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];

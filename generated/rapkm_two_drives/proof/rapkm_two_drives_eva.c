@@ -526,7 +526,7 @@ void eva_projected_control_matrix(void) {
 
 void eva_projected_control_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t240, t233. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t302, t295. */
 void eva_projected_control_pseudoinverse(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -762,7 +762,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t207, t178. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t170, t199. */
 void eva_minimal_coriolis_matrix(void) {
     double q[6];
     double qd[6];
@@ -940,7 +940,7 @@ void eva_admissible_velocity(void) {
 
 void eva_admissible_acceleration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t119, t204, t44, t78, t125, t206. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t119, t203, t44, t78, t125, t205. */
 void eva_admissible_acceleration(void) {
     double q[6];
     double qd[6];
@@ -1260,7 +1260,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t199, t235, t244, t248, t253, t286, t368, t258, t418, t283, t373, t425, t488, t484. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t198, t236, t245, t254, t249, t287, t369, t259, t419, t284, t374, t426, t489, t485. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];

@@ -22,7 +22,7 @@
  * constraint_jacobian_dot               0      6      0      0      2      0
  * constraint_pseudoinverse              8     26      1      0      2      0
  * nullspace_projector                   5     23      1      0      2      0
- * nullspace_projector_dot              26     68      1      0      2      0
+ * nullspace_projector_dot              26     66      1      0      2      0
  * weighted_pseudoinverse               29     90      4      0      2      0
  * weighted_nullspace_projector         22     76      1      0      2      0
  * control_matrix                        0      0      0      0      0      0
@@ -45,7 +45,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                 11     32      1      0      2      0
- * actuator_bias                        25     74      1      0      2      0
+ * actuator_bias                        25     73      1      0      2      0
  * forward_dynamics                     41    107      1      0      2      0
  * multipliers                          47    120      1      0      2      0
  * energy                               11     30      0      0      2      0

@@ -20,7 +20,7 @@ constraint_jacobian                   0      4      0      0      2      0
 constraint_jacobian_dot               0      6      0      0      2      0
 constraint_pseudoinverse              8     26      1      0      2      0
 nullspace_projector                   5     23      1      0      2      0
-nullspace_projector_dot              26     68      1      0      2      0
+nullspace_projector_dot              26     66      1      0      2      0
 weighted_pseudoinverse               29     90      4      0      2      0
 weighted_nullspace_projector         22     76      1      0      2      0
 control_matrix                        0      0      0      0      0      0
@@ -43,7 +43,7 @@ inverse_dynamics                     16     40      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     0      0      0      0      0      0
 actuator_mass_matrix                 11     32      1      0      2      0
-actuator_bias                        25     74      1      0      2      0
+actuator_bias                        25     73      1      0      2      0
 forward_dynamics                     41    107      1      0      2      0
 multipliers                          47    120      1      0      2      0
 energy                               11     30      0      0      2      0
@@ -668,95 +668,93 @@ def nullspace_projector_dot(q, qd, p=PARAMETERS):
         t26 = t25 * 7.099748146989106e-30
         status = _first(status, ~np.asarray(t18 > t26), 2)
         t28 = 1.0 / t18
-        t41 = t21 * t16
-        t42 = t7 + t41
-        t82 = t9 * t21
-        t83 = t7 * t19
-        t84 = t82 - t83
-        t36 = t7 * t28
-        t63 = t19 * t16
-        t64 = t9 + t63
         t27 = t9 * t16
-        t37 = t9 * t36
-        t71 = t16 * t36
         t29 = t27 * t28
-        t32 = t10 * t28
-        t43 = t42 * t28
-        t54 = t8 * t28
-        t65 = t64 * t28
-        t80 = t11 * t28
-        t85 = t84 * t28
-        t34 = beta_dot * l
-        t35 = t4 * t34
-        t44 = t3 * t34
-        t30 = alpha_dot * r
-        t31 = t6 * t30
-        t46 = t5 * t30
-        t33 = t31 * t32
-        t38 = t35 * t37
-        t39 = t33 + t38
-        t45 = t44 * t37
-        t47 = t46 * t32
-        t48 = t45 - t47
-        t53 = t31 * t37
-        t55 = t35 * t54
-        t56 = t53 + t55
-        t58 = t44 * t54
-        t59 = t46 * t37
-        t60 = t58 - t59
-        t70 = t46 * t29
-        t72 = t44 * t71
-        t73 = t70 - t72
-        t75 = t31 * t29
-        t76 = t35 * t71
-        t77 = t75 + t76
-        t90 = t71 * t56
-        t91 = t65 * t60
-        t92 = t90 - t91
-        t93 = 2.0 * t92
-        t94 = -t93
-        t95 = t71 * t77
-        t96 = t65 * t73
-        t97 = t95 + t96
-        t98 = t80 * t56
-        t99 = t85 * t60
-        t100 = t98 + t99
-        t101 = t97 - t100
-        t57 = t29 * t56
-        t61 = t43 * t60
-        t62 = t57 + t61
-        t66 = t65 * t48
-        t67 = t57 - t66
-        t68 = t62 + t67
-        t69 = -t68
-        t40 = t29 * t39
-        t49 = t43 * t48
-        t50 = t40 + t49
-        t51 = 2.0 * t50
-        t52 = -t51
-        t74 = t43 * t73
-        t78 = t29 * t77
-        t79 = t74 - t78
-        t81 = t80 * t39
-        t86 = t85 * t48
-        t87 = t81 + t86
-        t88 = t79 + t87
-        t89 = -t88
-        t102 = t85 * t73
-        t103 = t80 * t77
-        t104 = t102 - t103
-        t105 = 2.0 * t104
-        t106 = -t105
+        t35 = t10 * t28
+        t39 = t21 * t16
+        t40 = t7 + t39
+        t41 = t40 * t28
+        t51 = t8 * t28
+        t61 = t19 * t16
+        t62 = t9 + t61
+        t63 = t62 * t28
+        t78 = t11 * t28
+        t80 = t9 * t21
+        t81 = t7 * t19
+        t82 = t80 - t81
+        t83 = t82 * t28
+        t31 = t7 * t28
+        t69 = t16 * t31
+        t32 = t9 * t31
+        t30 = beta_dot * t9
+        t34 = alpha_dot * t7
+        t42 = beta_dot * t21
+        t44 = alpha_dot * t19
+        t33 = t30 * t32
+        t36 = t34 * t35
+        t37 = t33 + t36
+        t43 = t42 * t32
+        t45 = t44 * t35
+        t46 = t43 - t45
+        t52 = t30 * t51
+        t53 = t34 * t32
+        t54 = t52 + t53
+        t56 = t42 * t51
+        t57 = t44 * t32
+        t58 = t56 - t57
+        t68 = t44 * t29
+        t70 = t42 * t69
+        t71 = t68 - t70
+        t73 = t30 * t69
+        t74 = t34 * t29
+        t75 = t73 + t74
+        t88 = t69 * t54
+        t89 = t63 * t58
+        t90 = t88 - t89
+        t91 = 2.0 * t90
+        t92 = -t91
+        t93 = t69 * t75
+        t94 = t63 * t71
+        t95 = t93 + t94
+        t96 = t78 * t54
+        t97 = t83 * t58
+        t98 = t96 + t97
+        t99 = t95 - t98
+        t55 = t29 * t54
+        t59 = t41 * t58
+        t60 = t55 + t59
+        t64 = t63 * t46
+        t65 = t55 - t64
+        t66 = t60 + t65
+        t67 = -t66
+        t38 = t29 * t37
+        t47 = t41 * t46
+        t48 = t38 + t47
+        t49 = 2.0 * t48
+        t50 = -t49
+        t72 = t41 * t71
+        t76 = t29 * t75
+        t77 = t72 - t76
+        t79 = t78 * t37
+        t84 = t83 * t46
+        t85 = t79 + t84
+        t86 = t77 + t85
+        t87 = -t86
+        t100 = t83 * t71
+        t101 = t78 * t75
+        t102 = t100 - t101
+        t103 = 2.0 * t102
+        t104 = -t103
         entries = (
-            t52,
-            t69,
-            t89,
-            t69,
-            t94,
-            t101,
-            t89,
-            t101,
-            t106,
+            t50,
+            t67,
+            t87,
+            t67,
+            t92,
+            t99,
+            t87,
+            t99,
+            t104,
         )
         return _result("nullspace_projector_dot", status, batch, (3, 3), entries)
 
@@ -2728,11 +2726,11 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t48 = 0.125 * t47
         t49 = t46 + t48
         t50 = 2.0 * t49
-        t51 = r * r
-        t52 = alpha_dot * alpha_dot
+        t51 = alpha_dot * r
+        t52 = alpha_dot * t51
         t53 = t4 * t52
         t54 = t4 * t53
-        t55 = t51 * t54
+        t55 = r * t54
         t56 = t5 * t55
         t57 = t4 * t56
         t58 = t50 * t57
@@ -2745,50 +2743,49 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t65 = alpha_dot * t3
         t66 = m_s * t65
         t67 = t64 - t66
-        t68 = alpha_dot * r
-        t69 = t4 * t68
-        t70 = t67 * t69
-        t71 = l - s
-        t72 = t15 * t71
-        t73 = k * t72
-        t74 = t60 * t39
-        t75 = t73 - t74
-        t76 = t3 * t5
-        t77 = t38 - t76
-        t78 = t4 * t77
-        t79 = 2.0 * t78
-        t80 = t6 - t79
-        t81 = d * t80
-        t82 = 2.0 * m_s
-        t83 = m_rod + t82
-        t84 = t15 * t83
-        t85 = t4 * t84
-        t86 = t5 * t61
-        t87 = t85 - t86
-        t88 = alpha_dot * t87
-        t89 = t81 + t88
-        t90 = t68 * t89
-        t91 = t75 + t90
-        t92 = t6 * t91
-        t93 = t70 + t92
-        t94 = t9 * t93
-        t95 = t63 + t94
-        t96 = t6 * t95
-        t97 = t59 + t96
-        t98 = l * t97
-        t99 = t19 * t50
+        t68 = alpha_dot * t7
+        t69 = t67 * t68
+        t70 = l - s
+        t71 = t15 * t70
+        t72 = k * t71
+        t73 = t60 * t39
+        t74 = t72 - t73
+        t75 = t3 * t5
+        t76 = t38 - t75
+        t77 = t4 * t76
+        t78 = 2.0 * t77
+        t79 = t6 - t78
+        t80 = d * t79
+        t81 = 2.0 * m_s
+        t82 = m_rod + t81
+        t83 = t15 * t82
+        t84 = t4 * t83
+        t85 = t5 * t61
+        t86 = t84 - t85
+        t87 = alpha_dot * t86
+        t88 = t80 + t87
+        t89 = t51 * t88
+        t90 = t74 + t89
+        t91 = t6 * t90
+        t92 = t69 + t91
+        t93 = t9 * t92
+        t94 = t63 + t93
+        t95 = t6 * t94
+        t96 = t59 + t95
+        t97 = l * t96
+        t98 = t3 * t50
+        t99 = t6 * t98
         t100 = t6 * t99
-        t101 = t6 * t100
-        t102 = t53 * t101
-        t103 = t98 - t102
-        t104 = l * t103
-        t105 = t58 + t104
-        t106 = t45 + t105
-        t107 = r * t106
-        t108 = t6 * t43
-        t109 = t107 / t108
+        t101 = t53 * t100
+        t102 = t97 - t101
+        t103 = l * t102
+        t104 = t58 + t103
+        t105 = t45 + t104
+        t106 = r * t105
+        t107 = t6 * t43
+        t108 = t106 / t107
         entries = (
-            t109,
+            t108,
         )
         return _result("actuator_bias", status, batch, (1,), entries)
 
