@@ -131,7 +131,7 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
         runs=runs,
         no_run=no_run,
         failures=(*swept.failures, *wrong_units, *wrong_numbers, *complaints(runs)),
-        limits=swept.limits,
+        limits=(*swept.limits, *forms.left_out),
     )
 
 

@@ -1,0 +1,20 @@
+"""Forms too long for a compiler are named, not compiled."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import shipped
+
+from symgen.stress import form_kernels
+
+
+def test_forms_above_the_limit_are_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(form_kernels, "MOST_OPERATIONS", 48)
+    found = form_kernels.FormKernels(shipped.model("skate"), tmp_path, ("inverse_dynamics",))
+    long = {line.split(" of ")[0] for line in found.left_out}
+    assert "form weighted" in long
+    assert all(": not run, " in line and line.endswith(" operations") for line in found.left_out)
+    assert long.isdisjoint(label for label, _ in found._runners)
+    assert "form minor" in {label for label, _ in found._runners}
