@@ -13,12 +13,16 @@ from symgen.report.targets import checksum
 
 @dataclass(frozen=True, slots=True)
 class ProofFacts:
-    """Alarms of Eva (or why there is no number), and by entry of u Gappa's bound beside the measured error."""
+    """Alarms of Eva (or why there is no number), and by entry of u Gappa's bound beside the measured error.
+
+    `others` is what remains where it is no denominator.
+    """
 
     unproven: str
     without: str
     rounding: tuple[tuple[int, float, float], ...]
     denominators: tuple[str, ...]
+    others: tuple[str, ...]
 
 
 def read_proof(file: Path, sources: Mapping[str, str | bytes]) -> ProofFacts | None:
@@ -37,6 +41,7 @@ def read_proof(file: Path, sources: Mapping[str, str | bytes]) -> ProofFacts | N
             str(found["without"]),
             tuple((int(entry), float(bound), float(measured[entry])) for entry, bound in found["bounds"].items()),
             tuple(map(str, found["denominators"])),
+            tuple(map(str, found["others"])),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None

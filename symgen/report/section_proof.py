@@ -23,6 +23,8 @@ def proof(context: Context) -> tuple[Section, ...]:
     if facts is None:
         return ()
     blocks: list[Block] = [paragraph("{}", INTRO), paragraph("{}", _alarms(facts))]
+    if facts.others:
+        blocks.append(paragraph("{}", f"What remains: {'; '.join(facts.others)}.".replace("`", "")))
     if facts.rounding:
         blocks += [paragraph("{}", ROUNDING), _table(context, facts)]
     else:

@@ -21,7 +21,7 @@ def _written(folder: Path, **changed: object) -> Path:
     sources = {Path(path).name: hashlib.sha256(text.encode()).hexdigest() for path, text in SOURCES.items()}
     found: dict[str, object] = {
         "model": "skate", "sources": sources, "unproven": "0", "bounds": {"0": 4.75e-7, "1": 5.1e-5},
-        "measured": {"0": 4.7e-7, "1": 2.2e-5}, "without": "", "denominators": [],
+        "measured": {"0": 4.7e-7, "1": 2.2e-5}, "without": "", "denominators": [], "others": [],
     }
     path = folder / "proof.json"
     path.write_text(json.dumps(found | changed))
@@ -44,6 +44,10 @@ def test_what_remains_is_told(tmp_path: Path) -> None:
     text = render_typst(compose(replace(report_input("skate"), proof=read_proof(path, SOURCES))))
     assert "12 statements remain unproven" in text
     assert "do not keep 2 of the denominators" in text
+    assert "What remains: " not in text
+    path = _written(tmp_path, unproven="8", others=["8 × overflow, first `x = a`", "sines over several quadrants: `q`"])
+    text = render_typst(compose(replace(report_input("skate"), proof=read_proof(path, SOURCES))))
+    assert "What remains: 8 × overflow, first x = a; sines over several quadrants: q." in text
 
 
 def test_proofs_of_other_files_are_not_shown(tmp_path: Path) -> None:
