@@ -115,14 +115,15 @@ def _study(results: Results, names: Sequence[str]) -> str:
             if peer is None or count is None:
                 cells.append("")
                 continue
-            mine = _count(_own(results[name]["kernels"], "libm"))
-            cells.append(f"{count}; here {100 * (_count(peer) / count - 1):+.0f} %; symgen {mine / count:.2f} of it")
+            libm, portable = (_count(_own(results[name]["kernels"], trig)) / count for trig in ("libm", "portable"))
+            here = f"here {100 * (_count(peer) / count - 1):+.0f} %"
+            cells.append(f"{count}; {here}; symgen {libm:.2f} ({portable:.2f}) of it")
         rows.append([against, *cells])
     return (
         "## The peers are no straw men\n\nInstructions of the peers in the study that the goals come from, how far the "
-        "peers here are from them, and symgen's u with libm over the study's count. The study's arm, Delta and "
-        "Gough-Stewart platform have other parameters: the platform here has its joints given by angles, whose sines "
-        "the peers evaluate.\n\n"
+        "peers here are from them, and symgen's u with libm (portable) over the study's count. The study's arm, Delta "
+        "and Gough-Stewart platform have other parameters: the platform here has its joints given by angles, whose "
+        "sines the peers evaluate. The arm's strongest peer here, AD in body axes, is not among the study's.\n\n"
         + _table(["against", *names], rows)
     )
 
