@@ -105,8 +105,8 @@ class _FullMatrices(Mechanics):
 class _WorldAxes(Elimination):
     """The steps of the range form without turning rows and multipliers into the axes of the bodies."""
 
-    def _direction(self, a: Scalar, b: Scalar) -> None:
-        del a, b
+    def _direction(self, a: Scalar, b: Scalar, lengths: bool = False) -> None:
+        del a, b, lengths
 
 
 class _SummedForms(ActuationForms):

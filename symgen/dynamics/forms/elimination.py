@@ -1,4 +1,5 @@
-"""M u + B^T lambda = tau, reduced to a small core by steps that are invertible wherever parameters are in their ranges.
+"""M u + B^T lambda = tau, reduced to a small core by steps that are invertible wherever parameters are in their ranges
+and [M, B^T] has full rank.
 
 1. Multipliers that act on some rows with the same coefficients only are replaced there by their sum: several links
    that meet in one point get their own force each, and the balance of the point becomes a pair of rows.
@@ -7,6 +8,8 @@
    coefficients is turned, so that one of them holds it (body axes in place of world axes).
 3. Rows with one unknown are solved at once, unknowns of one row only are left for the end: where the pivot is a
    number or a product of parameters that are declared nonzero.
+4. Of a large core rows with one unknown are solved whatever the pivot, such as the length of a leg: where it vanishes
+   a row of [M, B^T] does, so that the rank drops.  `lengths` belongs to what is tested.
 """
 
 from __future__ import annotations
@@ -23,6 +26,8 @@ from symgen.graph.traverse import cost
 
 # Right-hand sides longer than this are turned as they stand: multiplied out, they would not get shorter.
 LONGEST_TURNED = 200
+# Larger cores are made smaller by pivots that depend on coordinates, each of which has to be tested.
+LARGEST_CORE = 6
 
 
 @dataclass(slots=True, eq=False)
@@ -55,6 +60,7 @@ class Elimination:
         self._unknowns = len(columns)
         self._points: dict[int, Row] = {}
         self._explicit: list[tuple[int, Row]] = []
+        self._tested: list[Scalar] = []
         self._nonzero = {
             mechanics.graph.symbol(p.name)
             for p in mechanics.model.parameters
@@ -69,6 +75,10 @@ class Elimination:
         self.core += self._points.values()
         self._turn_rows()
         self._pivot()
+        if len(self.core) > LARGEST_CORE:
+            self._points.clear()  # rows like all others from here on
+            self._turn_multipliers(lengths=True)
+            self._pivot(lengths=True)
         if len(self.core) > 1:
             self._divide_rows()
 
@@ -88,6 +98,11 @@ class Elimination:
             value = self._rest(others, found, row, homogeneous)
             found[name] = value if pivot.is_one else value * (1 / pivot)
         return tuple(found.get(j, self._graph.zero) for j in self.inputs)
+
+    def lengths(self) -> Scalar:
+        """The product of the factors of pivots that depend on coordinates, each of them once; 1 without such pivots."""
+        factors = (factor for pivot in self._tested for factor in self._graph.products.monomial(pivot)[1])
+        return self._graph.product(dict.fromkeys(factor for factor in factors if not self._safe(factor)))
 
     def content(self, entries: Sequence[Scalar]) -> dict[Scalar, int]:
         """The parameters, declared nonzero, that are factors of all entries."""
@@ -160,8 +175,11 @@ class Elimination:
                 return
             self._leave(*found)
 
-    def _turn_multipliers(self) -> None:
-        """Pairs of multipliers are turned into the directions in which a row holds one of them only."""
+    def _turn_multipliers(self, lengths: bool = False) -> None:
+        """Pairs of multipliers are turned into the directions in which a row holds one of them only.
+
+        With `lengths` also where what both are multiples of depends on coordinates, and again in other directions.
+        """
         turned: set[int] = set()
         for row in list(self.core):
             if len(row.coefficients) != 2:
@@ -169,9 +187,9 @@ class Elimination:
             (j, a), (k, b) = row.coefficients.items()
             if turned & {j, k} or j in self.inputs or k in self.inputs:
                 continue
-            direction = self._direction(a, b)
+            direction = self._direction(a, b, lengths)
             if direction is not None:
-                turned |= {j, k}
+                turned |= {j} if lengths else {j, k}
                 self._turn_unknowns(j, k, *direction)
 
     def _turn_unknowns(self, j: int, k: int, f: Scalar, g: Scalar) -> None:
@@ -219,15 +237,15 @@ class Elimination:
         else:
             row.coefficients[name] = value
 
-    def _direction(self, a: Scalar, b: Scalar) -> tuple[Scalar, Scalar] | None:
-        """(f, g) with f^2 + g^2 = 1 where (a, b) = k (f, g) with a safe k."""
+    def _direction(self, a: Scalar, b: Scalar, lengths: bool = False) -> tuple[Scalar, Scalar] | None:
+        """(f, g) with f^2 + g^2 = 1 where (a, b) = k (f, g) with a safe k, or with any k in case of `lengths`."""
         fixed, products = self._mechanics.factoring.fixed, self._graph.products
         (ka, left), (kb, right) = products.monomial(a), products.monomial(b)
-        content = {x: p for x, p in left.items() if fixed(x)}
-        if abs(ka) != abs(kb) or content != {x: p for x, p in right.items() if fixed(x)}:
+        content = {x: p for x, p in left.items() if (right.get(x) == p if lengths else fixed(x))}
+        if abs(ka) != abs(kb) or (not lengths and content != {x: p for x, p in right.items() if fixed(x)}):
             return None
         f, g = (products.quotient(x, content, ka if ka > 0 else -ka) for x in (a, b))
-        safe = bool(ka) and all(x in self._nonzero for x in content)
+        safe = bool(ka) and (lengths or all(x in self._nonzero for x in content))
         return (f, g) if safe and (f * f + g * g).is_one else None
 
     def _safe(self, pivot: Scalar) -> bool:
@@ -235,10 +253,13 @@ class Elimination:
         coefficient, powers = self._graph.products.monomial(pivot)
         return coefficient != 0 and all(factor in self._nonzero for factor in powers)
 
-    def _pivot(self) -> None:
+    def _pivot(self, lengths: bool = False) -> None:
         """Solves rows with one unknown at once; unknowns of one row only are left for the end."""
         while True:
             alone = next((row for row in self.core if self._solves(row)), None)
+            if alone is None and lengths:
+                alone = next((row for row in self.core if len(row.coefficients) == 1), None)
+                self._tested += alone.coefficients.values() if alone is not None else ()
             if alone is not None:
                 self._solve(alone)
                 continue

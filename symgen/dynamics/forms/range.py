@@ -78,6 +78,8 @@ class _Core:
             particular: Vector = (self._graph.zero,) * len(self._names)
             null = [tuple(self._graph.one if i == j else self._graph.zero for j in self._names) for i in self._names]
             measure = self._graph.one
+            if not self._elimination.lengths().is_one:
+                guards.append(self._tested(measure, measure, 1))
         elif self._size <= MOST_MINORS and internal <= 1:
             particular, null, guard, measure = self._by_minors(internal)
             guards.append(guard)
@@ -137,8 +139,8 @@ class _Core:
         return self._tested(denominator, scale, degree), denominator / scale
 
     def _tested(self, denominator: Scalar, scale: Scalar, degree: int) -> Guard:
-        """The guard of the core; with twists for rates the coordinates' own determinant belongs to it."""
-        turns = self._mechanics.twist_determinant
+        """The guard of the core, to which pivots belong, and with twists for rates the coordinates' own determinant."""
+        turns = self._mechanics.twist_determinant * self._elimination.lengths()
         bound = magnitude(self._graph, [turns])[0]
         for _ in range(degree):
             denominator, scale = denominator * turns, scale * bound
@@ -183,7 +185,8 @@ class _Core:
         Inputs left in the core or for the end count as rows of their own, so that they are held at zero.
         """
         graph = self._graph
-        if self._mechanics.twist_determinant.constant is None:
+        # what was solved by tested pivots is no column of the core any more
+        if not self._elimination.lengths().is_one or self._mechanics.twist_determinant.constant is None:
             (guard,) = HouseholderSpace(graph, self._mechanics.coordinate_rows, self._mechanics.n).guards
             return guard
         whole = [

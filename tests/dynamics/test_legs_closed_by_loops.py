@@ -1,0 +1,64 @@
+"""A platform on six legs that are bodies: the elimination solves the legs' rows by their lengths and leaves six."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from symgen.dynamics.body_axes import BodyAxes
+from symgen.dynamics.forms.elimination import Elimination
+from symgen.dynamics.forms.range import range_form
+from symgen.dynamics.genericity import genericity, parameter_values
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.evaluate import Evaluator
+from symgen.graph.traverse import cost
+from symgen.ir.kernel import Status
+from symgen.model.load import load_model
+from symgen.model.model import Model
+
+
+@pytest.fixture(scope="module")
+def platform() -> Model:
+    """24 coordinates, 18 rows, six inputs."""
+    return load_model(Path(__file__).parents[1] / "mechanisms" / "gough_loops.yaml")
+
+
+@pytest.mark.parametrize(("kind", "rows"), [(Mechanics, 6), (BodyAxes, 9)])
+def test_rows_of_the_legs_are_solved(platform: Model, kind: type[Mechanics], rows: int) -> None:
+    mechanics = kind(platform)
+    elimination = Elimination(mechanics)
+    elimination.reduce()
+    assert len(elimination.core) == len(elimination.names) == rows
+    graph = mechanics.graph
+    legs = range(1, 7)
+    expected = [graph.symbol(f"s_{k}") for k in legs]
+    expected += [graph.function("cos", (graph.symbol(f"b_{k}"),)) for k in legs]
+    assert elimination.lengths() is graph.product(expected)
+
+
+def test_the_lengths_are_tested(platform: Model) -> None:
+    mechanics = Mechanics(platform)
+    form = range_form(mechanics, genericity(mechanics))
+    assert form is not None
+    assert cost(form.outputs).weight < 2600  # by reflections 8976
+    (guard,) = form.guards
+    assert guard.status == Status.ACTUATION_RANK
+    evaluate = Evaluator([guard.denominator, guard.scale or guard.denominator])
+    point = parameter_values(mechanics) | {c.name: 0.1 for c in platform.coordinates}
+    point |= {name: float(value) for name, value in platform.configuration}
+    sizes = []
+    for off in (1.2, 1e-3, 1e-6):
+        denominator, scale = evaluate(point | {"b_3": math.pi / 2 - off})
+        sizes.append(abs(denominator) / scale)
+    assert sizes[0] > 1e-12
+    assert sizes[1] < 1e-4 * sizes[0]
+    assert sizes[2] < 1e-4 * sizes[1]
+
+
+def test_small_cores_need_no_tested_lengths() -> None:
+    mechanics = Mechanics(load_model(Path(__file__).parents[2] / "models" / "rapkm_bodies.yaml"))
+    elimination = Elimination(mechanics)
+    elimination.reduce()
+    assert elimination.lengths().is_one
