@@ -28,11 +28,14 @@ def test_generated_files_are_current(path: Path) -> None:
     assert compare(folder, result.files) == (), "run `make generated` and look at the change"
 
 
+def outputs() -> list[Path]:
+    """The files but those of measurements, which git ignores."""
+    return [path for path in (ROOT / "generated").rglob("*") if path.is_file() and not is_measured(path.name)]
+
+
 def test_every_folder_has_its_model() -> None:
-    # a folder of measurements alone, which git ignores, is no output of a model
-    files = [path for path in (ROOT / "generated").rglob("*") if path.is_file() and not is_measured(path.name)]
-    assert {path.relative_to(ROOT / "generated").parts[0] for path in files} == {path.stem for path in MODELS}
+    assert {path.relative_to(ROOT / "generated").parts[0] for path in outputs()} == {path.stem for path in MODELS}
 
 
 def test_no_file_is_large() -> None:
-    assert [path for path in (ROOT / "generated").rglob("*") if path.is_file() and path.stat().st_size > LIMIT] == []
+    assert [path for path in outputs() if path.stat().st_size > LIMIT] == []
