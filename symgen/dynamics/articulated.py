@@ -18,7 +18,7 @@ from symgen.graph.matrix import Matrix, Vector, dot
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
 from symgen.model.mechanism import WORLD
-from symgen.model.triples import Rows, applied, plus, transposed
+from symgen.model.triples import Rows, applied, cross, plus, transposed
 from symgen.records import dataclass
 
 # Turning rates and velocities of the origin, or moments and forces, in the frame's axes.
@@ -190,11 +190,11 @@ class ArticulatedFactor:
 
         about, mixed, mass = block(0, 0), block(0, 1), block(1, 1)
         # [r] X: r x each column of X; X [r]: minus r x each row of X
-        lever = transposed(_three([self._cross(r, column) for column in transposed(mass)]))
+        lever = transposed(_three([cross(r, column) for column in transposed(mass)]))
         moved = _three([plus(a, b) for a, b in zip(mixed, lever, strict=True)])
         # A + [r] H^T - (H + [r] M) [r]
-        first = transposed(_three([self._cross(r, column) for column in mixed]))
-        second = _three([self._cross(r, row) for row in moved])
+        first = transposed(_three([cross(r, column) for column in mixed]))
+        second = _three([cross(r, row) for row in moved])
         turned = [plus(plus(a, b), c) for a, b, c in zip(about, first, second, strict=True)]
 
         def entry(i: int, j: int) -> Scalar:
@@ -207,14 +207,14 @@ class ArticulatedFactor:
     def _carried_wrench(self, name: str, load: Six) -> Six:
         joint = self._bodies.kinematics.joint(name)
         force = applied(joint.axes, (load[3], load[4], load[5]))
-        moment = plus(applied(joint.axes, (load[0], load[1], load[2])), self._cross(joint.place, force))
+        moment = plus(applied(joint.axes, (load[0], load[1], load[2])), cross(joint.place, force))
         return (*moment, *force)
 
     def _carried_twist(self, name: str, twist: Six) -> Six:
         joint = self._bodies.kinematics.joint(name)
         inward = transposed(joint.axes)
         angular: Vector3 = (twist[0], twist[1], twist[2])
-        linear = plus((twist[3], twist[4], twist[5]), self._cross(angular, joint.place))
+        linear = plus((twist[3], twist[4], twist[5]), cross(angular, joint.place))
         return (*applied(inward, angular), *applied(inward, linear))
 
     def _sizes(self) -> dict[str, tuple[Scalar, Scalar]]:
@@ -246,9 +246,6 @@ class ArticulatedFactor:
 
     def _dot(self, one: Sequence[Scalar], other: Sequence[Scalar]) -> Scalar:
         return dot(self.graph, one, other)
-
-    def _cross(self, a: Vector3, b: Vector3) -> Vector3:
-        return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def _symmetric(entry: Callable[[int, int], Scalar]) -> Matrix:

@@ -11,7 +11,6 @@ body in every direction; there the rows of the coordinates are singular, so that
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 
 from symgen.dynamics.bodies import Vector3
@@ -27,7 +26,7 @@ from symgen.graph.translate import translate
 from symgen.graph.traverse import substitute
 from symgen.model.expression import Expression
 from symgen.model.model import Model
-from symgen.model.triples import Rows, applied, minus, plus, transposed
+from symgen.model.triples import Rows, applied, cross, inner, minus, plus, transposed, triple
 
 
 class BodyAxes(Mechanics):
@@ -46,7 +45,7 @@ class BodyAxes(Mechanics):
     @cached_property
     def twist_determinant(self) -> Scalar:
         """The determinant of twists by rates: where it vanishes the coordinates do not move the bodies freely."""
-        return self.graph.product(_determinant(rows) for rows in self._turning.values())
+        return self.graph.product(inner(x, cross(y, z)) for x, y, z in self._turning.values())
 
     @cached_property
     def coordinate_rows(self) -> Matrix:
@@ -70,7 +69,7 @@ class BodyAxes(Mechanics):
         for body in self.free:
             rates = [self.qd[j] for j in body.angles]
             x, y, z = (
-                _triple(gradient(self.graph, w, rates)) for w in self.bodies.kinematics.twist(body.frame).angular
+                triple(gradient(self.graph, w, rates)) for w in self.bodies.kinematics.twist(body.frame).angular
             )
             found[body.frame] = (x, y, z)
         return found
@@ -87,10 +86,10 @@ class BodyAxes(Mechanics):
         for body in self.free:
             force = moment = (graph.zero,) * 3
             for owner, at in body.points:
-                pulls = _triple([by_leaf[leaf] for leaf in self._leaves[owner]])
+                pulls = triple([by_leaf[leaf] for leaf in self._leaves[owner]])
                 own = self._in_body_axes(body, owner, at, pulls)
                 force = plus(force, own)
-                moment = plus(moment, self._moment(self._arms[body.frame][1][owner], own))
+                moment = plus(moment, cross(self._arms[body.frame][1][owner], own))
             for j, entry in zip(body.coordinates, (*force, *moment), strict=True):
                 row[j] = entry
         return tuple(row)
@@ -103,7 +102,7 @@ class BodyAxes(Mechanics):
         slopes = [gradient(graph, entry, leaves) for entry in pull]
         sign = -1 if (-slopes[0][0]).is_one else 1
         if any(not (sign * x - int(i == j)).is_zero for i, row in enumerate(slopes) for j, x in enumerate(row)):
-            return applied(inward, _triple(substitute(graph, pull, self._places)))
+            return applied(inward, triple(substitute(graph, pull, self._places)))
         rest = substitute(graph, pull, dict.fromkeys(leaves, graph.zero))
         rest = substitute(graph, [sign * entry for entry in rest], self._places)
         x, y, z = plus(applied(inward, kinematics.position(body.frame)), at)
@@ -126,17 +125,12 @@ class BodyAxes(Mechanics):
         forces = list(newton_euler(self.bodies, self.qd, acceleration, gravity, self.lumped, twists))
         for body in self.free:
             reference, _, length = self._arms[body.frame]
-            force, moment = (_triple([forces[j] for j in slots]) for slots in (body.places, body.angles))
+            force, moment = (triple([forces[j] for j in slots]) for slots in (body.places, body.angles))
             over = 1 / length
-            about = minus((moment[0] * over, moment[1] * over, moment[2] * over), self._moment(reference, force))
+            about = minus((moment[0] * over, moment[1] * over, moment[2] * over), cross(reference, force))
             for j, entry in zip(body.angles, about, strict=True):
                 forces[j] = entry
         return tuple(forces)
-
-    def _moment(self, arm: Vector3, force: Vector3) -> Vector3:
-        x, y, z = arm
-        a, b, c = force
-        return y * c - z * b, z * a - x * c, x * b - y * a
 
 
 def _arms(mechanics: BodyAxes, body: FreeBody) -> tuple[Vector3, dict[str, Vector3], Scalar]:
@@ -146,18 +140,8 @@ def _arms(mechanics: BodyAxes, body: FreeBody) -> tuple[Vector3, dict[str, Vecto
     """
     definite = Definite(mechanics)
     length = definite.content([x for _, at in body.points for x in at])
-    places = {owner: _triple([definite.without(x, length) for x in at]) for owner, at in body.points}
+    places = {owner: triple([definite.without(x, length) for x in at]) for owner, at in body.points}
     origin: Vector3 = (mechanics.graph.zero,) * 3
     arms = [{owner: minus(at, place) for owner, at in places.items()} for place in (origin, *places.values())]
     best = max(range(len(arms)), key=lambda k: sum(x.is_zero for arm in arms[k].values() for x in arm))
     return (origin, *places.values())[best], arms[best], length
-
-
-def _determinant(rows: Rows[Scalar]) -> Scalar:
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
-
-
-def _triple(values: Sequence[Scalar]) -> Vector3:
-    x, y, z = values
-    return x, y, z

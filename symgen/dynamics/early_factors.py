@@ -28,13 +28,7 @@ def early_factors(factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scala
     order = topological(outputs)
     if len(order) > MOST_OPERATIONS:
         return []
-    found: dict[Scalar, int] = {}
-    for node in order:
-        if node.op == "mul" and not factoring.fixed(node):
-            for argument in node.args:
-                if argument.op == "symbol" and factoring.fixed(argument):
-                    found[argument] = found.get(argument, 0) + 1
-    return [factor for factor, count in found.items() if count > 1]
+    return [factor for factor, count in factoring.factors(order).items() if count > 1 and factor.op == "symbol"]
 
 
 class _Early:

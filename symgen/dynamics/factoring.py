@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from symgen.graph.angles import share_angles
 from symgen.graph.polynomial import Multiplier, refactored
@@ -26,6 +26,16 @@ class Factoring:
         for inner in topological([node], self._fixed):
             self._fixed[inner] = inner.op == "const" or (bool(inner.args) and all(self._fixed[a] for a in inner.args))
         return self._fixed[node]
+
+    def factors(self, nodes: Iterable[Scalar]) -> dict[Scalar, int]:
+        """What depends on parameters only and multiplies what does not: in how many products, as they are met."""
+        found: dict[Scalar, int] = {}
+        for node in nodes:
+            if node.op == "mul" and not self.fixed(node):
+                for argument in node.args:
+                    if argument.constant is None and self.fixed(argument):
+                        found[argument] = found.get(argument, 0) + 1
+        return found
 
     def shorten(self, outputs: Sequence[Scalar], kept: frozenset[Scalar] = frozenset()) -> tuple[Scalar, ...]:
         """The scalars multiplied out, cancelled and factored where they are not too long."""

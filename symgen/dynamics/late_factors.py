@@ -35,12 +35,7 @@ def with_late_factors(
     order = topological(best)
     if len(order) > MOST_OPERATIONS:
         return best
-    found: dict[Scalar, int] = {}
-    for node in order:
-        if node.op == "mul" and not factoring.fixed(node):
-            for argument in node.args:
-                if argument.constant is None and factoring.fixed(argument):
-                    found[argument] = found.get(argument, 0) + 1
+    found = factoring.factors(order)
     several = sorted((factor for factor in found if found[factor] > 1), key=lambda factor: -found[factor])
     finished = finish(graph, best)
     weight = cost(finished).weight if several else 0

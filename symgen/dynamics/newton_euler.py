@@ -20,7 +20,7 @@ from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Scalar
 from symgen.model.mechanism import WORLD, Body, Frame, RotorInertia
-from symgen.model.triples import Rows, applied, plus, transposed
+from symgen.model.triples import Rows, applied, cross, plus, transposed, triple
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,7 @@ class _Recursion:
                 name, axis = held
                 inertia = self.bodies.scalars.value(rotor.inertia)
                 rows = [tuple(inertia if i == j == axis else zero for j in range(3)) for i in range(3)]
-                lumps[name] = _with_tensor(lumps[name], (_triple(rows[0]), _triple(rows[1]), _triple(rows[2])))
+                lumps[name] = _with_tensor(lumps[name], (triple(rows[0]), triple(rows[1]), triple(rows[2])))
         return lumps, rotors
 
     def _turned_alone_by(self, coordinate: str, frames: Sequence[str]) -> tuple[str, int] | None:
@@ -245,9 +245,7 @@ class _Recursion:
         return sum(not share.is_zero for row in shares for share in row)
 
     def _cross(self, a: Vector3, b: Vector3) -> Vector3:
-        if a is self.none or b is self.none:
-            return self.none
-        return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+        return self.none if a is self.none or b is self.none else cross(a, b)
 
 
 def _field(w: Vector3, turning: Vector3) -> Rows[Scalar]:
@@ -281,11 +279,6 @@ def _with_point(lump: Lump, mass: Scalar, at: Vector3) -> Lump:
 def _with_tensor(lump: Lump, tensor: tuple[Vector3, Vector3, Vector3]) -> Lump:
     x, y, z = (plus(a, b) for a, b in zip(lump.tensor, tensor, strict=True))
     return replace(lump, tensor=(x, y, z))
-
-
-def _triple(row: Sequence[Scalar]) -> Vector3:
-    x, y, z = row
-    return x, y, z
 
 
 def _negative(vector: Vector3) -> Vector3:

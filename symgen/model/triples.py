@@ -134,6 +134,18 @@ def minus(left: Triple[P], right: Triple[P]) -> Triple[P]:
     return left[0] - right[0], left[1] - right[1], left[2] - right[2]
 
 
+def cross(left: Triple[P], right: Triple[P]) -> Triple[P]:
+    """left x right."""
+    (x, y, z), (a, b, c) = left, right
+    return y * c - z * b, z * a - x * c, x * b - y * a
+
+
+def triple(values: Sequence[P]) -> Triple[P]:
+    """Three values as a vector."""
+    x, y, z = values
+    return x, y, z
+
+
 def inner(left: Sequence[P], right: Sequence[P]) -> P:
     """left . right."""
     return left[0] * right[0] + left[1] * right[1] + left[2] * right[2]

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.spaces import LONGEST_PRODUCT
 from symgen.graph.content import divided, usual_number
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Graph, Scalar
@@ -26,8 +27,6 @@ from symgen.graph.traverse import cost
 
 # Right-hand sides longer than this are turned as they stand: multiplied out, they would not get shorter.
 LONGEST_TURNED = 200
-# Larger cores are made smaller by pivots that depend on coordinates, each of which has to be tested.
-LARGEST_CORE = 6
 
 
 @dataclass(slots=True, eq=False)
@@ -75,7 +74,8 @@ class Elimination:
         self.core += self._points.values()
         self._turn_rows()
         self._pivot()
-        if len(self.core) > LARGEST_CORE:
+        if len(self.core) > LONGEST_PRODUCT:
+            # too many rows for a determinant to be tested as it stands: fewer are left by pivots that are tested too
             self._points.clear()  # rows like all others from here on
             self._turn_multipliers(lengths=True)
             self._pivot(lengths=True)
@@ -101,8 +101,9 @@ class Elimination:
 
     def lengths(self) -> Scalar:
         """The product of the factors of pivots that depend on coordinates, each of them once; 1 without such pivots."""
-        factors = (factor for pivot in self._tested for factor in self._graph.products.monomial(pivot)[1])
-        return self._graph.product(dict.fromkeys(factor for factor in factors if not self._safe(factor)))
+        monomials = (self._graph.products.monomial(pivot)[1] for pivot in self._tested)
+        factors = dict.fromkeys(factor for powers in monomials for factor, power in powers.items() if power > 0)
+        return self._graph.product(factor for factor in factors if not self._safe(factor))
 
     def content(self, entries: Sequence[Scalar]) -> dict[Scalar, int]:
         """The parameters, declared nonzero, that are factors of all entries."""
