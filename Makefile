@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run test generated mechanisms fuzz proof firmware bench bench-mechanisms generation stress skipping trig docs lock robots
+.PHONY: run test generated mechanisms fuzz proof firmware firmware-goals bench bench-mechanisms generation stress skipping trig docs lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -57,8 +57,10 @@ stress: $(VENV)/installed
 
 # Every model on every emulated core, the goals of cost, the example firmware.
 firmware: $(VENV)/installed
+	$(MAKE) --no-print-directory --keep-going --jobs $$(nproc) firmware-goals $(MODELS:models/%.yaml=target-%)
+
+firmware-goals: $(VENV)/installed
 	$(BIN)/pytest -m firmware
-	$(MAKE) --no-print-directory --keep-going --jobs $$(nproc) $(MODELS:models/%.yaml=target-%)
 
 target-%: models/%.yaml $(VENV)/installed
 	$(BIN)/symgen target $< --cpu all --quiet

@@ -5,13 +5,13 @@ from __future__ import annotations
 from symgen.report.context import Context
 from symgen.report.document import Block, InlineCode, Section, Table
 from symgen.report.prose import paragraph, say
-from symgen.report.targets import TargetCore, TargetRow
+from symgen.report.targets import FAST, TargetCore, TargetRow
 
 INTRO = (
     "The generated C was compiled for microcontrollers and run under emulation at regular and singular states. "
-    "Instructions are those of one call with status 0 at -O2, from its first to its return (fewest to most); "
-    "they are no cycles. Bytes are those at -Os: the code of the kernel, the growth of an image that links it, the "
-    "deepest stack. No kernel has static data."
+    "Instructions are those of one call with status 0, from its first to its return (fewest to most), at -O2 or, for "
+    "large kernels without a unit for their type, at -Os; they are no cycles. Bytes are those at -Os: the code of the "
+    "kernel, the growth of an image that links it, the deepest stack. No kernel has static data."
 )
 
 
@@ -39,4 +39,5 @@ def _table(core: TargetCore) -> Table:
 
 
 def _range(row: TargetRow) -> str:
-    return str(row.most) if row.fewest == row.most else f"{row.fewest}–{row.most}"
+    told = str(row.most) if row.fewest == row.most else f"{row.fewest}–{row.most}"
+    return told if row.level == FAST else f"{told} ({row.level})"

@@ -15,10 +15,11 @@ FAST, SMALL = "-O2", "-Os"
 
 @dataclass(frozen=True, slots=True)
 class TargetRow:
-    """One kernel in one scalar type: instructions per call at -O2 (fewest, most), bytes at -Os."""
+    """One kernel in one scalar type: instructions per call (fewest, most) at a level, bytes at -Os."""
 
     kernel: str
     scalar: str
+    level: str
     fewest: int
     most: int
     code: int
@@ -53,14 +54,14 @@ def read_targets(file: Path, sources: Mapping[str, str | bytes]) -> tuple[Target
 
 def _core(core: Mapping[str, Any], cells: list[Mapping[str, Any]]) -> TargetCore:
     same = sum(c["where"] == core["name"] and c["trig"] == "portable" and c["different"] == 0 for c in cells)
-    small = {(c["kernel"], c["scalar"]): c for c in core["costs"] if c["level"] == SMALL}
+    fast = {(c["kernel"], c["scalar"]): c for c in core["costs"] if c["level"] == FAST}
     rows = []
-    for cost in core["costs"]:
-        if cost["level"] == FAST and cost["calls"]:
-            other = small[cost["kernel"], cost["scalar"]]
-            size = other["footprint"]
-            numbers = (cost["fewest"], cost["most"], size["code"], size["linked"], other["stack"])
-            rows.append(TargetRow(cost["kernel"], cost["scalar"], *map(int, numbers)))
+    for small in core["costs"]:
+        if small["level"] == SMALL and small["calls"]:
+            cost = fast.get((small["kernel"], small["scalar"]), small)
+            size = small["footprint"]
+            numbers = (cost["fewest"], cost["most"], size["code"], size["linked"], small["stack"])
+            rows.append(TargetRow(small["kernel"], small["scalar"], cost["level"], *map(int, numbers)))
     return TargetCore(str(core["name"]), same, tuple(rows))
 
 

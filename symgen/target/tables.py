@@ -38,22 +38,22 @@ def _conformance(cells: Sequence[Cell]) -> str:
 def _costs(core: CoreReport) -> str:
     by_level = {(cost.kernel, cost.scalar, cost.level): cost for cost in core.costs}
     rows = [
-        _row(cost, by_level[cost.kernel, cost.scalar, SMALL]) for cost in core.costs if cost.level == FAST
+        _row(by_level.get((cost.kernel, cost.scalar, FAST)), cost) for cost in core.costs if cost.level == SMALL
     ]
     note = f" ({core.note})" if core.note else ""
     return f"{core.name}{note}\n" + columns(HEAD, rows, "<<>>>>>>") + (
         "\n  instructions per call with status 0 at -O2 and at -Os; bytes at -Os: code of the kernel, growth of an"
-        "\n  image that links it, frames by -fstack-usage, stack by painting; RAM 0"
+        "\n  image that links it, frames by -fstack-usage, stack by painting; RAM 0; –: not built or never 0"
     )
 
 
-def _row(fast: KernelCost, small: KernelCost) -> tuple[str, ...]:
+def _row(fast: KernelCost | None, small: KernelCost) -> tuple[str, ...]:
     size = small.footprint
     bytes_ = ("", "", "") if size is None else (str(size.code), str(size.linked), str(size.frame))
-    return (fast.kernel, fast.scalar, _range(fast), _range(small), *bytes_, str(small.stack))
+    return (small.kernel, small.scalar, _range(fast), _range(small), *bytes_, str(small.stack))
 
 
-def _range(cost: KernelCost) -> str:
-    if not cost.calls:
+def _range(cost: KernelCost | None) -> str:
+    if cost is None or not cost.calls:
         return "–"
     return str(cost.most) if cost.fewest == cost.most else f"{cost.fewest}..{cost.most}"

@@ -28,6 +28,7 @@ def _written(folder: Path, failures: tuple[str, ...] = ()) -> Path:
     costs = (
         KernelCost("inverse_dynamics", "float32", "-O2", 256, 84, 84, 16, None),
         KernelCost("inverse_dynamics", "float32", "-Os", 256, 73, 73, 12, Footprint(344, 344, 0, 16, ())),
+        KernelCost("forward_dynamics", "float64", "-Os", 256, 90210, 91017, 48, Footprint(5088, 9120, 0, 40, ())),
     )
     digests = {Path(path).name: hashlib.sha256(text.encode()).hexdigest() for path, text in SOURCES.items()}
     report = TargetReport(
@@ -41,11 +42,12 @@ def _written(folder: Path, failures: tuple[str, ...] = ()) -> Path:
 def test_the_table_of_a_core_is_in_the_pdf_alone(tmp_path: Path) -> None:
     targets = read_targets(_written(tmp_path), SOURCES)
     (core,) = targets
-    (row,) = core.rows
+    row, large = core.rows
     assert (core.name, core.same_bits) == ("cortex-m4f", 1)
     assert (row.fewest, row.most, row.code, row.stack) == (84, 84, 344, 12)
+    assert (large.level, large.fewest, large.code) == ("-Os", 90210, 5088)
     measured = compose(replace(report_input("skate"), targets=targets))
-    for text in ("cortex-m4f: 1 builds", "inverse_dynamics", "84", "344"):
+    for text in ("cortex-m4f: 1 builds", "inverse_dynamics", "84", "344", "90210–91017 (-Os)"):
         assert text in render_typst(measured)
     assert render_pdf(measured)
     assert "cortex-m4f" not in render_html(compose(report_input("skate")))
