@@ -9,7 +9,8 @@ and [M, B^T] has full rank.
 3. Rows with one unknown are solved at once, unknowns of one row only are left for the end: where the pivot is a
    number or a product of parameters that are declared nonzero.
 4. Of a large core rows with one unknown are solved whatever the pivot, such as the length of a leg: where it vanishes
-   a row of [M, B^T] does, so that the rank drops.  `lengths` belongs to what is tested.
+   a row of [M, B^T] does, so that the rank drops.  `lengths` belongs to what is tested.  Rows that are a rotation of as
+   many unknowns, such as a free body's forces in its own axes, are turned back.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from fractions import Fraction
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.spaces import LONGEST_PRODUCT
 from symgen.graph.content import divided, usual_number
-from symgen.graph.matrix import Vector
+from symgen.graph.matrix import Vector, dot
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost
 
@@ -77,6 +78,7 @@ class Elimination:
         if len(self.core) > LONGEST_PRODUCT:
             # too many rows for a determinant to be tested as it stands: fewer are left by pivots that are tested too
             self._points.clear()  # rows like all others from here on
+            self._turn_back()
             self._turn_multipliers(lengths=True)
             self._pivot(lengths=True)
         if len(self.core) > 1:
@@ -281,6 +283,25 @@ class Elimination:
                 row.coefficients[name] = products.quotient(coefficient, content)
             right = row.right / divisor
             row.right = self._mechanics.factoring.cancelled(right) if right.size <= LONGEST_TURNED else right
+
+    def _turn_back(self) -> None:
+        """Solves rows A x = b with an orthogonal A, all entries of which may vary: x = A^T b."""
+        together: dict[tuple[int, ...], list[Row]] = {}
+        for row in self.core:
+            together.setdefault(tuple(sorted(row.coefficients)), []).append(row)
+        for names, rows in together.items():
+            if len(names) == len(rows) > 1 and self._is_orthogonal(names, rows):
+                for name in names:
+                    value = self._graph.sum(row.coefficients[name] * row.right for row in rows)
+                    value = self._mechanics.factoring.cancelled(value) if value.size <= LONGEST_TURNED else value
+                    self.core.append(Row({name: self._graph.one}, value))
+                for row in rows:
+                    self.core.remove(row)
+
+    def _is_orthogonal(self, names: Sequence[int], rows: Sequence[Row]) -> bool:
+        columns = [[row.coefficients[name] for row in rows] for name in names]
+        products = {(i, j): dot(self._graph, columns[i], columns[j]) for i in range(len(names)) for j in range(i + 1)}
+        return all(value.is_one if i == j else value.is_zero for (i, j), value in products.items())
 
     def _solves(self, row: Row) -> bool:
         """One unknown with a safe pivot; an input is left for the end instead where no other row needs it."""
