@@ -67,7 +67,7 @@ target-%: models/%.yaml $(VENV)/installed
 
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed
-	$(BIN)/python tools/skipping_page.py $(CAMPAIGN_FILES) $(filter-out models/chain16.yaml models/chain32.yaml,$(MECHANISMS))
+	$(BIN)/python tools/skipping_page.py $(CAMPAIGN_FILES) $(MECHANISMS)
 
 # Every kernel of every model under libFuzzer and the sanitizers, a minute each: raw bits in, see proof/*_fuzz.c.
 FUZZ_SECONDS ?= 60

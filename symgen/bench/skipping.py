@@ -25,6 +25,8 @@ from symgen.graph.scalar import Scalar
 from symgen.graph.traverse import cost, topological
 from symgen.model.model import Model
 
+MOST_CHOICES = 2**12  # of columns; without zeros every choice has a minor of its own
+
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
@@ -38,11 +40,17 @@ class Skipped:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """The weight with one thing kept, and without; None for a model that has nothing of the kind."""
+    """The weight with one thing kept, and without; None where a model has nothing of the kind or the form is too long."""
 
     what: str
     weight: int | None
     without: int
+    too_long: bool = False
+
+    def __str__(self) -> str:
+        if self.weight is None:
+            return "too long" if self.too_long else "–"
+        return f"{self.weight} ({self.weight - self.without:+d})"
 
 
 class _Kept(Mechanics):
@@ -140,7 +148,9 @@ def _of_minors(plain: Mechanics, generic: Genericity, outputs: Vector) -> Iterat
 
     touched = weight(_Kept(model, lambda x: x.is_zero, free, False)) if any(free) else None
     yield Kept("coordinates no constraint touches", touched, minor)
-    yield Kept("zeros of B and M", weight(_Kept(model, lambda x: x.is_zero, everywhere, False)), minor)
+    too_long = 2**model.n > MOST_CHOICES
+    full = None if too_long else weight(_Kept(model, lambda x: x.is_zero, everywhere, False))
+    yield Kept("zeros of B and M", full, minor, too_long)
     yield Kept("constants of B and M", weight(_Kept(model, lambda x: bool(x.constant), everywhere, False)), minor)
     vanishing = any(x.is_zero for x in plain.potential_force)
     forces = weight(_Kept(model, lambda _: False, nowhere, True)) if vanishing else None
@@ -216,8 +226,7 @@ def page(rows: Sequence[Skipped]) -> str:
     head = ["model", "u as generated", "minor form", *names]
     lines = [_line(head), _line(["---"] * len(head))]
     for row in rows:
-        kept = ("–" if one.weight is None else f"{one.weight} ({one.weight - one.without:+d})" for one in row.kept)
-        lines.append(_line([row.model, row.generated, row.minor, *kept]))
+        lines.append(_line([row.model, row.generated, row.minor, *row.kept]))
     return _PAGE.replace("TABLE", "\n".join(lines))
 
 
@@ -248,7 +257,7 @@ TABLE
 - A small minus is a product that happens to be shared; the slider-crank does not take the range form. Where bodies are
   given, τ comes from their frames, and the matrices of a small mechanism can be shorter; so is *u as generated*, which
   eliminates on the way through the frames.
-- Left out are the chains of 16 and 32 links: with the zeros of B kept, there are too many minors to be written down.
+- *too long*: with the zeros kept, every choice of 16 or 32 columns has a minor of its own.
 - No shipped model has several blocks of B. For two skates and a rod on one plane (`tests/dynamics/test_blocks.py`)
   B⁺ weighs 87 block by block and 158 taken together.
 """

@@ -48,3 +48,9 @@ def test_the_page_has_a_row_for_each_model() -> None:
     table = [line for line in lines if line.startswith("| ")]
     assert [line.split(" | ")[0] for line in table] == ["| model", "| ---", "| skate", "| slider_crank"]
     assert {line.count("|") for line in table} == {3 + len(rows[0].kept) + 1}
+
+
+def test_what_would_be_too_long_is_told_and_not_derived() -> None:
+    kept = {one.what: str(one) for one in skipped(shipped.model("chain16")).kept}
+    assert kept["zeros of B and M"] == "too long"
+    assert kept["coordinates no constraint touches"] == "–"
