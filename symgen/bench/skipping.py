@@ -40,7 +40,7 @@ class Skipped:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """The weight with one thing kept, and without; None where a model has nothing of the kind or the form is too long."""
+    """The weight with one thing kept, and without; None where there is nothing of the kind, or too long a form."""
 
     what: str
     weight: int | None
