@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from symgen.dynamics.bodies import Bodies, Vector3
+from symgen.dynamics.free_joints import free_joint
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.graph.calculus import gradient
 from symgen.graph.matrix import Matrix, Vector, dot
@@ -49,9 +50,12 @@ class ArticulatedFactor:
         self._parents = {frame.name: frame.parent for frame in mechanism.frames}
         self._rotors = self._rotor_inertias()
         directions = {name: self._directions(name) for name in self._frames}
+        free = {name: free_joint(dict(own)) for name, own in directions.items() if len(own) == 6}
+        self._free = {name: joint for name, joint in free.items() if joint is not None}
         moved = [coordinate for own in directions.values() for coordinate, _ in own]
         if sorted(moved) != list(range(len(bodies.q))):
             raise ValueError("a coordinate moves no frame, or several")
+        directions |= {name: joint.directions(self.graph) for name, joint in self._free.items()}
         self._yielding: dict[str, list[Yielding]] = {}
         sizes = self._sizes()
         pivots: dict[int, Scalar] = {}
@@ -81,7 +85,8 @@ class ArticulatedFactor:
                 inertias[parent] = _summed(inertias[parent], self._carried_inertia(name, inertia))
         order = range(len(bodies.q))
         self.pivots: list[Scalar] = [pivots[j] for j in order]
-        self.guards = tuple(Guard(Status.MASS_RANK, pivots[j], 1, scale=scales[j]) for j in order)
+        turns = (Guard(Status.MASS_RANK, joint.determinant, 1) for joint in self._free.values())
+        self.guards = (*(Guard(Status.MASS_RANK, pivots[j], 1, scale=scales[j]) for j in order), *turns)
 
     def lowered(self, b: Sequence[Scalar], wrenches: Mapping[str, Six] | None = None) -> Vector:
         """The solution of L y = b; `wrenches` on frames are part of the generalized force b."""
@@ -90,6 +95,8 @@ class ArticulatedFactor:
         y = list(b)
         for name in reversed(self._frames):
             load = loads[name]
+            if name in self._free:
+                y[:] = self._replaced(y, self._free[name].wrench(y))
             for one in self._yielding[name]:
                 given = y[one.coordinate]
                 rest = y[one.coordinate] = given + self._dot(one.direction, load)
@@ -116,7 +123,13 @@ class ArticulatedFactor:
                 x[one.coordinate] = rate
                 twist = tuple(t if d.is_zero else t + d * rate for t, d in zip(twist, one.direction, strict=True))
             twists[name] = twist
+            if name in self._free:
+                x[:] = self._replaced(x, self._free[name].rates(x))
         return tuple(x)
+
+    @staticmethod
+    def _replaced(given: Sequence[Scalar], new: Mapping[int, Scalar]) -> Vector:
+        return tuple(new.get(j, entry) for j, entry in enumerate(given))
 
     def _directions(self, name: str) -> list[tuple[int, Six]]:
         """The motions that each coordinate gives the frame against its parent, in the frame's axes."""

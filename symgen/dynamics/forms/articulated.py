@@ -19,6 +19,7 @@ from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.newton_euler import inertial_wrenches
 from symgen.dynamics.pivoted import reflected
+from symgen.dynamics.spaces import LONGEST_PRODUCT
 from symgen.graph.calculus import gradient
 from symgen.graph.matrix import Vector
 from symgen.graph.scalar import Graph, Scalar
@@ -65,7 +66,8 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
     if not all(definite.holds(own) for own in factor.own.values()) and not positive_definite(mechanics):
         return None
     rows, graph = mechanics.constraint_jacobian, mechanics.graph
-    guards = reflected(graph, rows, mechanics.n, generic.rank).guards if rows else ()
+    few = 0 < len(rows) <= LONGEST_PRODUCT
+    guards = reflected(graph, rows, mechanics.n, generic.rank).guards if few else ()
     columns = [factor.lowered(direct, wrenches) for direct, wrenches in _forces(mechanics)]
     force = factor.lowered(mechanics.given_force, _weights_and_inertial_forces(mechanics))
     return mechanics, along_factor(Problem(mechanics, guards), factor, columns, force)

@@ -14,8 +14,10 @@ from typing import Protocol
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.inertia import Cholesky, diagonal_sizes
+from symgen.dynamics.spaces import LONGEST_PRODUCT
 from symgen.graph.matrix import Matrix, Vector, dot
 from symgen.graph.scalar import Graph, Scalar
+from symgen.ir.kernel import Status
 
 
 class Factor(Protocol):
@@ -54,7 +56,9 @@ def along_factor(problem: Problem, factor: Factor, columns: Sequence[Vector], fo
     multipliers = _solve_upper(turned.triangle, [f + z for f, z in zip(free, given, strict=False)])
     x = turned.apply((*(-z for z in given), *free[r:]))
     accelerations = factor.raised(tuple(entry * weight for entry, weight in zip(x, weights, strict=True)))
-    return Motion(accelerations, multipliers, (*problem.guards, *factor.guards))
+    # with many rows the rank of B is measured where they are reflected anyway
+    regular = (turned.regularity(),) if r > LONGEST_PRODUCT else problem.guards
+    return Motion(accelerations, multipliers, (*regular, *factor.guards))
 
 
 def schur_ldl(problem: Problem) -> Motion:
@@ -90,6 +94,7 @@ class WeightedReflections:
 
     def __init__(self, graph: Graph, columns: Sequence[Vector], d: Sequence[Scalar], weights: Sequence[Scalar]) -> None:
         self._graph = graph
+        self._columns = columns
         self._weights = weights
         self._reflectors: list[tuple[int, Vector, Scalar]] = []
         self.triangle: list[Vector] = []
@@ -110,6 +115,16 @@ class WeightedReflections:
             factor = d[k] / (squared + length * graph.function("abs", (head,)))
             self._reflectors.append((k, (head + signed, *tail[1:]), factor))
             self.triangle.append((*y[:k], -signed))
+
+    def regularity(self) -> Guard:
+        """det(A^T D^-1 A) over the squared lengths of the columns: 0 exactly where columns depend on each other."""
+        graph, weights = self._graph, self._weights
+        quotients = []
+        for k, (column, reflected) in enumerate(zip(self._columns, self.triangle, strict=True)):
+            pivot = reflected[k]
+            length = graph.sum(x * x * w for x, w in zip(column, weights, strict=True))
+            quotients.append(pivot * pivot * weights[k] / length)
+        return Guard(Status.CONSTRAINT_RANK, graph.product(quotients), 2, scale=graph.one)
 
     def apply_transposed(self, x: Vector) -> Vector:
         """The reflections in the order in which they were made."""
