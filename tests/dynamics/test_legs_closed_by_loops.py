@@ -22,7 +22,7 @@ from symgen.model.model import Model
 @pytest.fixture(scope="module")
 def platform() -> Model:
     """24 coordinates, 18 rows, six inputs."""
-    return load_model(Path(__file__).parents[1] / "mechanisms" / "gough_loops.yaml")
+    return load_model(Path(__file__).parents[2] / "models" / "gough_loops.yaml")
 
 
 @pytest.mark.parametrize(("kind", "rows"), [(Mechanics, 6), (BodyAxes, 6)])
