@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import prod
+from typing import TypeAlias
 
 import flint
 from sympy import QQ
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.ring import TrigRing
+from symgen.closedform.ring import TrigRing, primitive
 from symgen.closedform.used import Monomial, Used
 
 # A polynomial of more terms, once homogeneous, is factored as an ordinary one only: its length doubles with every angle
@@ -22,29 +23,44 @@ from symgen.closedform.used import Monomial, Used
 MOST_TERMS = 3_000
 
 
+# The terms of one degree parity in every pair (s_i, c_i), by the powers of s_i^2 + c_i^2 that each lacks.
+_Parts: TypeAlias = Mapping[Monomial, Mapping[Monomial, flint.fmpq]]
+
+
+def _classes(used: Used, p: PolyElement) -> list[_Parts]:
+    """The parity classes of p; with the powers they lack all terms of one have the same degree in a pair."""
+    classes: dict[tuple[int, ...], list[tuple[Monomial, flint.fmpq, list[int]]]] = {}
+    for monomial, coefficient in used.terms(p).items():
+        degrees = [monomial[s] + monomial[c] for s, c in used.pairs]
+        classes.setdefault(tuple([d % 2 for d in degrees]), []).append((monomial, coefficient, degrees))
+    return [_parts(classes[key]) for key in sorted(classes)]
+
+
+def _parts(terms: Sequence[tuple[Monomial, flint.fmpq, list[int]]]) -> _Parts:
+    tops = [max(column) for column in zip(*(degrees for _, _, degrees in terms), strict=True)]
+    parts: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
+    for monomial, coefficient, degrees in terms:
+        missing = tuple([(top - d) // 2 for top, d in zip(tops, degrees, strict=True)])
+        parts.setdefault(missing, {})[monomial] = coefficient
+    return parts
+
+
 def _images(used: Used, p: PolyElement) -> list[flint.fmpq_mpoly]:
     """The parity classes of p, each made homogeneous in every pair (s_i, c_i)."""
-    classes: dict[tuple[int, ...], dict[Monomial, flint.fmpq]] = {}
-    for monomial, coefficient in used.terms(p).items():
-        key = tuple([(monomial[s] + monomial[c]) % 2 for s, c in used.pairs])
-        classes.setdefault(key, {})[monomial] = coefficient
-    return [_raised(used, classes[key]) for key in sorted(classes)]
+    return [_raised(used, parts) for parts in _classes(used, p)]
 
 
-def _raised(used: Used, terms: Mapping[Monomial, flint.fmpq]) -> flint.fmpq_mpoly:
+def _raised(used: Used, parts: _Parts) -> flint.fmpq_mpoly:
     """One parity class times powers of s_i^2 + c_i^2 = 1, so that all its terms have the same degree in a pair."""
-    degrees = {monomial: [monomial[s] + monomial[c] for s, c in used.pairs] for monomial in terms}
-    tops = [max(column) for column in zip(*degrees.values(), strict=True)]
-    parts: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
-    for monomial, coefficient in terms.items():
-        missing = tuple([(top - d) // 2 for top, d in zip(tops, degrees[monomial], strict=True)])
-        parts.setdefault(missing, {})[monomial] = coefficient
+    if len(parts) == 1:
+        (part,) = parts.values()
+        return used.polynomial(part)  # one of its terms lacks nothing
     total = used.polynomial({})
     for missing, part in parts.items():
         raised = used.polynomial(part)
-        for (s, c), times in zip(used.pairs, missing, strict=True):
+        for circle, times in zip(used.circles, missing, strict=True):
             if times:
-                raised *= (used.generator(s) ** 2 + used.generator(c) ** 2) ** times
+                raised *= circle**times
         total += raised
     return total
 
@@ -66,12 +82,9 @@ def homogeneous(ring: TrigRing, p: PolyElement) -> PolyElement:
     return used.element(result)
 
 
-def _homogeneous_terms(ring: TrigRing, p: PolyElement) -> int:
-    """How many terms `homogeneous` has to write at most."""
-    pairs = tuple(zip(ring.sine, ring.cosine, strict=True))
-    degrees = [[monomial[s] + monomial[c] for s, c in pairs] for monomial in p]
-    tops = [max(column) for column in zip(*degrees, strict=True)]
-    return sum(prod([(top - degree) // 2 + 1 for top, degree in zip(tops, row, strict=True)]) for row in degrees)
+def _homogeneous_terms(parts: _Parts) -> int:
+    """How many terms a parity class has at most when it is homogeneous."""
+    return sum(len(part) * prod([times + 1 for times in missing]) for missing, part in parts.items())
 
 
 def common_factor(ring: TrigRing, polynomials: Iterable[PolyElement]) -> PolyElement:
@@ -86,11 +99,11 @@ def common_factor(ring: TrigRing, polynomials: Iterable[PolyElement]) -> PolyEle
             result = image if result is None else result.gcd(image)
             if result.is_constant():
                 return ring.one
-    return _primitive(used.element(result))
+    return _upright(used.element(result))
 
 
-def _primitive(p: PolyElement) -> PolyElement:
-    _, p = p.primitive()
+def _upright(p: PolyElement) -> PolyElement:
+    _, p = primitive(p)
     return -p if p.LC < 0 else p
 
 
@@ -134,22 +147,26 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
         single = [(ring.generator(i), e) for i, e in enumerate(monomial) if e]
         return ring.polys.ground_new(coefficient), tuple(single)
     ring.work.spend(len(p) * ring.polys.ngens)
-    long = any(_homogeneous_terms(ring, part) > MOST_TERMS for part in parity_classes(ring, p))
-    content = ring.one if long else common_factor(ring, [p])
-    rest = divide(ring, p, content)
+    whole = Used(ring, [p])
+    classes = _classes(whole, p)
+    if any(_homogeneous_terms(parts) > MOST_TERMS for parts in classes):
+        images = [(whole, whole.image(p))]
+    elif len(classes) == 1:
+        images = [(whole, _raised(whole, classes[0]))]
+    else:
+        content = common_factor(ring, [p])
+        over = ((Used(ring, [q]), q) for q in (content, divide(ring, p, content)) if q != 1)
+        images = [(used, used.image(q)) for used, q in over]
     constant = ring.one
     factors: list[tuple[PolyElement, int]] = []
-    for image in (content, rest):
-        if image == 1:
-            continue
-        used = Used(ring, [image])
-        leading, parts = used.image(image).factor()
+    for used, image in images:
+        leading, parts = image.factor()
         constant = constant * ring.polys.ground_new(QQ(leading.numerator, leading.denominator))
         for part, multiplicity in parts:
             q = used.element(part)
-            primitive = _primitive(q)
-            constant = constant * (q.LC / primitive.LC) ** int(multiplicity)
-            factors.append((primitive, int(multiplicity)))
+            upright = _upright(q)
+            constant = constant * (q.LC / upright.LC) ** int(multiplicity)
+            factors.append((upright, int(multiplicity)))
     if len(factors) > 1:
         factors.sort(key=lambda item: _order(item[0]))
     return constant, tuple(factors)

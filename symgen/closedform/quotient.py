@@ -8,7 +8,7 @@ from typing import TypeAlias
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.homogeneous import cancel_plain, common_factor, divide
-from symgen.closedform.ring import TrigRing
+from symgen.closedform.ring import TrigRing, primitive
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,7 +90,7 @@ def quotient(ring: TrigRing, numerator: PolyElement, denominator: PolyElement) -
         shared = common_factor(ring, [denominator, numerator])
         numerator, denominator = divide(ring, numerator, shared), divide(ring, denominator, shared)
         numerator, denominator = cancel_plain(ring, numerator, denominator)
-    content, denominator = denominator.primitive()
+    content, denominator = primitive(denominator)
     if denominator.LC < 0:
         content, denominator = -content, -denominator
     return Quotient(ring, numerator.mul_ground(1 / content), denominator)

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
+from math import gcd, lcm
+from typing import Any
 
 from sympy import QQ
 from sympy.polys.rings import PolyElement, PolyRing
@@ -35,6 +37,18 @@ FREE_ANGLES = 6
 
 # A product of so many products of terms is cheaper by way of flint.
 LONG_PRODUCT = 60
+
+
+def content(p: PolyElement) -> Any:
+    """The greatest common divisor of the coefficients, a rational number; SymPy takes it two by two."""
+    coefficients = p.values()
+    return QQ(gcd(*[int(c.numerator) for c in coefficients]), lcm(*[int(c.denominator) for c in coefficients]))
+
+
+def primitive(p: PolyElement) -> tuple[Any, PolyElement]:
+    """(content, p / content), where p is not zero."""
+    common = content(p)
+    return common, p if common == 1 else p.quo_ground(common)
 
 
 class TrigRing:

@@ -19,7 +19,7 @@ from sympy.polys.rings import PolyElement
 from symgen.closedform.fourier import Series, fourier_series, least_length
 from symgen.closedform.homogeneous import factorise
 from symgen.closedform.quotient import Quotient, polynomial
-from symgen.closedform.ring import TrigRing
+from symgen.closedform.ring import TrigRing, content, primitive
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 
 # A Fourier sum of more waves is not worth making: it is never the shortest form.
@@ -176,8 +176,8 @@ class Speller:
 
     def _plain(self, p: PolyElement) -> tuple[Rational, Expr]:
         """The sum of monomials as it stands, the rational content apart."""
-        content, primitive = p.primitive()
-        return _rational(content), self._sum(primitive)
+        common, rest = primitive(p)
+        return _rational(common), self._sum(rest)
 
     def _sum(self, p: PolyElement) -> Expr:
         terms = []
@@ -213,7 +213,7 @@ class Speller:
         for parts in series.values():
             for part in parts:
                 if part:
-                    scale = QQ.gcd(scale, part.content())
+                    scale = QQ.gcd(scale, content(part))
         terms = []
         for frequencies, (cosine, sine) in series.items():
             angle = sum((k * angle for k, angle in zip(frequencies, self.angles, strict=True)), Integer(0))
@@ -224,15 +224,15 @@ class Speller:
 
     def _coefficient(self, p: PolyElement) -> Expr:
         """A coefficient of a Fourier sum: its common monomial and rational content taken out, the rest in one piece."""
-        content, rest = p.primitive()
+        share, rest = primitive(p)
         if len(rest) == 1:
-            return _rational(content) * self._sum(rest)
+            return _rational(share) * self._sum(rest)
         common = tuple(map(min, *rest))
         reduced = self.ring.polys.zero.copy()
         for monomial, coefficient in rest.items():
             reduced[tuple(map(sub, monomial, common))] = coefficient
         sign, expression = _upright(Integer(1), self._sum(reduced))
-        factor = _rational(content) * sign * self._monomial(common)
+        factor = _rational(share) * sign * self._monomial(common)
         return Mul(factor, expression)
 
 

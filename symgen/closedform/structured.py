@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from sympy import Expr, ImmutableDenseMatrix, Integer, Symbol
+from sympy import Add, Expr, ImmutableDenseMatrix, Integer, Symbol
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.exact import Exact
@@ -47,12 +47,14 @@ class Naming:
         """The symbol for a ring element with a sign, or the element itself when it is a monomial."""
         if len(value) <= 1:
             return self.speller.polynomial(value)
-        if value not in self.known:
+        # one of the two signs is looked up: rational numbers are slow to hash
+        upright = value if value.LC > 0 else -value
+        known = self.known.get(upright)
+        if known is None:
             symbol = self.symbol(name)
             self.elements[symbol] = value
-            self.known[value] = symbol
-            self.known[-value] = -symbol
-        return self.known[value]
+            known = self.known[upright] = symbol if upright is value else -symbol
+        return known if upright is value else -known
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,13 +100,12 @@ def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) 
             return Integer(0)
         return phi[tuple(sorted(indices))] * permutation_sign(indices)
 
-    entries = [
-        [
-            sum((signed(phi, (i, *k)) * signed(phi, (j, *k)) for phi in phis for k in rest), Integer(0)) / total
-            for j in size
-        ]
+    upper = {
+        (i, j): sum((signed(phi, (i, *k)) * signed(phi, (j, *k)) for phi in phis for k in rest), Integer(0)) / total
         for i in size
-    ]
+        for j in size[i:]
+    }
+    entries = [[upper[min(i, j), max(i, j)] for j in size] for i in size]
     return _finish(entries, naming, [(total, meaning)])
 
 
@@ -134,16 +135,16 @@ def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: froz
 
 def structured_projected_control(exact: Exact, speller: Speller, projector: Structured) -> Structured:
     """N_B M with N_B in named minors."""
-    control = ImmutableDenseMatrix([[speller.quotient(e) for e in row] for row in exact.mechanics.control])
-    return Structured(projector.matrix * control, projector.intermediates)
+    control = [[speller.quotient(e) for e in row] for row in exact.mechanics.control]
+    return Structured(_product(projector.matrix, control), projector.intermediates)
 
 
 def structured_inverse_dynamics(exact: Exact, speller: Speller, left: Structured, taken: frozenset[str]) -> Structured:
     """u = M~^+ tau with the load tau = G qdd + C qd + Q - Q_a as named intermediates."""
     naming = Naming(speller, taken)
     symbols = [naming.symbol(f"tau_{i + 1}") for i in range(exact.model.n)]
-    load = [symbol if entry else Integer(0) for symbol, (entry,) in zip(symbols, exact.load, strict=True)]
-    matrix = left.matrix * ImmutableDenseMatrix(load)
+    load = [[symbol if entry else Integer(0)] for symbol, (entry,) in zip(symbols, exact.load, strict=True)]
+    matrix = _product(left.matrix, load)
     used = matrix.free_symbols
     terms = sum(len(e.numerator) for symbol, (e,) in zip(symbols, exact.load, strict=True) if symbol in used)
     if terms > LONGEST_LOAD:
@@ -174,6 +175,14 @@ def structured_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[st
             )
     except TooLargeError:
         return ()
+
+
+def _product(left: ImmutableDenseMatrix, right: Sequence[Sequence[Expr]]) -> ImmutableDenseMatrix:
+    """left * right; SymPy would ask whether what it multiplies by zero is finite."""
+    columns = [[(k, entry) for k, entry in enumerate(column) if entry] for column in zip(*right, strict=True)]
+    return ImmutableDenseMatrix(
+        [[Add(*(row[k] * entry for k, entry in column)) for column in columns] for row in left.tolist()]
+    )
 
 
 def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]) -> Structured:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import flint
@@ -55,6 +55,11 @@ class Used:
     def generator(self, place: int) -> flint.fmpq_mpoly:
         """The generator at a place."""
         return self._context.gen(place)
+
+    @cached_property
+    def circles(self) -> tuple[flint.fmpq_mpoly, ...]:
+        """s_i^2 + c_i^2 of the pairs."""
+        return tuple(self.generator(s) ** 2 + self.generator(c) ** 2 for s, c in self.pairs)
 
     def element(self, p: flint.fmpq_mpoly) -> PolyElement:
         """One of flint's as an element of the ring."""

@@ -161,8 +161,10 @@ def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:
         work.append([x / length for x in row] if length > 0 else list(row))
     found = 0
     while found < len(work) and work[0]:
-        pivots = ((abs(work[i][j]), i, j) for i in range(found, len(work)) for j in range(len(work[i])))
-        size, i, j = max(pivots, key=lambda entry: entry[0])
+        largest = [max(map(abs, row)) for row in work[found:]]
+        size = max(largest)
+        i = found + largest.index(size)
+        j = list(map(abs, work[i])).index(size)
         if size < NEGLIGIBLE:
             return found
         if size < plain:
@@ -171,7 +173,8 @@ def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:
         lead = work[found]
         for k in range(found + 1, len(work)):
             factor = work[k][j] / lead[j]
-            work[k] = [x - factor * y for x, y in zip(work[k], lead, strict=True)]
+            if factor:
+                work[k] = [x - factor * y for x, y in zip(work[k], lead, strict=True)]
         found += 1
     return found
 

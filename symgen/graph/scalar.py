@@ -89,6 +89,7 @@ class Graph:
         self.products = Products(self)
         self._by_value: dict[int, Scalar] = {}
         self._angles: dict[int, tuple[int, int]] = {}
+        self._trig: dict[tuple[str, Scalar], Scalar] = {}
         self.zero = self.const(0)
         self.one = self.const(1)
         self.const(2)
@@ -330,7 +331,12 @@ class Graph:
 
     def trig(self, name: str, argument: Scalar) -> Scalar:
         """Sine or cosine, keyed by the integer combination of leaves in its argument; its sign is pulled out."""
-        form = self.angle_form(argument)
+        found = self._trig.get((name, argument))
+        if found is None:
+            found = self._trig[name, argument] = self._trig_of(name, self.angle_form(argument))
+        return found
+
+    def _trig_of(self, name: str, form: dict[Scalar, int]) -> Scalar:
         if not form:
             return self.zero if name == "sin" else self.one
         leading = min(form, key=lambda leaf: leaf.serial)

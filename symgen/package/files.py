@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from xml.sax.saxutils import escape
+from html import escape
 
 from symgen import __version__
 from symgen.emit.render import render
@@ -55,7 +55,7 @@ def emit_package(model: Model, programs: Sequence[Program], c_files: Mapping[str
         version=__version__,
         description=description,
         quoted_description=json.dumps(description, ensure_ascii=False),
-        xml_description=escape(description),
+        xml_description=escape(description, quote=False),
         headers=tuple(headers),
         stems=tuple(name.removesuffix(".h") for name in headers),
         flags=FLAGS,
