@@ -74,7 +74,7 @@ def newton_euler(
 def inertial_wrenches(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> dict[str, Wrench]:
     """What moving its own bodies so takes of each frame, and nothing of rotors; arguments as for `newton_euler`."""
     recursion = _Recursion(bodies, qd, qdd, gravity)
-    return recursion.wrenches(recursion.moving())
+    return recursion.wrenches(recursion.moving(), recursion.motions)
 
 
 class _Recursion:
@@ -93,11 +93,12 @@ class _Recursion:
         """One generalized force for each coordinate."""
         frames = self.moving()
         rotors = list(self.bodies.mechanism.rotor_inertias)
+        working = {f.name: self.motions[f.name] if f.name in twists else self._working(f.name) for f in frames}
         if lumped:
             lumps, rotors = self._lumps([frame.name for frame in frames])
-            wrenches = {name: self._inertial_about_origin(name, lump) for name, lump in lumps.items()}
+            wrenches = {name: self._inertial_about_origin(lump, working[name]) for name, lump in lumps.items()}
         else:
-            wrenches = self.wrenches(frames)
+            wrenches = self.wrenches(frames, working)
         totals = [self.graph.zero] * len(self.bodies.q)
         for frame in reversed(frames):
             wrench, joint = wrenches[frame.name], self.kinematics.joint(frame.name)
@@ -130,12 +131,12 @@ class _Recursion:
             self.motions[frame.name] = self._motion(frame.name)
         return frames
 
-    def wrenches(self, frames: Sequence[Frame]) -> dict[str, Wrench]:
+    def wrenches(self, frames: Sequence[Frame], motions: Mapping[str, Motion]) -> dict[str, Wrench]:
         """What the bodies of each frame take, about its origin."""
         found = {frame.name: Wrench(self.none, self.none) for frame in frames}
         for body in self.bodies.mechanism.bodies:
             if body.frame != WORLD:
-                found[body.frame] = _sum(found[body.frame], self._inertial(body))
+                found[body.frame] = _sum(found[body.frame], self._inertial(body, motions[body.frame]))
         return found
 
     def _loaded(self) -> set[str]:
@@ -158,22 +159,53 @@ class _Recursion:
         if self.at_rest:
             return Motion(self.none, acceleration, applied(inward, linear), _field(self.none, acceleration))
         linear = plus(linear, self._cross(parent.velocity, plus(joint.place_rate, joint.place_rate)))
-        carried = applied(inward, parent.velocity)
         velocity = self.kinematics.twist(name).angular
-        acceleration = plus(acceleration, self._cross(carried, joint.turning))
+        axis = self._shared_axis(name)
+        if axis is None:
+            acceleration = plus(acceleration, self._cross(applied(inward, parent.velocity), joint.turning))
+        else:
+            acceleration = _about_shared_axis(velocity, acceleration, axis[0], applied(inward, axis[1]))
         return Motion(velocity, acceleration, applied(inward, linear), _field(velocity, acceleration))
 
-    def _inertial(self, body: Body) -> Wrench:
+    def _shared_axis(self, name: str) -> tuple[int, Vector3] | None:
+        """The main axis k a frame turns about, and U e_k of its parent, whose main axis it is too; None without one.
+
+        Frames without bodies have no use for U, so that there is nothing to share.
+        """
+        joint, parent = self.kinematics.joint(name), self.kinematics.frames[name].parent
+        turning = [k for k, x in enumerate(joint.turning) if not x.is_zero]
+        if len(turning) != 1 or all(body.frame != parent for body in self.bodies.mechanism.bodies):
+            return None
+        along = transposed(joint.axes)[turning[0]]
+        places = [n for n, x in enumerate(along) if not x.is_zero]
+        if len(places) != 1:
+            return None
+        (n,) = places
+        x, y, z = (along[n] * row[n] for row in self.motions[parent].field)
+        return turning[0], (x, y, z)
+
+    def _working(self, name: str) -> Motion:
+        """The frame's motion, as far as work can be done on it: w x (w x r) has no moment about a fixed axis.
+
+        A frame that the world holds by a joint about one axis passes its force and other moments to nobody else.
+        """
+        motion = self.motions[name]
+        held = self.kinematics.frames[name].parent == WORLD
+        held = held and all(rate.is_zero for rate in self.kinematics.joint(name).place_rate)
+        if not held or sum(not x.is_zero for x in motion.velocity) != 1:
+            return motion
+        return replace(motion, field=_field(self.none, motion.acceleration))
+
+    def _inertial(self, body: Body, motion: Motion) -> Wrench:
         """m a of the centre of mass and its moment, I w' + w x I w."""
-        motion, com = self.motions[body.frame], self.kinematics.space.values(body.com)
+        com = self.kinematics.space.values(body.com)
         mass = self.bodies.scalars.value(body.mass)
         x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
         moment = _turning_moment(self.bodies.inertia(body.name), motion)
         return Wrench((x, y, z), plus(moment, self._cross(com, (x, y, z))))
 
-    def _inertial_about_origin(self, name: str, lump: Lump) -> Wrench:
+    def _inertial_about_origin(self, lump: Lump, motion: Motion) -> Wrench:
         """m a + U h and its moment, I w' + w x I w + h x a."""
-        motion = self.motions[name]
         x, y, z = (lump.mass * a for a in motion.linear)
         moment = plus(_turning_moment(lump.tensor, motion), self._cross(lump.first, motion.linear))
         return Wrench(plus(applied(motion.field, lump.first), (x, y, z)), moment)
@@ -253,6 +285,17 @@ def _field(w: Vector3, turning: Vector3) -> Rows[Scalar]:
     (x, y, z), (a, b, c) = w, turning
     xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
     return (-(yy + zz), xy - c, xz + b), (xy + c, -(xx + zz), yz - a), (xz - b, yz + a, -(xx + yy))
+
+
+def _about_shared_axis(w: Vector3, turning: Vector3, k: int, column: Vector3) -> Vector3:
+    """w' of a frame that turns about its axis k, which its parent shares: there both have the same U e_k.
+
+    Of what the frames' angular accelerations are, only the component k of `turning` is looked at.
+    """
+    i, j = (k + 1) % 3, (k + 2) % 3
+    found = list(turning)
+    found[i], found[j] = w[j] * w[k] - column[j], column[i] - w[i] * w[k]
+    return triple(found)
 
 
 def _turning_moment(tensor: Rows[Scalar], motion: Motion) -> Vector3:
