@@ -48,13 +48,17 @@ class BodyAxes(Mechanics):
         return self.graph.product(inner(x, cross(y, z)) for x, y, z in self._turning.values())
 
     @cached_property
+    def turnings(self) -> tuple[tuple[tuple[int, int, int], Rows[Scalar]], ...]:
+        return tuple((body.angles, self._turning[body.frame]) for body in self.free)
+
+    @cached_property
     def coordinate_rows(self) -> Matrix:
         """B with columns that span those of the coordinates: moments work on the rates of angles."""
         rows = [list(row) for row in self.constraint_jacobian]
-        for body in self.free:
+        for angles, turning in self.turnings:
             for row in rows:
-                moment = [row[j] for j in body.angles]
-                for j, column in zip(body.angles, transposed(self._turning[body.frame]), strict=True):
+                moment = [row[j] for j in angles]
+                for j, column in zip(angles, transposed(turning), strict=True):
                     row[j] = dot(self.graph, column, moment)
         return tuple(map(tuple, rows))
 

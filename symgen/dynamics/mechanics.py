@@ -19,6 +19,7 @@ from symgen.graph.traverse import cost, substitute
 from symgen.model.components import components_in, definitions_before_frames
 from symgen.model.expression import Expression
 from symgen.model.model import Model
+from symgen.model.triples import Rows
 
 
 class Mechanics:
@@ -251,6 +252,11 @@ class Mechanics:
     def coordinate_rows(self) -> Matrix:
         """Rows with the rank of B in the model's coordinates, whatever moves the system here."""
         return self.constraint_jacobian
+
+    @property
+    def turnings(self) -> tuple[tuple[tuple[int, int, int], Rows[Scalar]], ...]:
+        """For each body whose twist moves it here: its angles, and the angular velocity by their rates."""
+        return ()
 
     @cached_property
     def twist_determinant(self) -> Scalar:

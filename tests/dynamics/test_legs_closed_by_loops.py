@@ -12,6 +12,7 @@ from symgen.dynamics.forms.elimination import Elimination
 from symgen.dynamics.forms.range import range_form
 from symgen.dynamics.genericity import genericity, parameter_values
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.spaces import HouseholderSpace
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.traverse import cost
 from symgen.ir.kernel import Status
@@ -55,6 +56,31 @@ def test_the_lengths_are_tested(platform: Model) -> None:
     assert sizes[0] > 1e-12
     assert sizes[1] < 1e-4 * sizes[0]
     assert sizes[2] < 1e-4 * sizes[1]
+
+
+@pytest.mark.parametrize("kind", [Mechanics, BodyAxes])
+def test_the_rank_of_b_is_told_apart(platform: Model, kind: type[Mechanics]) -> None:
+    """Feet and heads that coincide on one leg leave B its rank; on four, eight forces act on a body with six motions."""
+    mechanics, plain = kind(platform), Mechanics(platform)
+    form = range_form(mechanics, genericity(plain))
+    assert form is not None
+    (guard,) = form.guards
+    (cause,) = guard.first
+    assert cause.status == Status.CONSTRAINT_RANK
+    (whole,) = HouseholderSpace(plain.graph, plain.constraint_jacobian, plain.n).guards
+    assert cost([cause.denominator]).weight < 0.7 * cost([whole.denominator]).weight
+    evaluate = Evaluator([cause.denominator, cause.scale or cause.denominator])
+    point = parameter_values(mechanics) | {c.name: 0.1 * k for k, c in enumerate(platform.coordinates, 1)}
+    point |= {"psi": 0.3, "theta": 0.2, "phi": 0.1}
+
+    def measured(length: float, legs: int) -> float:
+        denominator, scale = evaluate(point | {f"s_{k}": length for k in range(1, legs + 1)})
+        return abs(denominator / scale)
+
+    assert measured(1e-7, 1) > 1e-12
+    assert measured(1e-7, 4) < 1e-24
+    upright = point | {"theta": math.pi / 2}
+    assert math.isfinite(evaluate(upright)[0])
 
 
 def test_small_cores_need_no_tested_lengths() -> None:

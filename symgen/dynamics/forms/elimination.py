@@ -19,10 +19,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from symgen.dynamics.forms.multipliers_alone import as_rates_feel, multipliers_alone
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.spaces import LONGEST_PRODUCT
 from symgen.graph.content import divided, usual_number
-from symgen.graph.matrix import Vector, dot
+from symgen.graph.matrix import Matrix, Vector, dot
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost
 
@@ -61,6 +62,8 @@ class Elimination:
         self._points: dict[int, Row] = {}
         self._explicit: list[tuple[int, Row]] = []
         self._tested: list[Scalar] = []
+        self._moments = [[self.core[j] for j in angles] for angles, _ in mechanics.turnings]
+        self.multipliers_alone: Matrix = ()
         self._nonzero = {
             mechanics.graph.symbol(p.name)
             for p in mechanics.model.parameters
@@ -80,6 +83,7 @@ class Elimination:
             self._points.clear()  # rows like all others from here on
             self._turn_back()
             self._turn_multipliers(lengths=True)
+            self.multipliers_alone = self._without_inputs()
             self._pivot(lengths=True)
         if len(self.core) > 1:
             self._divide_rows()
@@ -302,6 +306,19 @@ class Elimination:
         columns = [[row.coefficients[name] for row in rows] for name in names]
         products = {(i, j): dot(self._graph, columns[i], columns[j]) for i in range(len(names)) for j in range(i + 1)}
         return all(value.is_one if i == j else value.is_zero for (i, j), value in products.items())
+
+    def _without_inputs(self) -> Matrix:
+        """The rows with inputs at 0, in the model's coordinates; none where moments were turned with other rows."""
+        rows = [*self.core, *(row for _, row in self._explicit)]
+        left = [{j: c for j, c in row.coefficients.items() if j not in self.inputs} for row in rows]
+        for (_, turning), moments in zip(self._mechanics.turnings, self._moments, strict=True):
+            places = [k for moment in moments for k, row in enumerate(rows) if row is moment]
+            if len(places) < len(moments):
+                return ()
+            felt = as_rates_feel(self._graph, [left[k] for k in places], turning)
+            for k, row in zip(places, felt, strict=True):
+                left[k] = row
+        return multipliers_alone(left, self._safe, self._graph.zero)
 
     def _solves(self, row: Row) -> bool:
         """One unknown with a safe pivot; an input is left for the end instead where no other row needs it."""

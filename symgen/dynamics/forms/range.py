@@ -187,7 +187,8 @@ class _Core:
         graph = self._graph
         # what was solved by tested pivots is no column of the core any more
         if not self._elimination.lengths().is_one or self._mechanics.twist_determinant.constant is None:
-            (guard,) = HouseholderSpace(graph, self._mechanics.coordinate_rows, self._mechanics.n).guards
+            rows = self._elimination.multipliers_alone or self._mechanics.coordinate_rows
+            (guard,) = HouseholderSpace(graph, rows, len(rows[0])).guards
             return guard
         whole = [
             (*column, *effect)
