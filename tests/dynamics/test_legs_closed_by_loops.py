@@ -60,7 +60,7 @@ def test_the_lengths_are_tested(platform: Model) -> None:
 
 @pytest.mark.parametrize("kind", [Mechanics, BodyAxes])
 def test_the_rank_of_b_is_told_apart(platform: Model, kind: type[Mechanics]) -> None:
-    """Feet and heads that coincide on one leg leave B its rank; on four, eight forces act on a body with six motions."""
+    """One leg of no length leaves B its rank; four leave eight forces on a body with six motions."""
     mechanics, plain = kind(platform), Mechanics(platform)
     form = range_form(mechanics, genericity(plain))
     assert form is not None
