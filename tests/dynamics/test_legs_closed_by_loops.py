@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from symgen.dynamics.body_axes import BodyAxes
+from symgen.dynamics.forms.articulated import articulated
 from symgen.dynamics.forms.elimination import Elimination
 from symgen.dynamics.forms.range import range_form
 from symgen.dynamics.genericity import genericity, parameter_values
@@ -81,6 +82,25 @@ def test_the_rank_of_b_is_told_apart(platform: Model, kind: type[Mechanics]) -> 
     assert measured(1e-7, 4) < 1e-24
     upright = point | {"theta": math.pi / 2}
     assert math.isfinite(evaluate(upright)[0])
+
+
+def test_accelerations_measure_the_rank_of_b_where_they_reflect(platform: Model) -> None:
+    """Legs of no length: one leaves B its rank, also where u is lost, four do not."""
+    found = articulated(platform, genericity(Mechanics(platform)))
+    assert found is not None
+    mechanics, motion = found
+    guards = [guard for guard in motion.guards if guard.status == Status.CONSTRAINT_RANK]
+    (guard,) = guards
+    evaluate = Evaluator([guard.denominator])
+    point = parameter_values(mechanics) | {c.name: 0.1 for c in platform.coordinates}
+    point |= {name: float(value) for name, value in platform.configuration}
+
+    def measured(length: float, legs: int) -> float:
+        return abs(evaluate(point | {f"s_{k}": length for k in range(1, legs + 1)})[0])
+
+    assert measured(0.9, 1) > 1e-9
+    assert measured(1e-7, 1) > 1e-12
+    assert measured(1e-7, 4) < 1e-20
 
 
 def test_small_cores_need_no_tested_lengths() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 import shipped
 
 from symgen.dynamics.forms.articulated import articulated
+from symgen.dynamics.forms.loop_accelerations import loop_accelerations
 from symgen.dynamics.forms.motion import Problem
 from symgen.dynamics.forms.schur import schur_qr
 from symgen.dynamics.genericity import genericity, parameter_values
@@ -18,7 +20,7 @@ from symgen.model.load import load_model
 from symgen.model.model import Model
 
 # revolute and prismatic joints, rotors, points of wheels, floating bodies in the plane, damped and driven
-NAMES = ("scara", "five_bar", "delta", "differential_drive", "rolling_disc", "front_car_bodies", "arm7")
+NAMES = ("scara", "five_bar", "delta", "differential_drive", "rolling_disc", "front_car_bodies", "arm7", "gough_loops")
 JOINTS = """model: joints
 coordinates:
   x: {unit: m, range: [-1, 1]}
@@ -56,6 +58,39 @@ rotor_inertias:
 """
 
 
+FREE = """model: free
+coordinates:
+  psi: {unit: rad, range: [-1, 1]}
+  x: {unit: m, range: [-1, 1]}
+  theta: {unit: rad, range: [-1, 1]}
+  y: {unit: m, range: [-1, 1]}
+  z: {unit: m, range: [-1, 1]}
+  phi: {unit: rad, range: [-1, 1]}
+  a: {unit: rad, range: [-1, 1]}
+parameters:
+  l: {value: 0.4, unit: m, range: [0.1, 1]}
+  m: {value: 1.5, unit: kg, range: [1, 2]}
+  J: {value: 0.2, unit: kg*m**2, range: [0.1, 1]}
+  g: {value: 9.81, unit: m/s**2}
+gravity: [0, 0, -g]
+frames:
+  craft: {translation: [x, y, z], rotation: [[z, psi], [y, theta], [x, phi]]}
+  flap: {parent: craft, translation: [l, 0, l/2], rotation: [[y, a]]}
+bodies:
+  craft: {mass: 2*m, com: [l/3, l/5, 0], inertia: {xx: J, yy: 2*J, zz: 2*J, xy: J/5}}
+  flap: {mass: m, com: [0, l/2, l/3], inertia: {xx: J, yy: 2*J, zz: 1.5*J, yz: J/7}}
+points:
+  tip: {frame: flap, at: [l/2, 0, l/4]}
+constraints:
+  geometric:
+    height: 2*tip.z - l
+inputs:
+  u: {unit: N, joint: x}
+  v: {unit: N*m, joint: psi}
+  w: {unit: N*m, joint: phi}
+"""
+
+
 def compared(model: Model) -> float:
     """The largest relative difference of the two forms over a few states off and on the constraints."""
     generic = genericity(Mechanics(model))
@@ -90,6 +125,32 @@ def test_joints_of_several_coordinates_gears_and_skates(tmp_path: Path) -> None:
     path = tmp_path / "joints.yaml"
     path.write_text(JOINTS, encoding="utf-8")
     assert compared(load_model(path)) < 1e-9
+
+
+def test_a_free_body_that_is_driven_by_its_coordinates(tmp_path: Path) -> None:
+    """Forces of the coordinates are brought to its axes, accelerations back; the pitch must stay off 90 degrees."""
+    path = tmp_path / "free.yaml"
+    path.write_text(FREE, encoding="utf-8")
+    model = load_model(path)
+    assert compared(model) < 1e-9
+    found = articulated(model, genericity(Mechanics(model)))
+    assert found is not None
+    last = Evaluator([found[1].guards[-1].denominator])
+    assert abs(last({"theta": 1.2})[0]) == pytest.approx(math.cos(1.2))
+
+
+@pytest.mark.parametrize("text", [FREE, JOINTS])
+def test_loops_in_space_by_accelerations_of_points(tmp_path: Path, text: str) -> None:
+    """Those of q_ddot = 0 without gravity, which the recursion holds with gravity taken off."""
+    path = tmp_path / "loop.yaml"
+    path.write_text(text, encoding="utf-8")
+    mechanics, plain = (Mechanics(load_model(path)) for _ in range(2))
+    found = loop_accelerations(mechanics)
+    assert list(found) == [0]
+    expected = plain.constraint_acceleration_bias(plain.qd)[0]
+    source = random.Random(7)
+    point = parameter_values(plain) | {str(x.payload): source.uniform(-1, 1) for x in (*plain.q, *plain.qd)}
+    assert Evaluator([found[0]])(point)[0] == pytest.approx(Evaluator([expected])(point)[0], rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["gough_stewart", "tilted_four_bar", "skate"])

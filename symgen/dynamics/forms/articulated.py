@@ -9,10 +9,12 @@ were rounded one by one.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 
 from symgen.dynamics.articulated import ArticulatedFactor, Six
 from symgen.dynamics.forms.definite import Definite
 from symgen.dynamics.forms.definiteness import positive_definite
+from symgen.dynamics.forms.loop_accelerations import loop_accelerations
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.schur import along_factor
 from symgen.dynamics.genericity import Genericity
@@ -48,6 +50,16 @@ class _Loose(Kinematics[Scalar, Scalar]):
         return Twist((a, b, c), (x, y, z))
 
 
+class _Bodies(Problem):
+    """Loops in space are accelerated as their points are."""
+
+    @cached_property
+    def bias(self) -> Vector:
+        # the first way to a function is the one that stands in the graph
+        found = loop_accelerations(self._mechanics)
+        return super().bias if len(found) < self.r else tuple(found[i] for i in range(self.r))
+
+
 def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] | None:
     """The motion and the system it was derived on, a graph of its own.
 
@@ -70,7 +82,7 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
     guards = reflected(graph, rows, mechanics.n, generic.rank).guards if few else ()
     columns = [factor.lowered(direct, wrenches) for direct, wrenches in _forces(mechanics)]
     force = factor.lowered(mechanics.given_force, _weights_and_inertial_forces(mechanics))
-    return mechanics, along_factor(Problem(mechanics, guards), factor, columns, force)
+    return mechanics, along_factor(_Bodies(mechanics, guards), factor, columns, force)
 
 
 def _weights_and_inertial_forces(mechanics: Mechanics) -> dict[str, Six]:
