@@ -32,7 +32,7 @@ def early_factors(factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scala
 
 
 class _Early:
-    """The outputs on the way to other ones: `_image` of each node, `_without` and `_times` the factor."""
+    """The outputs on the way to other ones: `_image` of nodes that change, `_without` and `_times` the factor."""
 
     def __init__(self, graph: Graph, factoring: Factoring, outputs: Sequence[Scalar], factor: Scalar) -> None:
         self._graph, self._factoring, self._outputs, self._factor = graph, factoring, outputs, factor
@@ -40,6 +40,8 @@ class _Early:
         # divided by the factor where that saves an operation, and multiplied by it where that costs none
         self._without: dict[Scalar, Scalar] = {factor: graph.one}
         self._times: dict[Scalar, Scalar] = {}
+        # the nodes of these three; what uses none of them stays as it is
+        self._touched = {factor}
 
     def outputs(self) -> list[Scalar]:
         """The outputs rebuilt."""
@@ -50,13 +52,19 @@ class _Early:
                 # of angles and symbols: sums would only be multiplied out
                 if not other.args or other.op in ("sin", "cos"):
                     self._times[other] = node
+        self._touched.update(self._times)
         for node in order:
-            self._image[node] = self._rebuilt(node)
-        return [self._image[output] for output in self._outputs]
+            if not self._touched.isdisjoint(node.args):
+                image = self._rebuilt(node)
+                if image is not node:
+                    self._image[node] = image
+                if image is not node or node in self._without or node in self._times:
+                    self._touched.add(node)
+        return [self._image_of(output) for output in self._outputs]
 
     def _rebuilt(self, node: Scalar) -> Scalar:
         graph = self._graph
-        args = tuple(self._image[argument] for argument in node.args)
+        args = tuple([self._image_of(argument) for argument in node.args])
         if node.op == "mul" and (product := self._early(node)) is not None:
             return product
         if node.op == "div" and node.args[0] in self._without:
@@ -72,14 +80,16 @@ class _Early:
                 return self._product(self._without[one], self._multiplied(other))
         for one, other in (node.args, node.args[::-1]):
             if one in self._without:
-                self._without[node] = self._product(self._without[one], self._image[other])
+                self._without[node] = self._product(self._without[one], self._image_of(other))
             elif one in self._times and other not in self._without:
-                self._times[node] = self._graph.raw("mul", (self._multiplied(one), self._image[other]))
+                self._times[node] = self._graph.raw("mul", (self._multiplied(one), self._image_of(other)))
         return None
 
     def _multiplied(self, node: Scalar) -> Scalar:
-        found = self._times[node]
-        return self._image.get(found, found)
+        return self._image_of(self._times[node])
+
+    def _image_of(self, node: Scalar) -> Scalar:
+        return self._image.get(node, node)
 
     def _product(self, a: Scalar, b: Scalar) -> Scalar:
         return b if a.is_one else a if b.is_one else self._graph.raw("mul", (a, b))

@@ -7,7 +7,6 @@ anyway, and a reciprocal that serves one product becomes its quotient.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
@@ -18,7 +17,7 @@ from symgen.dynamics.opposites import with_one_difference
 from symgen.dynamics.shared_parts import with_shared_products, with_shared_sums
 from symgen.dynamics.sum_factors import with_common_factors
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import cost, reached, topological
+from symgen.graph.traverse import cost, reached, topological, uses_of
 from symgen.records import dataclass
 
 _Step: TypeAlias = Callable[[Graph, Factoring, Sequence[Scalar]], list[Scalar]]
@@ -86,10 +85,13 @@ def _weighed(outputs: Sequence[Scalar]) -> _Weighed:
 
 def _unified(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
     """The outputs with one node for each operation: steps past the constructors, and other graphs, leave twins."""
+    order = topological(outputs)
+    if len({(node.op, node.args, node.payload) for node in order}) == len(order):
+        return list(outputs)
     image: dict[Scalar, Scalar] = {}
     first: dict[tuple[str, tuple[Scalar, ...], object], Scalar] = {}
-    for node in topological(outputs):
-        args = tuple(image[argument] for argument in node.args)
+    for node in order:
+        args = tuple(map(image.__getitem__, node.args))
         same = _as_it_stands(graph, node, args)
         image[node] = first.setdefault((same.op, same.args, same.payload), same)
     return [image[output] for output in outputs]
@@ -98,11 +100,11 @@ def _unified(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
 def _with_common_factors(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     """f a + f b as f (a + b) where nothing else needs the products."""
     order = topological(outputs)
-    uses = _uses(order, outputs)
+    uses = uses_of(order, outputs)
     products = graph.products
     image: dict[Scalar, Scalar] = {}
     for node in order:
-        args = tuple(image[argument] for argument in node.args)
+        args = tuple(map(image.__getitem__, node.args))
         image[node] = _as_it_stands(graph, node, args)
         if node.op not in ("add", "sub") or any(a.op != "mul" or uses[a] > 1 for a in node.args):
             continue
@@ -123,7 +125,7 @@ def _with_collected_factors(graph: Graph, _: Factoring, outputs: Sequence[Scalar
 def _with_numbers_moved(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     image: dict[Scalar, Scalar] = {}
     for node in topological(outputs):
-        args = tuple(image[argument] for argument in node.args)
+        args = tuple(map(image.__getitem__, node.args))
         number = args[0].constant if node.op == "mul" else None
         if number is not None and not factoring.fixed(node):
             moved = _into_parameters(graph, factoring, args[0], args[1])
@@ -155,12 +157,14 @@ def _into_parameters(graph: Graph, factoring: Factoring, number: Scalar, product
 def _with_parameters_joined(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     """a (b x) as (a b) x where the product of the parameters a and b is computed anyway."""
     order = topological(outputs)
-    uses = _uses(order, outputs)
+    uses = uses_of(order, outputs)
     fixed = (node for node in order if node.op == "mul" and all(map(factoring.fixed, node.args)))
     pairs = {frozenset(map(id, node.args)): node for node in fixed}
+    if not pairs:
+        return list(outputs)
     image: dict[Scalar, Scalar] = {}
     for node in order:
-        args = tuple(image[argument] for argument in node.args)
+        args = tuple(map(image.__getitem__, node.args))
         joined = None
         if node.op == "mul":
             for a, inner in (node.args, node.args[::-1]):
@@ -177,20 +181,19 @@ def _with_parameters_joined(graph: Graph, factoring: Factoring, outputs: Sequenc
 def _with_quotients(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     """(1 / b) a as a / b where nothing else needs 1 / b."""
     order = topological(outputs)
-    uses = _uses(order, outputs)
+    inverses = {node for node in order if node.op == "div" and node.args[0].is_one}
+    if not inverses:
+        return list(outputs)
+    uses = uses_of(order, outputs)
     image: dict[Scalar, Scalar] = {}
     for node in order:
-        args = tuple(image[argument] for argument in node.args)
+        args = tuple(map(image.__getitem__, node.args))
         image[node] = _as_it_stands(graph, node, args)
         if node.op == "mul":
             for a, inverse in (node.args, node.args[::-1]):
-                if inverse.op == "div" and inverse.args[0].is_one and uses[inverse] == 1:
+                if inverse in inverses and uses[inverse] == 1:
                     image[node] = graph.raw("div", (image[a], image[inverse.args[1]]))
     return [image[output] for output in outputs]
-
-
-def _uses(order: Sequence[Scalar], outputs: Sequence[Scalar]) -> Counter[Scalar]:
-    return Counter([*(argument for node in order for argument in node.args), *outputs])
 
 
 def _as_it_stands(graph: Graph, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
@@ -201,7 +204,7 @@ def _with_numbers_joined(graph: Graph, factoring: Factoring, outputs: Sequence[S
     """1/2 (p sqrt(3)) as (1/2 sqrt(3)) p: numbers with numbers, which compilers multiply."""
     image: dict[Scalar, Scalar] = {}
     for node in topological(outputs):
-        args = tuple(image[argument] for argument in node.args)
+        args = tuple(map(image.__getitem__, node.args))
         joined = None
         if node.op == "mul" and args[0].constant is not None and factoring.fixed(node) and args[1].op == "mul":
             for a, b in (args[1].args, args[1].args[::-1]):
@@ -236,7 +239,10 @@ def _with_late_shared_factors(graph: Graph, factoring: Factoring, outputs: Seque
 def _with_early_factors(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
     best = _weighed(outputs)
     for factor in early_factors(factoring, outputs):
-        changed = _with_quotients(graph, factoring, with_early_factor(graph, factoring, best.outputs, factor))
+        early = with_early_factor(graph, factoring, best.outputs, factor)
+        if tuple(early) == best.outputs:
+            continue
+        changed = _with_quotients(graph, factoring, early)
         found = _weighed(_unified(graph, changed))
         if found.weight < best.weight:
             best = found

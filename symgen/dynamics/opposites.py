@@ -34,7 +34,7 @@ def with_one_difference(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]
         if node.op == "sub":
             first[node.args[0], node.args[1]] = node
         if node.op != "neg" and not any(negative for negative, _ in args):
-            parts = tuple(scalar for _, scalar in args)
+            parts = tuple([scalar for _, scalar in args])
             image[node] = False, node if parts == node.args else graph.raw(node.op, parts, node.payload)
         else:
             image[node] = _signed(graph, node, args)

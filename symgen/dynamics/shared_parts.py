@@ -7,13 +7,12 @@ factorization, 1969).
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import TypeAlias
 
 from symgen.dynamics.terms import Term, product_of, sum_of, terms_of
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import reached, topological
+from symgen.graph.traverse import reached, topological, uses_of
 
 _Pair: TypeAlias = tuple[Term, Term]
 
@@ -38,7 +37,7 @@ class _Sharing:
     def __init__(self, graph: Graph, ops: Collection[str], outputs: Sequence[Scalar]) -> None:
         self._graph, self._ops, self._outputs = graph, ops, outputs
         self._order = topological(outputs)
-        uses = Counter([*(a for node in self._order for a in node.args), *outputs])
+        uses = uses_of(self._order, outputs)
         inside = {
             a for node in self._order if node.op in ops for a in node.args if a.op in ops and uses[a] == 1
         }
@@ -58,7 +57,7 @@ class _Sharing:
         for node in self._order:
             terms = self._terms.get(node)
             if terms is None or node in self._long or not any(part in pairs for _, part in terms):
-                args = tuple(image[a] for a in node.args)
+                args = tuple(map(image.__getitem__, node.args))
                 image[node] = node if args == node.args else self._graph.raw(node.op, args, node.payload)
             else:
                 image[node] = self._built(terms, pairs, image, made)

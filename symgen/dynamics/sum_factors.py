@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 
 from symgen.dynamics.terms import product_of, sum_of, terms_of
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import topological
+from symgen.graph.traverse import topological, uses_of
 from symgen.records import dataclass
 
 _SUMS = frozenset({"add", "sub"})
@@ -42,13 +42,13 @@ def with_common_factors(
     sums that hold them; numbers are factors too then.
     """
     order = topological(outputs)
-    uses = Counter([*(argument for node in order for argument in node.args), *outputs])
+    uses = uses_of(order, outputs)
     whole = {node for node in order if uses[node] > 1 and (apart is None or not apart(node))}
     sums = [a for node in order if node.op in _SUMS for a in node.args if a.op in _SUMS]
     inside = {a for a in sums if uses[a] == 1 or (apart is not None and any(map(apart, a.args)))}
     image: dict[Scalar, Scalar] = {}
     for node in order:
-        args = tuple(image[argument] for argument in node.args)
+        args = tuple(map(image.__getitem__, node.args))
         image[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
         if node.op in _SUMS and (node not in inside or uses[node] > 1):
             terms = [_Term(sign, term, _factors(term, whole)) for sign, term in terms_of(node, inside)]

@@ -93,15 +93,15 @@ def derivative_along(graph: Graph, outputs: Sequence[Scalar], direction: Mapping
 def gradient(graph: Graph, output: Scalar, symbols: Sequence[Scalar]) -> list[Scalar]:
     """The derivatives of one output by the symbols, in one reverse sweep."""
     order = topological([output])
-    touched = {symbol.serial for symbol in symbols}
+    touched = set(symbols)
     for node in order:
-        if any(argument.serial in touched for argument in node.args):
-            touched.add(node.serial)
+        if not touched.isdisjoint(node.args):
+            touched.add(node)
     adjoint: dict[Scalar, Scalar] = {output: graph.one}
     for node in reversed(order):
-        if node not in adjoint or node.op in ("const", "symbol") or node.serial not in touched:
+        if node not in adjoint or node.op in ("const", "symbol") or node not in touched:
             continue
         for partial, argument in zip(partials(graph, node), node.args, strict=True):
-            if argument.serial in touched:
+            if argument in touched:
                 adjoint[argument] = adjoint.get(argument, graph.zero) + adjoint[node] * partial
     return [adjoint.get(symbol, graph.zero) for symbol in symbols]

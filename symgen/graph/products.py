@@ -20,6 +20,9 @@ def _whole(value: Fraction) -> int | Fraction:
     return value.numerator if value.denominator == 1 else value
 
 
+_COMPOSED = frozenset({"const", "neg", "mul", "div"})
+
+
 class Products:
     """The products of one graph, taken apart once each."""
 
@@ -33,12 +36,14 @@ class Products:
         known = self._known.get(a)
         if known is not None:
             return known
-        if (value := a.constant) is not None:
-            result: Monomial = (_whole(value), {})
+        if a.op not in _COMPOSED:
+            result: Monomial = (1, {a: 1})
+        elif (value := a.constant) is not None:
+            result = (_whole(value), {})
         elif a.op == "neg":
             coefficient, powers = self.monomial(a.args[0])
             result = (-coefficient, powers)
-        elif a.op in ("mul", "div"):
+        else:
             sign = 1 if a.op == "mul" else -1
             (k1, left), (k2, right) = self.monomial(a.args[0]), self.monomial(a.args[1])
             if len(left) + len(right) > MOST_FACTORS or (sign < 0 and k2 == 0):
@@ -48,11 +53,11 @@ class Products:
                 for factor, count in right.items():
                     powers[factor] = powers.get(factor, 0) + sign * count
                 result = (k1 * k2 if sign > 0 else _whole(Fraction(k1) / k2), {f: c for f, c in powers.items() if c})
-        else:
-            result = (1, {a: 1})
         self._known[a] = result
-        if any(factor.op in ("sin", "cos") for factor in result[1]):
-            self._turning.add(a)
+        for factor in result[1]:
+            if factor.op == "sin" or factor.op == "cos":
+                self._turning.add(a)
+                break
         return result
 
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:

@@ -34,18 +34,21 @@ class Scalar:
         self.args = args
         self.payload = payload
         # the value of a constant node, else None
-        self.constant: Fraction | None = payload if type(payload) is Fraction and op == "const" else None
-        self.is_zero = self.constant is not None and self.constant == 0
-        self.is_one = self.constant is not None and self.constant == 1
+        self.constant: Fraction | None = None
+        self.is_zero = self.is_one = False
+        if op == "const":
+            assert isinstance(payload, Fraction)
+            self.constant = payload
+            self.is_zero, self.is_one = payload == 0, payload == 1
         # operations of the expression written out, and its value in the field of fingerprints
-        size = 0 if op in ("const", "symbol", "neg") else 1
+        size = 0 if op == "neg" or not args else 1
         for argument in args:
             size += argument.size
         self.size: int = size
         self.value = 0
 
     def __add__(self, other: Number) -> Scalar:
-        return self.graph.add(self, self.graph.lift(other))
+        return self.graph.add(self, other if other.__class__ is Scalar else self.graph.lift(other))
 
     def __radd__(self, other: Number) -> Scalar:
         return self.graph.add(self.graph.lift(other), self)
@@ -57,7 +60,7 @@ class Scalar:
         return self.graph.sub(self.graph.lift(other), self)
 
     def __mul__(self, other: Number) -> Scalar:
-        return self.graph.mul(self, self.graph.lift(other))
+        return self.graph.mul(self, other if other.__class__ is Scalar else self.graph.lift(other))
 
     def __rmul__(self, other: Number) -> Scalar:
         return self.graph.mul(self.graph.lift(other), self)
@@ -127,6 +130,8 @@ class Graph:
                 if leaf not in self._angles:
                     self._angles[leaf] = leaf_pair(leaf)
             node.value = angle_pair(form, self._angles)[op == "sin"]
+        elif len(args) == 2:
+            node.value = combine(op, (args[0].value, args[1].value), payload)
         else:
             node.value = combine(op, [a.value for a in args], payload)
         return node
@@ -197,9 +202,10 @@ class Graph:
             return self.const(a.constant + b.constant)
         if a is b:
             return self.mul(self.const(2), a)
-        for x, y in ((a, b), (b, a)):
-            if x.op == "sub" and x.args[1] is y:
-                return x.args[0]
+        if a.op == "sub" and a.args[1] is b:
+            return a.args[0]
+        if b.op == "sub" and b.args[1] is a:
+            return b.args[0]
         if (combined := self.products.combined(a, b, 1)) is not None:
             return combined
         if a.serial > b.serial:

@@ -20,7 +20,7 @@ def transplanted(
     outputs = list(outputs)
     image: dict[Scalar, Scalar] = {}
     for node in topological(outputs):
-        args = tuple(image[argument] for argument in node.args)
+        args = tuple(map(image.__getitem__, node.args))
         if node.op == "symbol":
             name = str(node.payload)
             image[node] = symbols[name] if name in symbols else graph.symbol(name)

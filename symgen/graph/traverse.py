@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Container, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
+from itertools import chain
 
 from symgen.graph.scalar import Graph, Scalar
 from symgen.records import dataclass
@@ -21,7 +22,7 @@ def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> Seq
 
 
 # one step after another goes through the same outputs
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=16)
 def _whole_order(outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
     return tuple(_order(outputs, ()))
 
@@ -67,6 +68,13 @@ def reached(outputs: Iterable[Scalar]) -> set[Scalar]:
     return seen
 
 
+def uses_of(order: Sequence[Scalar], outputs: Iterable[Scalar]) -> Counter[Scalar]:
+    """How often each node of an order is an operand or an output."""
+    uses = Counter(chain.from_iterable([node.args for node in order]))
+    uses.update(outputs)
+    return uses
+
+
 def rebuild(graph: Graph, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
     """The node's operation on other operands, through the constructor rules."""
     match node.op:
@@ -96,10 +104,9 @@ def substitute(graph: Graph, outputs: Iterable[Scalar], replacements: Mapping[Sc
     for node in topological(outputs):
         if node in replacements:
             image[node] = replacements[node]
-        elif all(image[argument] is argument for argument in node.args):
-            image[node] = node
         else:
-            image[node] = rebuild(graph, node, tuple(image[argument] for argument in node.args))
+            args = tuple(map(image.__getitem__, node.args))
+            image[node] = node if args == node.args else rebuild(graph, node, args)
     return [image[output] for output in outputs]
 
 
