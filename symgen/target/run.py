@@ -8,7 +8,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
@@ -16,9 +16,7 @@ from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.c_sc import emit_c_sc
-from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Program, Scalar
-from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
 from symgen.target.build import STACK_WATCHED, Workshop
@@ -36,25 +34,28 @@ from symgen.target.emulator import addresses, build_counter, count_calls, run_im
 from symgen.target.entries import Entries, plain_entries, with_companions
 from symgen.target.footprint import Footprint, deepest_frame, footprints
 from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
+from symgen.target.selection import (
+    FAST,
+    LIBM,
+    PART,
+    PORTABLE,
+    SMALL,
+    WHOLE,
+    WITH_COMPANIONS,
+    beyond_pairs,
+    has_unit,
+    selected,
+    selection,
+)
 from symgen.target.tools import EMULATOR, PREFIX, ToolError, compilers, version
 from symgen.target.vectors import FEWEST, Vectors, perturbed, vectors_of
 from symgen.verify.reference import Reference, State
 
 Progress = Callable[[str], None]
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
-FAST, SMALL = "-O2", "-Os"  # the levels at which instructions and stack are measured; the footprint at the second
-BASE: tuple[Compiler, str] = ("gcc", "-O2")
-# With these every kernel is built; elsewhere u and what has not more operations, for the time that compilers take.
-WITH_ALL: tuple[tuple[Compiler, str], ...] = (BASE, ("gcc", "-Os"), ("clang", "-O2"))
-MOST_OPERATIONS, MOST_OF_U = 150, 2000
-# Left out of that for float64 where a core has no unit for it: gcc takes longest to find registers for pairs of words.
-# Bytes and instructions of large kernels come from -Os there.
-TWICE_THERE: tuple[Compiler, str] = ("gcc", "-O2")
+BASE: tuple[Compiler, str] = ("gcc", FAST)
 BESIDE = 1024  # bytes of stack that a kernel may take beside its own frames, for functions of the libraries
 CHOICES = ("ratio_or_zero", "copysign")
-PORTABLE, LIBM = "portable", "libm"
-# Of the kernels with portable sine and cosine: all; all in float32 and the small ones in float64; the small ones.
-WHOLE, SINGLE, PART = "whole", "single", "part"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +73,7 @@ class _Build:
 
     @property
     def kernels(self) -> str:
-        if self.trig == LIBM:
-            return LIBM
-        build = (self.compiler, self.level)
-        if build not in WITH_ALL:
-            return PART
-        has_unit = self.core is None or "float64" in self.core.native
-        return SINGLE if build == TWICE_THERE and not has_unit else WHOLE
+        return selection(self.core, self.compiler, self.level, self.trig)
 
     @property
     def label(self) -> str:
@@ -92,25 +87,22 @@ class _Bench:
         derivations = derive_quantities(model, model.outputs)
         programs = dict(schedule(derivations.mechanics, derivations.quantities, SCALARS).items())
         self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
-        small = {scalar: _small(program) for scalar, program in programs.items()}
-        library = {scalar: with_library_trig(program) for scalar, program in small.items()}
-        plain = {scalar: plain_entries(model, program) for scalar, program in programs.items()}
-        single: dict[Scalar, Program] = {"float64": small["float64"], "float32": programs["float32"]}
-        whole = {scalar: with_companions(model, plain[scalar], program) for scalar, program in small.items()}
-        few = plain_entries(model, small["float64"])
+        chosen = selected(programs)
+        small = chosen[PART]
         self.entries: dict[str, dict[Scalar, Entries]] = {
-            WHOLE: whole,
-            SINGLE: {"float64": with_companions(model, few, small["float64"]), "float32": whole["float32"]},
-            PART: {scalar: plain_entries(model, program) for scalar, program in small.items()},
-            LIBM: {scalar: plain_entries(model, program) for scalar, program in library.items()},
+            kernels: {
+                scalar: with_companions(model, plain, small[scalar]) if kernels in WITH_COMPANIONS else plain
+                for scalar, program in by_scalar.items()
+                for plain in (plain_entries(model, program),)
+            }
+            for kernels, by_scalar in chosen.items()
         }
+        self.beyond = tuple(kernel.name for kernel in beyond_pairs(programs["float64"]))
         self.published = self._files(programs, emit_c)
         companions = {**self._files(small, emit_c_prepared), **self._files(small, emit_c_sc)}
         files = {
-            WHOLE: {**self.published, **companions},
-            SINGLE: {**self._files(single, emit_c), **companions},
-            PART: self._files(small, emit_c),
-            LIBM: self._files(library, emit_c),
+            kernels: self._files(by_scalar, emit_c) | (companions if kernels in WITH_COMPANIONS else {})
+            for kernels, by_scalar in chosen.items()
         }
         self.sources = {
             kernels: {"driver.c": driver_source(model, entries), **files[kernels]}
@@ -238,16 +230,8 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
         cells=tuple(cell for cells, _, _ in made for cell in cells),
         cores=reports,
         failures=tuple(failures),
-        notes=() if "clang" in compilers() else ("clang is not installed: builds with clang are left out",),
+        notes=_notes(bench, cores),
     )
-
-
-def _small(program: Program) -> Program:
-    """The program without its largest kernels; one at least stays."""
-    sizes = {k.name: count_operations(k.statements).total for k in program.kernels}
-    most = {name: MOST_OF_U if name == "inverse_dynamics" else MOST_OPERATIONS for name in sizes}
-    kept = [k for k in program.kernels if sizes[k.name] <= most[k.name]]
-    return replace(program, kernels=tuple(kept or [min(program.kernels, key=lambda k: sizes[k.name])]))
 
 
 def _builds(cores: Sequence[Core]) -> list[_Build]:
@@ -331,6 +315,19 @@ def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
         if size is not None and size.undefined:
             wrong.append(f"{where} needs {', '.join(size.undefined)}")
     return wrong
+
+
+def _notes(bench: _Bench, cores: Sequence[Core]) -> tuple[str, ...]:
+    """What was left out."""
+    found = []
+    without = [core.name for core in cores if not has_unit(core)]
+    if bench.beyond and without:
+        found.append(
+            f"not built by gcc in float64 for {', '.join(without)}, for their size: {', '.join(bench.beyond)}"
+        )
+    if "clang" not in compilers():
+        found.append("clang is not installed: builds with clang are left out")
+    return tuple(found)
 
 
 def _statuses(bench: _Bench) -> dict[str, dict[str, int]]:

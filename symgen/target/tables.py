@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
+from symgen.target.selection import FAST, SMALL
 from symgen.terminal import columns
 
 HEAD = ("kernel", "scalar", "instructions", "-Os", "code", "linked", "frame", "stack")
-FAST, SMALL = "-O2", "-Os"
 
 
 def target_tables(report: TargetReport) -> str:

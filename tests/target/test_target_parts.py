@@ -12,8 +12,10 @@ from shipped import model, programs
 
 from symgen.cli import main
 from symgen.target.compare import BOUND, compare
+from symgen.target.cores import BY_NAME, Compiler, Core
 from symgen.target.driver import Record, Results, driver_source, pack_states, unpack_results
 from symgen.target.entries import Entries, plain_entries, with_companions
+from symgen.target.selection import beyond_pairs, selected, selection
 from symgen.target.vectors import perturbed, vectors_of
 from symgen.verify.reference import Reference, State
 
@@ -115,3 +117,34 @@ def test_the_driver_calls_every_function_of_both_types() -> None:
         assert f"front_car_{kernel.name}_f(" in text
     assert "front_car_inverse_dynamics_prepared_f(row_float.q" in text
     assert "front_car_inverse_dynamics_sc(&sc_double" in text
+
+
+def _core(name: str | None) -> Core | None:
+    return None if name is None else BY_NAME[name]
+
+
+@pytest.mark.parametrize(
+    ("core", "compiler", "level", "float64"),
+    [
+        (None, "gcc", "-O2", "all"), ("cortex-m7", "gcc", "-O2", "all"), ("cortex-m4f", "clang", "-O2", "all"),
+        ("cortex-m4f", "gcc", "-Os", "all but the largest"), ("cortex-m4f", "gcc", "-O2", "small"),
+        ("rv32imac", "clang", "-O3", "small"), (None, "gcc", "-O1", "small"),
+    ],
+)
+def test_large_kernels_in_float64_are_built_where_that_is_quick(
+    monkeypatch: pytest.MonkeyPatch, core: str | None, compiler: Compiler, level: str, float64: str
+) -> None:
+    monkeypatch.setattr("symgen.target.selection.MOST_IN_PAIRS", 1000)
+    known = programs("rapkm_2rrr_rr")
+    chosen = selected(known)[selection(_core(core), compiler, level, "portable")]
+    beyond = {kernel.name for kernel in beyond_pairs(known["float64"])}
+    assert beyond
+    built = {kernel.name for kernel in chosen["float64"].kernels}
+    everything = {kernel.name for kernel in known["float64"].kernels}
+    assert "inverse_dynamics" in built
+    if float64 == "small":
+        assert built < everything - beyond
+    else:
+        assert built == (everything if float64 == "all" else everything - beyond)
+    all_single = level in ("-O2", "-Os")
+    assert ({kernel.name for kernel in chosen["float32"].kernels} == everything) == all_single
