@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import shipped
 
-from symgen.bench.skipping import page, skipped
+from symgen.bench.skipping import BY_MINORS, page, skipped
 
 # Vectors and matrices are derived along different ways; one may share a product that the other does not.
 CERTAIN = (
@@ -20,6 +20,7 @@ CERTAIN = (
 @pytest.mark.parametrize("name", ["skate", "front_car", "slider_crank"])
 def test_keeping_something_never_costs_less(name: str) -> None:
     found = skipped(shipped.model(name))
+    assert found.minor is not None
     assert found.generated <= found.minor
     kept = {one.what: one for one in found.kept}
     for what in CERTAIN:
@@ -54,3 +55,10 @@ def test_what_would_be_too_long_is_told_and_not_derived() -> None:
     kept = {one.what: str(one) for one in skipped(shipped.model("chain16")).kept}
     assert kept["zeros of B and M"] == "too long"
     assert kept["coordinates no constraint touches"] == "–"
+
+
+def test_minors_of_many_rows_are_not_listed() -> None:
+    found = skipped(shipped.model("gough_loops"))
+    assert found.minor is None
+    assert [str(one) for one in found.kept[:-1]] == ["too long"] * len(BY_MINORS)
+    assert [one.what for one in skipped(shipped.model("skate")).kept[:-1]] == list(BY_MINORS)
