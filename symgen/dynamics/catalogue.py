@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.genericity import Genericity
@@ -12,12 +13,16 @@ from symgen.graph.scalar import Scalar
 from symgen.model.model import Model
 from symgen.records import dataclass
 
+if TYPE_CHECKING:
+    from symgen.dynamics.alike import Alike
+
 
 @dataclass(frozen=True, slots=True)
 class Derived:
     """A quantity as scalars: row-major outputs of `shape`, and the denominators they depend on.
 
-    `remark` is what its reader must know for this system.
+    `remark` is what its reader must know for this system.  `alike` gives the same outputs to kernels by a function
+    that several bodies have in common, where that is worth it.
     """
 
     name: str
@@ -25,6 +30,7 @@ class Derived:
     outputs: Vector
     guards: tuple[Guard, ...]
     remark: str = ""
+    alike: Alike | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ it turns (base parameters: Khalil and Dombre, Modeling, Identification and Contr
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -60,6 +60,7 @@ def newton_euler(
     gravity: Vector3,
     lumped: bool = False,
     twists: Mapping[str, Sequence[int]] = MappingProxyType({}),
+    named: Callable[[Body, Motion], Wrench | None] = lambda *_: None,
 ) -> Vector:
     """d/dt dT/dq_dot - dT/dq + dU/dq of all bodies and rotors for the accelerations `qdd`.
 
@@ -67,8 +68,20 @@ def newton_euler(
     `lumped` tells whether parameters are regrouped first: cheaper where frames share parameters.
     The frames of `twists` hand nothing on: force and moment about their origin, in their axes, stand in six places of
     the result.
+    `named` may give the inertial wrench of a body a name, which stands in the result for what it is.
     """
-    return _Recursion(bodies, qd, qdd, gravity).forces(lumped, twists)
+    return _Recursion(bodies, qd, qdd, gravity, named).forces(lumped, twists)
+
+
+def inertial_wrench(motion: Motion, mass: Scalar, com: Vector3, tensor: Rows[Scalar]) -> Wrench:
+    """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w."""
+    x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
+    return Wrench((x, y, z), plus(_turning_moment(tensor, motion), cross(com, (x, y, z))))
+
+
+def motion(velocity: Vector3, acceleration: Vector3, linear: Vector3) -> Motion:
+    """A motion by angular velocity, angular acceleration and acceleration of the origin."""
+    return Motion(velocity, acceleration, linear, _field(velocity, acceleration))
 
 
 def inertial_wrenches(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> dict[str, Wrench]:
@@ -85,7 +98,15 @@ def frame_motions(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> 
 
 
 class _Recursion:
-    def __init__(self, bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> None:
+    def __init__(
+        self,
+        bodies: Bodies,
+        qd: Vector,
+        qdd: Vector,
+        gravity: Vector3,
+        named: Callable[[Body, Motion], Wrench | None] = lambda *_: None,
+    ) -> None:
+        self.named = named
         self.bodies, self.graph, self.kinematics = bodies, bodies.graph, bodies.kinematics
         self.at_rest = all(rate.is_zero for rate in qd)
         # relative velocities are linear in the rates: at rest their derivatives have terms in q_ddot alone
@@ -204,12 +225,10 @@ class _Recursion:
         return replace(motion, field=_field(self.none, motion.acceleration))
 
     def _inertial(self, body: Body, motion: Motion) -> Wrench:
-        """m a of the centre of mass and its moment, I w' + w x I w."""
-        com = self.kinematics.space.values(body.com)
-        mass = self.bodies.scalars.value(body.mass)
-        x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
-        moment = _turning_moment(self.bodies.inertia(body.name), motion)
-        return Wrench((x, y, z), plus(moment, self._cross(com, (x, y, z))))
+        """What the body takes of its frame, or the name of that."""
+        mass, com = self.bodies.scalars.value(body.mass), self.kinematics.space.values(body.com)
+        found = self.named(body, motion)
+        return inertial_wrench(motion, mass, com, self.bodies.inertia(body.name)) if found is None else found
 
     def _inertial_about_origin(self, lump: Lump, motion: Motion) -> Wrench:
         """m a + U h and its moment, I w' + w x I w + h x a."""

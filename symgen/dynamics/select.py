@@ -206,7 +206,18 @@ def derive_quantities(
         form = BY_FRAMES if best == ARTICULATED else _form_along(along.get(best), name)
         choices.append(Choice(name, best, tuple(costs.items()), form))
     grouped = tuple(_with_groups(mechanics, _remarked(derived, generic)) for derived in quantities)
+    if forms.get("inverse_dynamics", "auto") == "auto":
+        grouped = tuple(_with_alike_bodies(model, derived) for derived in grouped)
     return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named), inverse)
+
+
+def _with_alike_bodies(model: Model, derived: Derived) -> Derived:
+    """u with what its bodies have in common, where there are bodies."""
+    if derived.name != "inverse_dynamics" or not model.mechanism.has_mass:
+        return derived
+    from symgen.dynamics.alike import alike_bodies  # models given by energies start without it
+
+    return replace(derived, alike=alike_bodies(model, derived.outputs))
 
 
 def _remarked(derived: Derived, generic: Genericity) -> Derived:

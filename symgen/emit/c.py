@@ -11,6 +11,7 @@ from symgen.emit.c_causes import Cause, CauseView, cause_names, cause_view, caus
 from symgen.emit.comments import c_comment, c_comment_lines, indent_of
 from symgen.emit.defaults import default_values
 from symgen.emit.finite import SUM, FiniteTest
+from symgen.emit.lanes import each_macro, each_name, lane_loops, loop_lines, results_of
 from symgen.emit.literals import c_literal
 from symgen.emit.locals import Names, all_statements, array_arguments, names_of, used_locals
 from symgen.emit.pairs import GROUP_NAMES, PairsView, group_lines, leading_group, pair_names, pairs_view
@@ -73,6 +74,7 @@ class CView:
     pairs: PairsView | None
     both: LibraryPair | None
     rare: str
+    each: str
     apart: str
     includes_math: bool
 
@@ -137,6 +139,7 @@ def _view(model: Model, program: Program) -> CView:
         pairs=pairs_view(prefix, suffix, program),
         both=library_pair(prefix, program),
         rare=rare_macro(prefix, program),
+        each=each_macro(prefix, program),
         apart=apart_macro(prefix, program),
         includes_math=uses_library(program),
     )
@@ -197,9 +200,7 @@ def kernel_causes(
     return tuple(cause_view(cause, kernel, names, printer, declared) for cause in causes_of(kernel, function))
 
 
-def _printer(
-    model: Model, program: Program, kernel: Kernel, names: Names, causes: tuple[Cause, ...]
-) -> CStatements:
+def _printer(model: Model, program: Program, kernel: Kernel, names: Names, causes: tuple[Cause, ...]) -> CStatements:
     suffix = SUFFIX[program.scalar]
 
     def call(check: Check) -> str:
@@ -237,7 +238,16 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names, fu
         # read where first needed: fewer values are alive across the calls of the sine and cosine
         return [waiting.pop(o.name) for o in operands if isinstance(o, Local) and o.name in waiting]
 
-    for block in kernel.blocks:
+    loops, behind = lane_loops(kernel, program.scalar), -1
+    for number, block in enumerate(kernel.blocks):
+        if number <= behind:
+            continue
+        if (loop := loops.get(number)) is not None:
+            lines += due(operand for row in loop.given for operand in row)
+            lines += loop_lines(loop, printer, each_name(model.name, suffix))
+            waiting |= results_of(loop, program.scalar, names.locals)
+            behind = loop.last
+            continue
         for statement in block.statements:
             if statement.operation == "sincos" and statement in group:
                 if statement is group[0]:

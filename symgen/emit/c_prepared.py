@@ -7,6 +7,7 @@ from dataclasses import replace
 from symgen.emit.c import FunctionView, c_members, kernel_body, kernel_causes, status_name, uses_library
 from symgen.emit.c_causes import cause_names
 from symgen.emit.comments import c_comment_lines
+from symgen.emit.lanes import each_macro
 from symgen.emit.locals import Names, array_arguments, names_of
 from symgen.emit.operations import count_operations
 from symgen.emit.pairs import PairsView, pair_names, pairs_view
@@ -38,6 +39,7 @@ class PreparedView:
     pairs: PairsView | None
     both: LibraryPair | None
     rare: str
+    each: str
     apart: str
     includes_math: bool
 
@@ -72,6 +74,7 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
         pairs=pairs,
         both=library_pair(model.name, stated),
         rare=rare_macro(model.name, stated),
+        each=each_macro(model.name, stated),
         apart=apart_macro(model.name, stated),
         includes_math=uses_library(whole),
     )
@@ -109,9 +112,7 @@ def _prepare_body(model: Model, program: Program, prepared: Prepared, names: Nam
     return (*lines, "return prepared;")
 
 
-def _function(
-    model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str
-) -> FunctionView:
+def _function(model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str) -> FunctionView:
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {struct} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]

@@ -7,6 +7,7 @@ from dataclasses import replace
 from symgen.emit.c import FunctionView, c_names, kernel_body, kernel_causes, status_name, uses_library
 from symgen.emit.c_causes import cause_names
 from symgen.emit.comments import c_comment, c_comment_lines
+from symgen.emit.lanes import each_macro
 from symgen.emit.locals import Names, array_arguments, names_of
 from symgen.emit.pairs import PairsView, pair_names, pairs_view
 from symgen.emit.quantities import BATCHED, meaning
@@ -34,6 +35,7 @@ class GivenTrigView:
     pairs: PairsView | None
     both: LibraryPair | None
     rare: str
+    each: str
     apart: str
     includes_math: bool
 
@@ -66,6 +68,7 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
         pairs=pairs_view(model.name, suffix, whole),
         both=library_pair(model.name, whole),
         rare=rare_macro(model.name, whole),
+        each=each_macro(model.name, whole),
         apart=apart_macro(model.name, whole),
         includes_math=uses_library(whole),
     )
@@ -82,9 +85,7 @@ def _members(model: Model, given: list[GivenTrig]) -> tuple[tuple[str, str], ...
     )
 
 
-def _function(
-    model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str
-) -> FunctionView:
+def _function(model: Model, program: Program, kernel: Kernel, names: Names, struct: str, suffix: str) -> FunctionView:
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = [f"const {struct} *sc"]
     arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
