@@ -228,7 +228,9 @@ def _failing_forms(derived: _Derived) -> tuple[tuple[str, str], ...]:
 
 def _reporting(model: Model, measured: bool) -> Background[ReportFiles]:
     from symgen.background import Background
+    from symgen.emit import render
 
+    render.load()
     return Background(lambda receive: _report(model, receive, measured))
 
 

@@ -68,14 +68,16 @@ def estimated_work(rows: Rows) -> int:
     if sum(comb(n, k) for k in range(r + 1)) > 20_000:
         return 10**9
     work = 0
-    level: dict[Subset, int] = {(): 1}
-    for k, row in enumerate(rows):
-        level_next: dict[Subset, int] = {}
-        for columns in combinations(range(n), k + 1):
-            total = sum(len(row[j]) * level[columns[:p] + columns[p + 1 :]] for p, j in enumerate(columns))
-            level_next[columns] = total
-            work += total
-        level = level_next
+    level = {0: 1}  # by sets of columns, a bit for each
+    for row in rows:
+        lengths = [(1 << j, len(entry)) for j, entry in enumerate(row) if entry]
+        following: dict[int, int] = {}
+        for columns, count in level.items():
+            for column, length in lengths:
+                if not columns & column:
+                    following[columns | column] = following.get(columns | column, 0) + length * count
+        work += sum(following.values())
+        level = following
     return work
 
 

@@ -6,7 +6,8 @@ import random
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, reduce
+from operator import mul
 
 import flint
 import mpmath
@@ -86,36 +87,54 @@ class Point:
     def polynomial(self, p: PolyElement) -> mpf:
         """The value of a ring element."""
         with _working_precision():
-            total = flint.arb(0)
-            for coefficient, powers in _terms(p):
-                term = coefficient
-                for position, exponent in powers:
-                    value = self._generators[position]
-                    term *= value if exponent == 1 else value**exponent
-                total += term
-        mantissa, exponent = total.mid().man_exp()
-        return mpf((int(mantissa), int(exponent)))
+            return _as_mpf(self._value(p))
 
     def quotient(self, value: Quotient) -> mpf:
         """The value of a fraction."""
-        top = self.polynomial(value.numerator)
-        return top if value.is_polynomial else top / self.polynomial(value.denominator)
+        with _working_precision():
+            return _as_mpf(self._fraction(value))
 
     def matrix(self, matrix: Matrix) -> list[list[mpf]]:
         """The values of a matrix."""
-        return [[self.quotient(entry) for entry in row] for row in matrix]
+        return [[_as_mpf(value) for value in row] for row in self.flint_matrix(matrix)]
+
+    def flint_matrix(self, matrix: Matrix) -> list[list[flint.arb]]:
+        """The same as flint's numbers, without their error bounds."""
+        with _working_precision():
+            return [[self._fraction(entry) for entry in row] for row in matrix]
+
+    def _fraction(self, value: Quotient) -> flint.arb:
+        top = self._value(value.numerator)
+        if value.is_polynomial:
+            return top
+        bottom = self._value(value.denominator)
+        if bottom == 0:
+            raise ZeroDivisionError
+        return (top / bottom).mid()
+
+    def _value(self, p: PolyElement) -> flint.arb:
+        generator = self._generators.__getitem__
+        total = flint.arb(0)
+        for coefficient, positions in _terms(p):
+            total += reduce(mul, map(generator, positions), coefficient)
+        return total.mid()
 
 
 @lru_cache(maxsize=4096)  # the same rows at every step of Newton's method; at the working precision of all points
-def _terms(p: PolyElement) -> tuple[tuple[flint.arb, tuple[tuple[int, int], ...]], ...]:
-    """Coefficients, and the positions and exponents of the generators that occur."""
+def _terms(p: PolyElement) -> tuple[tuple[flint.arb, tuple[int, ...]], ...]:
+    """Coefficients, and the positions of the generators that are multiplied, each as often as its power says."""
     return tuple(
         (
             flint.arb(int(coefficient.numerator)) / int(coefficient.denominator),
-            tuple((position, exponent) for position, exponent in enumerate(monomial) if exponent),
+            tuple([position for position, exponent in enumerate(monomial) for _ in range(exponent)]),
         )
         for monomial, coefficient in p.items()
     )
+
+
+def _as_mpf(value: flint.arb) -> mpf:
+    mantissa, exponent = value.mid().man_exp()
+    return mpf((int(mantissa), int(exponent)))
 
 
 def parameter_values(model: Model) -> dict[str, mpf]:
@@ -162,17 +181,19 @@ def _onto_constraints(model: Model, mechanics: Mechanics, values: dict[str, mpf]
         point = Point(mechanics, values)
         if not mechanics.residual:
             return point
-        residual = [row[0] for row in point.matrix(mechanics.residual)]
-        if max(abs(x) for x in residual) < mpf(10) ** -DIGITS:
+        residual = point.flint_matrix(mechanics.residual)
+        if max(abs(value) for (value,) in residual) < flint.arb(10) ** -DIGITS:
             return point
-        jacobian = point.matrix(mechanics.jacobian[: len(residual)])
-        gram = mpmath.matrix([[mpmath.fdot(a, b) for b in jacobian] for a in jacobian])
-        scale = max(gram[i, i] for i in range(len(residual)))
-        for i in range(len(residual)):
-            gram[i, i] += scale * mpf(10) ** -30  # dependent constraints: any solution of the consistent system does
-        multipliers = mpmath.lu_solve(gram, mpmath.matrix(residual))
+        with _working_precision():
+            jacobian = flint.arb_mat(point.flint_matrix(mechanics.jacobian[: len(residual)]))
+            gram = jacobian * jacobian.transpose()
+            scale = max(gram[i, i] for i in range(len(residual)))
+            for i in range(len(residual)):
+                # dependent constraints: any solution of the consistent system does
+                gram[i, i] += scale * flint.arb(10) ** -30
+            step = jacobian.transpose() * gram.solve(flint.arb_mat(residual))
         for j, name in enumerate(names):
-            values[name] -= mpmath.fsum(row[j] * multipliers[i] for i, row in enumerate(jacobian))
+            values[name] -= _as_mpf(step[j, 0])
             if abs(values[name]) > 1e6:
                 return None
     return None
@@ -190,7 +211,7 @@ def rank(matrix: Sequence[Sequence[mpf]]) -> int:
         if abs(pivot) <= RANK_THRESHOLD * scale:
             break
         head = rows.pop(i)
-        rows = [[a - row[j] / pivot * b for a, b in zip(row, head, strict=True)] for row in rows]
+        rows = [[a - row[j] / pivot * b for a, b in zip(row, head, strict=True)] if row[j] else row for row in rows]
         columns.remove(j)
         found += 1
     return found

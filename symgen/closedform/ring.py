@@ -136,7 +136,10 @@ class TrigRing:
 
     def shape(self, p: PolyElement) -> tuple[int, ...]:
         """The positions of the generators that occur."""
-        return tuple(i for i, used in enumerate(map(any, zip(*p, strict=True))) if used) if p else ()
+        if len(p) == 1:
+            (monomial,) = p
+            return tuple([i for i, exponent in enumerate(monomial) if exponent])
+        return tuple([i for i, used in enumerate(map(any, zip(*p, strict=True))) if used]) if p else ()
 
     def multiple_angle(self, multiples: Sequence[int], quarter_turns: int) -> tuple[PolyElement, PolyElement]:
         """(sin, cos) of an integer combination of the atoms plus quarter turns, by the addition theorems."""

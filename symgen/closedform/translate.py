@@ -41,6 +41,7 @@ class Translator:
         self._opaque = {key: self.ring.opaque_position[i] for i, key in enumerate(atoms)}
         self._values: dict[Expression, Quotient] = {}
         self._slopes: dict[tuple[int, str], Quotient] = {}
+        self._last: tuple[PolyElement, frozenset[int]] | None = None
 
     def _scan(self, expressions: Iterable[Expression], atoms: dict[Expression, Opaque]) -> list[Argument]:
         """Angle arguments and opaque atoms of the expressions, of everything they name and of their derivatives."""
@@ -137,7 +138,7 @@ class Translator:
 
     def _polynomial_derivative(self, p: PolyElement, name: str) -> Quotient:
         ring = self.ring
-        used = set(ring.shape(p))
+        used = self._used(p)
         ring.work.spend(len(p))
         position = ring.position[name]
         total = polynomial(ring, p.diff(position) if position in used else ring.zero)
@@ -159,6 +160,12 @@ class Translator:
                         slope = slope + self.value(outer) * inner
                 total = total + polynomial(ring, ring.normal(p.diff(position))) * slope
         return total
+
+    def _used(self, p: PolyElement) -> frozenset[int]:
+        """The positions of the generators that occur, kept for the next of the variables."""
+        if self._last is None or self._last[0] is not p:
+            self._last = p, frozenset(self.ring.shape(p))
+        return self._last[1]
 
     def _angle_slope(self, index: int, name: str) -> Quotient:
         """The derivative of an angle atom with respect to a variable."""

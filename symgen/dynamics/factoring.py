@@ -23,7 +23,9 @@ class Factoring:
         known = self._fixed.get(node)
         if known is not None:
             return known
-        for inner in topological([node], self._fixed):
+        # operands are most often known
+        inside = (node,) if node.args and self._fixed.keys() >= {*node.args} else topological([node], self._fixed)
+        for inner in inside:
             self._fixed[inner] = inner.op == "const" or (bool(inner.args) and all(self._fixed[a] for a in inner.args))
         return self._fixed[node]
 

@@ -36,6 +36,11 @@ def _environment() -> Environment:
     )
 
 
+def load() -> None:
+    """Loads what fills templates: before a process is forked that fills some as well, once for both."""
+    _environment()
+
+
 def compile_all() -> None:
     """Compiles the templates beside them, for runs to come: called once, when symgen is built or installed."""
     from symgen.emit.compiled import compile_templates

@@ -92,7 +92,9 @@ class Graph:
         self.products = Products(self)
         self._by_value: dict[int, Scalar] = {}
         self._angles: dict[int, tuple[int, int]] = {}
-        self._trig: dict[tuple[str, Scalar], Scalar] = {}
+        # by arguments of sines and cosines: whether the sign is pulled out, and the angle that is left
+        self._turns: dict[Scalar, tuple[bool, Scalar]] = {}
+        self._pairs: dict[Scalar, tuple[int, int]] = {}
         self.zero = self.const(0)
         self.one = self.const(1)
         self.const(2)
@@ -125,16 +127,22 @@ class Graph:
         elif op == "symbol":
             node.value = opaque("symbol", payload)
         elif op in ("sin", "cos"):
-            form = {leaf.value: count for leaf, count in self.angle_form(args[0]).items()}
-            for leaf in form:
-                if leaf not in self._angles:
-                    self._angles[leaf] = leaf_pair(leaf)
-            node.value = angle_pair(form, self._angles)[op == "sin"]
+            pair = self._pairs.get(args[0])
+            if pair is None:
+                pair = self._pairs[args[0]] = self._pair(args[0])
+            node.value = pair[op == "sin"]
         elif len(args) == 2:
             node.value = combine(op, (args[0].value, args[1].value), payload)
         else:
             node.value = combine(op, [a.value for a in args], payload)
         return node
+
+    def _pair(self, angle: Scalar) -> tuple[int, int]:
+        form = {leaf.value: count for leaf, count in self.angle_form(angle).items()}
+        for leaf in form:
+            if leaf not in self._angles:
+                self._angles[leaf] = leaf_pair(leaf)
+        return angle_pair(form, self._angles)
 
     def lift(self, value: Number) -> Scalar:
         """A scalar of this graph from a scalar, an integer or a rational number."""
@@ -337,26 +345,24 @@ class Graph:
 
     def trig(self, name: str, argument: Scalar) -> Scalar:
         """Sine or cosine, keyed by the integer combination of leaves in its argument; its sign is pulled out."""
-        found = self._trig.get((name, argument))
-        if found is None:
-            found = self._trig[name, argument] = self._trig_of(name, self.angle_form(argument))
-        return found
-
-    def _trig_of(self, name: str, form: dict[Scalar, int]) -> Scalar:
-        if not form:
+        turn = self._turns.get(argument)
+        if turn is None:
+            turn = self._turns[argument] = self._turn(self.angle_form(argument))
+        negative, angle = turn
+        if angle.is_zero:
             return self.zero if name == "sin" else self.one
-        leading = min(form, key=lambda leaf: leaf.serial)
-        if form[leading] < 0:
-            value = self._trig_node(name, {leaf: -count for leaf, count in form.items()})
-            return self.neg(value) if name == "sin" else value
-        return self._trig_node(name, form)
+        value = self._node(name, (angle,))
+        return self.neg(value) if negative and name == "sin" else value
 
-    def _trig_node(self, name: str, form: dict[Scalar, int]) -> Scalar:
+    def _turn(self, form: dict[Scalar, int]) -> tuple[bool, Scalar]:
+        """Whether the first leaf counts negative, and the sum of the leaves in their order with all signs turned so."""
+        leaves = sorted(form, key=lambda leaf: leaf.serial)
+        negative = bool(leaves) and form[leaves[0]] < 0
         total = self.zero
-        for leaf in sorted(form, key=lambda leaf: leaf.serial):
+        for leaf in leaves:
             term = self.mul(self.const(abs(form[leaf])), leaf)
-            total = self.add(total, term) if form[leaf] > 0 else self.sub(total, term)
-        return self._node(name, (total,))
+            total = self.add(total, term) if (form[leaf] > 0) != negative else self.sub(total, term)
+        return negative, total
 
     def angle_form(self, a: Scalar) -> dict[Scalar, int]:
         """`a` as an integer combination of leaves (coordinates, or whatever is not a sum), without zeros."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from operator import mul
 from typing import TypeAlias
 
 Rows: TypeAlias = list[list[float]]
@@ -102,7 +103,7 @@ def _unit_rows(rows: Rows) -> Rows:
 def _extend(basis: Rows, vector: list[float], relative: float) -> None:
     for _ in range(2):
         for unit in basis:
-            along = sum(a * b for a, b in zip(unit, vector, strict=True))
+            along = sum(map(mul, unit, vector))
             vector = [a - along * b for a, b in zip(vector, unit, strict=True)]
     norm = math.sqrt(sum(a * a for a in vector))
     if norm > relative:

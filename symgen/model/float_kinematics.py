@@ -97,7 +97,7 @@ class FloatKinematics:
             if any(joint.place_rate):
                 _add(total, space.turned(kinematics.axes(parent), joint.place_rate))
             if any(joint.turning_before):
-                arm = minus(position, kinematics.place(name, space.origin))
+                arm = minus(position, kinematics.origin(name))
                 _add(total, space.crossed(space.turned(kinematics.axes(parent), joint.turning_before), arm))
         return total
 

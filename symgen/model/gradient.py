@@ -49,7 +49,7 @@ class Gradients:
         """Value and gradient; ArithmeticError or ValueError outside the domain."""
         match expression:
             case Number(value=literal):
-                return float(literal), {}
+                return literal.numerator / literal.denominator, {}  # as Fraction does it, many times
             case Pi():
                 return math.pi, {}
             case Name(name=name):

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
 from typing import Generic
 
 from symgen.model import combine
-from symgen.model.expression import Expression
+from symgen.model.expression import Expression, Number
 from symgen.model.fixed_angles import exact_sine_and_cosine
 from symgen.model.mechanism import ZERO, Frame, Quaternion, Turn, Vector3
 from symgen.model.triples import P, Rates, Rows, Space, Triple, V, product, transposed
@@ -54,14 +53,18 @@ def plane_turn(frame: Frame) -> tuple[Vector3 | None, Expression] | None:
     return shared, angle
 
 
-@lru_cache(maxsize=1000)
 def main_axis(axis: Vector3) -> tuple[int, int] | None:
     """Which of x, y, z (0, 1, 2) the axis is, and its sign; None for any other direction."""
-    exact = [exact_value(entry) for entry in axis]
-    if sorted(abs(value) if value is not None else 2 for value in exact) != [0, 0, 1]:
-        return None
-    index = next(index for index, value in enumerate(exact) if value != 0)
-    return index, int(exact[index] or 0)
+    found: tuple[int, int] | None = None
+    for index, entry in enumerate(axis):
+        value = entry.value if isinstance(entry, Number) else exact_value(entry)
+        if value is None:
+            return None
+        if value.numerator:
+            if found is not None or abs(value.numerator) != 1 or value.denominator != 1:
+                return None
+            found = index, value.numerator
+    return found
 
 
 def _turns(space: Space[P, V], turns: tuple[Turn, ...]) -> tuple[Rows[P], Rates[V], Rates[V]]:

@@ -111,6 +111,10 @@ class Kinematics(Generic[P, V]):
         axes, origin = self._below(meeting, seen_from)
         return applied(transposed(axes), minus(found, origin))
 
+    def origin(self, frame: str) -> Triple[P]:
+        """The origin of a frame from that of the world."""
+        return self._below(WORLD, frame)[1]
+
     def twist(self, frame: str, axes: str | None = None) -> Twist[V]:
         """Velocities of a frame in its own axes, or in those of a frame that it descends from."""
         axes = frame if axes is None else axes

@@ -8,6 +8,7 @@ from pathlib import Path
 
 MODELS = Path(__file__).resolve().parents[2] / "models"
 HEAVY = ("sympy", "casadi", "numpy", "mpmath", "flint", "pydantic", "matplotlib", "rich", "pint", "typst", "typer")
+HEAVY += ("http", "ssl")
 
 
 def modules_after(*arguments: str) -> set[str]:
