@@ -43,17 +43,24 @@ class _Reflection:
     square: Scalar
 
     @classmethod
-    def of(cls, graph: Graph, row: Sequence[Scalar], columns: Sequence[int]) -> _Reflection:
-        """The one for the entries of a row in these columns, which are not all that may be 0."""
+    def of(cls, graph: Graph, row: Sequence[Scalar], columns: Sequence[int], everywhere: bool) -> _Reflection:
+        """The one for the entries of a row in these columns, which are not all that may be 0.
+
+        With `everywhere` a row of zeros divides nothing by 0.
+        """
         held = tuple(j for j in columns if not row[j].is_zero)
         first, *others = (row[j] for j in held)
         square = graph.sum(row[j] * row[j] for j in held)
         # a column alone stays as it is
         signed = graph.function("copysign", (graph.function("sqrt", (square,)), first)) if others else first
-        inverse = 1 / signed
+
+        def inverted(x: Scalar) -> Scalar:
+            return graph.function("ratio_or_zero", (graph.one, x)) if everywhere else 1 / x
+
+        inverse = inverted(signed)
         if not others:
             return cls(held, (graph.one,), (), inverse, square)
-        slope = 1 / (first + signed)
+        slope = inverted(first + signed)
         return cls(held, tuple(row[j] * inverse for j in held), tuple(y * slope for y in others), inverse, square)
 
     def turn(self, graph: Graph, row: list[Scalar]) -> None:
@@ -79,8 +86,11 @@ class _Reflection:
             values[j] = values[j] - e * share
 
 
-def by_rows(graph: Graph, matrix: Matrix, right: Vector) -> Solution:
-    """The solution of a square system with more than `LAST` rows."""
+def by_rows(graph: Graph, matrix: Matrix, right: Vector, everywhere: bool = False) -> Solution:
+    """The solution of a square system with more than `LAST` rows.
+
+    With `everywhere` rows that depend on each other exactly divide by 0 in nothing but the last determinant.
+    """
     size = len(matrix)
     left = {i: list(row) for i, row in enumerate(matrix)}
     columns, turned = list(range(size)), list[_Reflection]()
@@ -88,7 +98,7 @@ def by_rows(graph: Graph, matrix: Matrix, right: Vector) -> Solution:
     while len(left) > LAST:
         i = min(left, key=lambda i: sum(not left[i][j].is_zero for j in columns))
         row = left.pop(i)
-        reflection = _Reflection.of(graph, row, columns)
+        reflection = _Reflection.of(graph, row, columns, everywhere)
         before = [other.columns[0] for other in turned]
         lengths.append(graph.sum([*(row[j] * row[j] for j in before), reflection.square]))
         taken = graph.sum(row[j] * values[j] for j in before)

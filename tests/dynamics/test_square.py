@@ -97,3 +97,13 @@ def test_small_rows_keep_their_digits() -> None:
     right = [math.fsum(a * b for a, b in zip(row, x, strict=True)) for row in scaled]
     found, _, _ = solved(scaled, right)
     assert found == pytest.approx(x, rel=1e-11)
+
+
+def test_a_row_of_zeros_divides_nothing_by_zero_where_it_must_not() -> None:
+    graph, source = Graph(), random.Random(3)
+    names = [[f"a{i}{j}" for j in range(6)] for i in range(6)]
+    at = {name: source.uniform(1, 2) * (i > 0) for i, row in enumerate(names) for name in row}
+    matrix, right = tuple(tuple(map(graph.symbol, row)) for row in names), (graph.one,) * 6
+    found = by_rows(graph, matrix, right, everywhere=True)
+    assert Evaluator([graph.product(found.squares)])(at) == [0]
+    assert math.isnan(Evaluator([graph.product(by_rows(graph, matrix, right).squares)])(at)[0])

@@ -159,7 +159,8 @@ class _Core:
     def _by_rows(self) -> tuple[Vector, list[Vector], Guard]:
         """The solution of a square core; its determinant is measured by the lengths of its rows."""
         graph = self._graph
-        solution = by_rows(graph, self._core, self._right)
+        # off the constraints legs that are bodies may well be parallel inside the ranges of their coordinates
+        solution = by_rows(graph, self._core, self._right, everywhere=not self._elimination.lengths().is_one)
         measured = self._tested(graph.product(solution.squares), graph.product(solution.lengths), 2)
         return solution.values, [], measured
 
