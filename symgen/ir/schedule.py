@@ -37,18 +37,27 @@ from symgen.model.quantities import QUANTITIES
 
 # The order in which statuses are reported (interface, section 4).
 ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
+# Two bodies are computed side by side where a vector of 16 bytes holds two values.
+IN_TWOS: Scalar = "float64"
 ARGUMENTS = {quantity.name: quantity.arguments for quantity in QUANTITIES}
 
 
 def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalars: Sequence[Scalar]) -> dict[Scalar, Program]:
     """All quantities as kernels, for each scalar type.
 
-    The order of statements is worked out once; the thresholds, which differ, are filled in last.
+    The order of statements is worked out once, but for kernels with bodies side by side; the thresholds, which differ,
+    are filled in last.
     """
     limits = _Limits(mechanics)
-    kernels = [_ordered_kernel(mechanics, derived, limits) for derived in quantities]
+    ordered: dict[str, Kernel] = {}
     programs: dict[Scalar, Program] = {}
     for scalar in scalars:
+        kernels = []
+        for derived in quantities:
+            kernel = _side_by_side(mechanics, derived) if scalar == IN_TWOS else None
+            if kernel is None and derived.name not in ordered:
+                ordered[derived.name] = _ordered_kernel(mechanics, derived, limits)
+            kernels.append(ordered[derived.name] if kernel is None else kernel)
         filler = _Filler(limits.values(scalar))
         filled = tuple(filler.kernel(kernel) for kernel in kernels)
         programs[scalar] = Program(scalar, sincos(scalar, limits.wide), filled)
@@ -151,14 +160,17 @@ class _Filler:
         return self._values.get(operand.name, operand) if isinstance(operand, Local) else operand
 
 
+def _side_by_side(mechanics: Mechanics, derived: Derived) -> Kernel | None:
+    """The kernel in which bodies take the same statements; None where they do not."""
+    if derived.alike is None:
+        return None
+    from symgen.ir.alike import alike_kernel  # models given by energies start without it
+
+    return alike_kernel(derived, derived.alike, _arguments(mechanics, derived.name))
+
+
 def _ordered_kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     """The kernel in which fewest values wait; what only a failure needs is computed there if registers run out."""
-    if derived.alike is not None:
-        from symgen.ir.alike import alike_kernel  # models given by energies start without it
-
-        found = alike_kernel(derived, derived.alike, _arguments(mechanics, derived.name))
-        if found is not None:
-            return found
     kernel = relaxed(_kernel(mechanics, derived, limits))
     waiting = waits(kernel)
     if waiting < REGISTERS or not any(check.first for block in kernel.blocks for check in block.checks):
