@@ -24,11 +24,14 @@ from symgen.model.triples import applied, plus
 def loop_accelerations(mechanics: Mechanics) -> dict[int, Scalar]:
     """Entries of B_dot q_dot by row: of geometric rows that are linear in places of points and hold nothing else."""
     graph = mechanics.graph
+    owners = list(dict.fromkeys(component(name).owner for name in components_in(mechanics.model)))
+    if not any(_in_space(mechanics, owner) for owner in owners):
+        return {}
     rest = (graph.zero,) * mechanics.n
     motions = frame_motions(mechanics.bodies, mechanics.qd, rest, mechanics.bodies.gravity)
     accelerations = {
         owner: acceleration
-        for owner in dict.fromkeys(component(name).owner for name in components_in(mechanics.model))
+        for owner in owners
         if (acceleration := _acceleration(mechanics, motions, owner)) is not None
     }
     names, leaves = with_leaves(mechanics, list(accelerations))
