@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 Monomial: TypeAlias = tuple[int, ...]
 
+# SymPy's rationals are flint's own unless gmpy2 is there.
+_FLINTS = QQ.dtype is flint.fmpq
+
 
 @lru_cache(maxsize=256)
 def _context(generators: int) -> flint.fmpq_mpoly_ctx:
@@ -69,10 +72,9 @@ class Used:
             monomial = nothing.copy()
             for position, exponent in zip(self._positions, reduced, strict=True):
                 monomial[position] = int(exponent)
-            result[tuple(monomial)] = QQ(c.numerator, c.denominator)
+            result[tuple(monomial)] = c if _FLINTS else QQ(c.numerator, c.denominator)
         return result
 
 
 def _coefficient(value: Any) -> flint.fmpq:
-    """A rational of SymPy, which is flint's own unless gmpy2 is there."""
-    return value if isinstance(value, flint.fmpq) else flint.fmpq(int(value.numerator), int(value.denominator))
+    return value if _FLINTS else flint.fmpq(int(value.numerator), int(value.denominator))
