@@ -9,8 +9,10 @@ the recursion in which each body shares what it can with its neighbours, and few
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import islice
 
 from symgen.dynamics.bodies import Vector3
+from symgen.dynamics.grouping import grouped
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.newton_euler import Motion, Wrench, inertial_wrench, motion, newton_euler
 from symgen.graph.matrix import Vector
@@ -74,6 +76,10 @@ def alike_bodies(model: Model, outputs: Vector) -> Alike | None:
         return None
     arguments, results = zip(*system.named.values(), strict=True)
     names, function = _function()
+    around = [*inputs, *(x for one in arguments for x in one)]
+    shorter = iter(grouped(system.graph, system.factoring, around))
+    inputs = tuple(islice(shorter, len(inputs)))
+    arguments = tuple(tuple(islice(shorter, len(names))) for _ in arguments)
     found = Alike(system, inputs, names, function, arguments, results)
     return found if found.weight <= cost(outputs).weight * (1 + LANES_WORTH) else None
 
