@@ -40,6 +40,8 @@ ROWS = (
     Row("arm7", ("--no-verify", *U), 3.0, 250),
     Row("arm7", ("--no-verify", "--outputs", "all"), 10.0, 250),
     Row("chain32", ("--no-verify", *U), 10.0, 250),
+    Row("gough_loops", (*C, *U), None, 100),
+    Row("gough_loops", ("--no-verify",), None, 250),
     Row("chain32", ("--no-verify",), None, 250),
     Row("chain16", (), None, 250),
     Row("chain32", (), None, 250),
