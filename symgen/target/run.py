@@ -35,17 +35,19 @@ from symgen.target.entries import Entries, plain_entries, with_companions
 from symgen.target.footprint import Footprint, deepest_frame, footprints
 from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
 from symgen.target.selection import (
+    ALL,
     FAST,
     LIBM,
-    PART,
     PORTABLE,
     SMALL,
-    WHOLE,
-    WITH_COMPANIONS,
+    Selection,
+    Share,
     beyond_pairs,
     has_unit,
     selected,
     selection,
+    share,
+    small_kernels,
 )
 from symgen.target.tools import EMULATOR, PREFIX, ToolError, compilers, version
 from symgen.target.vectors import FEWEST, Vectors, perturbed, vectors_of
@@ -66,18 +68,29 @@ class _Build:
     compiler: Compiler
     level: str
     trig: str
+    share: Share = ALL
 
     @property
     def where(self) -> str:
         return "host" if self.core is None else self.core.name
 
     @property
-    def kernels(self) -> str:
-        return selection(self.core, self.compiler, self.level, self.trig)
+    def selection(self) -> Selection:
+        """Which kernels it holds."""
+        return selection(self.core, self.compiler, self.level, self.trig, self.share)
 
     @property
     def label(self) -> str:
         return f"{self.where}, {self.compiler} {self.level}, {self.trig}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Kernels:
+    """What a selection of kernels is built of; `number` tells selections apart."""
+
+    number: int
+    entries: dict[Scalar, Entries]
+    sources: dict[str, str]
 
 
 class _Bench:
@@ -87,27 +100,10 @@ class _Bench:
         derivations = derive_quantities(model, model.outputs)
         programs = dict(schedule(derivations.mechanics, derivations.quantities, SCALARS).items())
         self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
-        chosen = selected(programs)
-        small = chosen[PART]
-        self.entries: dict[str, dict[Scalar, Entries]] = {
-            kernels: {
-                scalar: with_companions(model, plain, small[scalar]) if kernels in WITH_COMPANIONS else plain
-                for scalar, program in by_scalar.items()
-                for plain in (plain_entries(model, program),)
-            }
-            for kernels, by_scalar in chosen.items()
-        }
+        self.programs = programs
+        self.known: dict[Selection, _Kernels] = {}
         self.beyond = tuple(kernel.name for kernel in beyond_pairs(programs["float64"]))
         self.published = self._files(programs, emit_c)
-        companions = {**self._files(small, emit_c_prepared), **self._files(small, emit_c_sc)}
-        files = {
-            kernels: self._files(by_scalar, emit_c) | (companions if kernels in WITH_COMPANIONS else {})
-            for kernels, by_scalar in chosen.items()
-        }
-        self.sources = {
-            kernels: {"driver.c": driver_source(model, entries), **files[kernels]}
-            for kernels, entries in self.entries.items()
-        }
         self.states = {scalar: vectors.rounded(scalar) for scalar in SCALARS}
         self.inputs = self._written("states", self.states)
         self.counter = build_counter(folder)
@@ -117,6 +113,24 @@ class _Bench:
         self.expected = {trig: self._run(build, images[trig]) for trig, build in base.items()}
         self.units = {scalar: self._units(scalar, images[PORTABLE]) for scalar in SCALARS}
 
+    def kernels(self, chosen: Selection) -> _Kernels:
+        """What a selection is built of."""
+        if chosen not in self.known:
+            programs = selected(chosen, self.programs)
+            entries = {scalar: plain_entries(self.model, program) for scalar, program in programs.items()}
+            files = self._files(programs, emit_c)
+            small = {scalar: small_kernels(program) for scalar, program in programs.items()}
+            if chosen.companions and all(program.kernels for program in small.values()):
+                entries = {scalar: with_companions(self.model, entries[scalar], small[scalar]) for scalar in SCALARS}
+                files |= {**self._files(small, emit_c_prepared), **self._files(small, emit_c_sc)}
+            sources = {"driver.c": driver_source(self.model, entries), **files}
+            self.known[chosen] = _Kernels(len(self.known), entries, sources)
+        return self.known[chosen]
+
+    def entries(self, build: _Build) -> dict[Scalar, Entries]:
+        """The functions of a build, whose image has been made."""
+        return self.known[build.selection].entries
+
     def results(self, build: _Build) -> dict[Scalar, Results]:
         """Builds an image, runs it, and reads what it wrote."""
         return self._run(build, self.image(build, painted=False)[1])
@@ -124,8 +138,9 @@ class _Bench:
     def image(self, build: _Build, painted: bool) -> tuple[Workshop, Path]:
         """An image with its input files beside it; where stacks are watched, more than the deepest frame is painted."""
         with self.harnesses:
-            shop = self.workshop(build)
-        units = [name for name in self.sources[build.kernels] if name.endswith(".c") and name != "driver.c"]
+            kernels = self.kernels(build.selection)
+            shop = self.workshop(build, kernels)
+        units = [name for name in kernels.sources if name.endswith(".c") and name != "driver.c"]
         objects = {unit: shop.compile(unit, build.level, build.compiler) for unit in units}
         watched = min(STACK_WATCHED, BESIDE + deepest_frame(objects.values())) if painted else 0
         with self.harnesses:
@@ -134,12 +149,11 @@ class _Bench:
         stage(image, self.inputs)
         return shop, image
 
-    def workshop(self, build: _Build) -> Workshop:
+    def workshop(self, build: _Build, kernels: _Kernels) -> Workshop:
         """A folder for one core and one set of kernels."""
-        name = f"{build.where} {build.kernels}".replace(" ", "-")
-        shop = Workshop(self.folder / name, build.core)
+        shop = Workshop(self.folder / f"{build.where} {kernels.number}".replace(" ", "-"), build.core)
         if not shop.folder.exists():
-            shop.write(self.sources[build.kernels])
+            shop.write(kernels.sources)
         return shop
 
     def read(
@@ -157,7 +171,7 @@ class _Bench:
 
     def _run(self, build: _Build, image: Path) -> dict[Scalar, Results]:
         run_image(build.core, image)
-        return self.read(image, self.entries[build.kernels], {s: len(states) for s, states in self.states.items()})
+        return self.read(image, self.entries(build), {s: len(states) for s, states in self.states.items()})
 
     def _files(
         self, programs: Mapping[Scalar, Program], emit: Callable[[Model, Program], dict[str, str]]
@@ -177,7 +191,7 @@ class _Bench:
     def _units(self, scalar: Scalar, image: Path) -> Units:
         """d + eps |y| of the regular states, by the float64 kernels of an image of the host."""
         regular = self.states[scalar][: len(self.vectors.regular)]
-        entries = self.entries[WHOLE]["float64"]
+        entries = self.entries(_Build(None, *BASE, PORTABLE))["float64"]
         made = []
         for kind, states in (("exact", regular), ("moved", perturbed(regular, scalar))):
             # both scalar types run; what float32 makes of these states is of no interest
@@ -237,9 +251,11 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
 def _builds(cores: Sequence[Core]) -> list[_Build]:
     """Portable sine and cosine everywhere at every level; the C library's at -O2."""
     return [
-        *(_Build(core, compiler, level, PORTABLE)
-          for core in (None, *cores) for compiler in compilers() for level in LEVELS
-          if core is not None or (compiler, level) != BASE),
+        *(_Build(None, compiler, level, PORTABLE)
+          for compiler in compilers() for level in LEVELS if (compiler, level) != BASE),
+        *(_Build(core, *build, PORTABLE, share(number, place, len(cores)))
+          for place, core in enumerate(cores)
+          for number, build in enumerate((compiler, level) for compiler in compilers() for level in LEVELS)),
         *(_Build(core, *BASE, LIBM) for core in cores),
     ]
 
@@ -251,7 +267,7 @@ def _measured(bench: _Bench, build: _Build) -> tuple[list[Cell], list[KernelCost
     else:
         results, costs = bench.results(build), []
     cells, failures = [], []
-    for scalar, entries in bench.entries[build.kernels].items():
+    for scalar, entries in bench.entries(build).items():
         portable = build.trig == PORTABLE
         found = compare(
             entries, portable, bench.expected[build.trig][scalar], results[scalar], bench.units[scalar],
@@ -268,7 +284,7 @@ def _measured(bench: _Bench, build: _Build) -> tuple[list[Cell], list[KernelCost
 
 def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Results], list[KernelCost]]:
     shop, image = bench.image(build, painted=True)
-    entries = bench.entries[build.kernels]
+    entries = bench.entries(build)
     functions = [entry.function for known in entries.values() for entry in known.functions]
     counts = count_calls(core, image, bench.counter, addresses(shop, image, functions))
     results = bench.read(image, entries, {scalar: len(states) for scalar, states in bench.states.items()})
@@ -300,7 +316,7 @@ def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
     Counts may vary where a sign is copied or a quotient is 0 for a divisor of 0: compilers make jumps of such choices.
     """
     assert build.core is not None
-    entry = next(e for e in bench.entries[build.kernels][cost.scalar].functions if e.name == cost.kernel)
+    entry = next(e for e in bench.entries(build)[cost.scalar].functions if e.name == cost.kernel)
     where = f"{build.label}, {cost.scalar}: {cost.kernel}"
     wrong = []
     size = cost.footprint

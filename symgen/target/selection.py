@@ -1,15 +1,19 @@
 """Which kernels a build holds: compilers take most of the time of a measurement, and large kernels most of that.
 
-With portable sine and cosine every kernel is built at gcc -O2 and -Os and clang -O2; elsewhere u and small ones.
+u is in every build, and every kernel on every core at gcc -Os, which tells bytes, stack and instructions; small ones
+at gcc -O2 as well.  Of other kernels and builds each core has its share: with six cores every kernel is built at
+every level with both compilers on two of them, and every core has something of every build.  With up to three cores
+each of them has everything.
+
 In float64 on a core without a unit for it every number is a pair of words, and the registers of thousands of pairs
-take gcc half a minute a build: there gcc builds large kernels at -Os only, which tells bytes, stack and instructions,
-and very large ones not at all.
+take gcc half a minute a build: there it builds large kernels at -Os only, and very large ones not at all.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
 
 from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Kernel, Program, Scalar
@@ -18,24 +22,46 @@ from symgen.target.cores import Compiler, Core
 
 PORTABLE, LIBM = "portable", "libm"
 FAST, SMALL = "-O2", "-Os"
-WITH_ALL: tuple[tuple[Compiler, str], ...] = (("gcc", FAST), ("gcc", SMALL), ("clang", FAST))
+# Large kernels are built with these only, and beside them there are prepared kernels and those that take sines.
+WITH_LARGE: tuple[tuple[Compiler, str], ...] = (("gcc", FAST), ("gcc", SMALL), ("clang", FAST))
 MOST_OPERATIONS, MOST_OF_U = 150, 2000
 MOST_IN_PAIRS = 3000
+CORES_OF_A_BUILD = 2
 
-# All kernels; without float64 ones too large for pairs; with small float64 ones only; small ones only.
-WHOLE, IN_PAIRS, SINGLE, PART = "whole", "in_pairs", "single", "part"
-WITH_COMPANIONS = (WHOLE, IN_PAIRS, SINGLE)
+Share: TypeAlias = tuple[int, int]  # kernels whose number is the first modulo the second
+ALL: Share = (0, 1)
 
 
-def selection(core: Core | None, compiler: Compiler, level: str, trig: str) -> str:
-    """The name of what is built for a core (None: the host)."""
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Shares of the small and the large kernels; `pairs` are the large ones in float64, `companions` other forms."""
+
+    small: Share
+    large: Share | None = None
+    pairs: Literal["all", "fitting", "none"] = "all"
+    companions: bool = False
+    library: bool = False
+
+
+def selection(core: Core | None, compiler: Compiler, level: str, trig: str, share: Share) -> Selection:
+    """What is built for a core (None: the host) that has this share."""
     if trig == LIBM:
-        return LIBM
-    if (compiler, level) not in WITH_ALL:
-        return PART
-    if compiler == "clang" or has_unit(core):
-        return WHOLE
-    return IN_PAIRS if level == SMALL else SINGLE
+        return Selection(ALL, library=True)
+    if (compiler, level) not in WITH_LARGE:
+        return Selection(share)
+    if core is None:
+        return Selection(ALL, ALL, companions=True)
+    if compiler == "clang":
+        return Selection(share, share, companions=True)
+    if level == SMALL:
+        return Selection(ALL, ALL, "all" if has_unit(core) else "fitting", companions=True)
+    return Selection(ALL, share, "all" if has_unit(core) else "none", companions=True)
+
+
+def share(build: int, core: int, cores: int) -> Share:
+    """The share of core number `core` of `cores` in build number `build`."""
+    parts = max(1, cores // CORES_OF_A_BUILD)
+    return (build + core) % parts, parts
 
 
 def has_unit(core: Core | None) -> bool:
@@ -43,28 +69,46 @@ def has_unit(core: Core | None) -> bool:
     return core is None or "float64" in core.native
 
 
-def selected(programs: Mapping[Scalar, Program]) -> dict[str, dict[Scalar, Program]]:
-    """The kernels of every selection, by scalar type."""
-    double, single = programs["float64"], programs["float32"]
-    small = {scalar: small_kernels(program) for scalar, program in programs.items()}
-    fitting = tuple(kernel for kernel in double.kernels if kernel not in beyond_pairs(double))
-    return {
-        WHOLE: {"float64": double, "float32": single},
-        IN_PAIRS: {"float64": replace(double, kernels=fitting or small["float64"].kernels), "float32": single},
-        SINGLE: {"float64": small["float64"], "float32": single},
-        PART: small,
-        LIBM: {scalar: with_library_trig(program) for scalar, program in small.items()},
-    }
+def selected(chosen: Selection, programs: Mapping[Scalar, Program]) -> dict[Scalar, Program]:
+    """The kernels of a selection; one at least of each scalar type."""
+    return {scalar: _selected(chosen, scalar, program) for scalar, program in programs.items()}
+
+
+def small_kernels(program: Program) -> Program:
+    """The program without its large kernels."""
+    return replace(program, kernels=tuple(kernel for kernel in program.kernels if _is_small(kernel)))
 
 
 def beyond_pairs(double: Program) -> tuple[Kernel, ...]:
     """Kernels in float64 that gcc does not build for a core without a unit for it."""
-    return tuple(kernel for kernel in double.kernels if count_operations(kernel.statements).total > MOST_IN_PAIRS)
+    return tuple(kernel for kernel in double.kernels if _size(kernel) > MOST_IN_PAIRS)
 
 
-def small_kernels(program: Program) -> Program:
-    """The program without its largest kernels; one at least stays."""
-    sizes = {k.name: count_operations(k.statements).total for k in program.kernels}
-    most = {name: MOST_OF_U if name == "inverse_dynamics" else MOST_OPERATIONS for name in sizes}
-    kept = [k for k in program.kernels if sizes[k.name] <= most[k.name]]
-    return replace(program, kernels=tuple(kept or [min(program.kernels, key=lambda k: sizes[k.name])]))
+def _selected(chosen: Selection, scalar: Scalar, program: Program) -> Program:
+    kept = tuple(_kept(chosen, scalar, program)) or (min(program.kernels, key=_size),)
+    found = replace(program, kernels=kept)
+    return with_library_trig(found) if chosen.library else found
+
+
+def _kept(chosen: Selection, scalar: Scalar, program: Program) -> Iterator[Kernel]:
+    for number, kernel in enumerate(program.kernels):
+        if _is_small(kernel):
+            if kernel.name == "inverse_dynamics" or _falls_into(chosen.small, number):
+                yield kernel
+        elif chosen.large is not None and _falls_into(chosen.large, number):
+            fits = chosen.pairs == "all" or (chosen.pairs == "fitting" and _size(kernel) <= MOST_IN_PAIRS)
+            if scalar == "float32" or fits:
+                yield kernel
+
+
+def _falls_into(part: Share, number: int) -> bool:
+    turn, parts = part
+    return number % parts == turn
+
+
+def _is_small(kernel: Kernel) -> bool:
+    return _size(kernel) <= (MOST_OF_U if kernel.name == "inverse_dynamics" else MOST_OPERATIONS)
+
+
+def _size(kernel: Kernel) -> int:
+    return count_operations(kernel.statements).total

@@ -11,11 +11,12 @@ import pytest
 from shipped import model, programs
 
 from symgen.cli import main
+from symgen.ir.kernel import Scalar
 from symgen.target.compare import BOUND, compare
-from symgen.target.cores import BY_NAME, Compiler, Core
+from symgen.target.cores import BY_NAME, CORES, LEVELS, Compiler, Core
 from symgen.target.driver import Record, Results, driver_source, pack_states, unpack_results
 from symgen.target.entries import Entries, plain_entries, with_companions
-from symgen.target.selection import beyond_pairs, selected, selection
+from symgen.target.selection import ALL, Share, beyond_pairs, selected, selection, share, small_kernels
 from symgen.target.vectors import perturbed, vectors_of
 from symgen.verify.reference import Reference, State
 
@@ -123,6 +124,11 @@ def _core(name: str | None) -> Core | None:
     return None if name is None else BY_NAME[name]
 
 
+def _built(core: Core | None, compiler: Compiler, level: str, part: Share, scalar: Scalar = "float64") -> set[str]:
+    chosen = selected(selection(core, compiler, level, "portable", part), programs("rapkm_2rrr_rr"))
+    return {kernel.name for kernel in chosen[scalar].kernels}
+
+
 @pytest.mark.parametrize(
     ("core", "compiler", "level", "float64"),
     [
@@ -135,16 +141,28 @@ def test_large_kernels_in_float64_are_built_where_that_is_quick(
     monkeypatch: pytest.MonkeyPatch, core: str | None, compiler: Compiler, level: str, float64: str
 ) -> None:
     monkeypatch.setattr("symgen.target.selection.MOST_IN_PAIRS", 1000)
-    known = programs("rapkm_2rrr_rr")
-    chosen = selected(known)[selection(_core(core), compiler, level, "portable")]
-    beyond = {kernel.name for kernel in beyond_pairs(known["float64"])}
+    known = programs("rapkm_2rrr_rr")["float64"]
+    beyond = {kernel.name for kernel in beyond_pairs(known)}
+    everything = {kernel.name for kernel in known.kernels}
     assert beyond
-    built = {kernel.name for kernel in chosen["float64"].kernels}
-    everything = {kernel.name for kernel in known["float64"].kernels}
-    assert "inverse_dynamics" in built
+    built = _built(_core(core), compiler, level, ALL)
     if float64 == "small":
+        assert "inverse_dynamics" in built
         assert built < everything - beyond
     else:
         assert built == (everything if float64 == "all" else everything - beyond)
-    all_single = level in ("-O2", "-Os")
-    assert ({kernel.name for kernel in chosen["float32"].kernels} == everything) == all_single
+    single = _built(_core(core), compiler, level, ALL, "float32")
+    assert (single == everything) == (level in ("-O2", "-Os"))
+
+
+def test_every_kernel_is_built_at_every_level_on_two_of_six_cores() -> None:
+    everything = {kernel.name for kernel in small_kernels(programs("rapkm_2rrr_rr")["float32"]).kernels}
+    builds = [(compiler, level) for compiler in ("gcc", "clang") for level in LEVELS]
+    for number, (compiler, level) in enumerate(builds):
+        parts = [
+            _built(core, compiler, level, share(number, place, len(CORES)), "float32")
+            for place, core in enumerate(CORES)
+        ]
+        assert all("inverse_dynamics" in part for part in parts)
+        assert all(sum(name in part for part in parts) >= 2 for name in everything), (compiler, level)
+    assert share(3, 0, 1) == share(4, 2, 3) == ALL  # a few cores take everything
