@@ -60,7 +60,7 @@ firmware: $(VENV)/installed
 	$(MAKE) --no-print-directory --keep-going --jobs $$(nproc) firmware-goals $(MODELS:models/%.yaml=target-%)
 
 firmware-goals: $(VENV)/installed
-	$(BIN)/pytest -m firmware
+	$(BIN)/pytest tests/target -m firmware
 
 target-%: models/%.yaml $(VENV)/installed
 	$(BIN)/symgen target $< --cpu all --quiet
