@@ -256,7 +256,7 @@ def _builds(cores: Sequence[Core]) -> list[_Build]:
         *(_Build(core, *build, PORTABLE, share(number, place, len(cores)))
           for place, core in enumerate(cores)
           for number, build in enumerate((compiler, level) for compiler in compilers() for level in LEVELS)),
-        *(_Build(core, *BASE, LIBM) for core in cores),
+        *(_Build(core, *BASE, LIBM, share(0, place, len(cores))) for place, core in enumerate(cores)),
     ]
 
 

@@ -46,7 +46,7 @@ class Selection:
 def selection(core: Core | None, compiler: Compiler, level: str, trig: str, share: Share) -> Selection:
     """What is built for a core (None: the host) that has this share."""
     if trig == LIBM:
-        return Selection(ALL, library=True)
+        return Selection(share, library=True)
     if (compiler, level) not in WITH_LARGE:
         return Selection(share)
     if core is None:

@@ -165,4 +165,6 @@ def test_every_kernel_is_built_at_every_level_on_two_of_six_cores() -> None:
         ]
         assert all("inverse_dynamics" in part for part in parts)
         assert all(sum(name in part for part in parts) >= 2 for name in everything), (compiler, level)
+    library = selection(CORES[0], "gcc", "-O2", "libm", share(0, 0, len(CORES)))
+    assert "inverse_dynamics" in {kernel.name for kernel in selected(library, programs("skate"))["float32"].kernels}
     assert share(3, 0, 1) == share(4, 2, 3) == ALL  # a few cores take everything
