@@ -1,9 +1,9 @@
 """Which kernels a build holds: compilers take most of the time of a measurement, and large kernels most of that.
 
-u is in every build, and every kernel on every core at gcc -Os, which tells bytes, stack and instructions; small ones
-at gcc -O2 as well.  Of other kernels and builds each core has its share: with six cores every kernel is built at
-every level with both compilers on two of them, and every core has something of every build.  With up to three cores
-each of them has everything.
+u of up to a thousand operations is in every build, and every kernel on every core at gcc -Os, which tells bytes,
+stack and instructions; small ones at gcc -O2 as well.  Of other kernels and builds each core has its share: with
+six cores every kernel is built at every level with both compilers on two of them, and every core has something of
+every build.  With up to three cores each of them has everything.
 
 In float64 on a core without a unit for it every number is a pair of words, and the registers of thousands of pairs
 take gcc half a minute a build: there it builds large kernels at -Os only, and very large ones not at all.
@@ -24,7 +24,7 @@ PORTABLE, LIBM = "portable", "libm"
 FAST, SMALL = "-O2", "-Os"
 # Large kernels are built with these only, and beside them there are prepared kernels and those that take sines.
 WITH_LARGE: tuple[tuple[Compiler, str], ...] = (("gcc", FAST), ("gcc", SMALL), ("clang", FAST))
-MOST_OPERATIONS, MOST_OF_U = 150, 2000
+MOST_OPERATIONS, MOST_OF_U = 150, 1000
 MOST_IN_PAIRS = 3000
 CORES_OF_A_BUILD = 2
 
