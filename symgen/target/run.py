@@ -121,7 +121,7 @@ class _Bench:
             files = self._files(programs, emit_c)
             small = {scalar: small_kernels(program) for scalar, program in programs.items()}
             if chosen.companions and all(program.kernels for program in small.values()):
-                entries = {scalar: with_companions(self.model, entries[scalar], small[scalar]) for scalar in SCALARS}
+                entries = {scalar: with_companions(self.model, own, small[scalar]) for scalar, own in entries.items()}
                 files |= {**self._files(small, emit_c_prepared), **self._files(small, emit_c_sc)}
             sources = {"driver.c": driver_source(self.model, entries), **files}
             self.known[chosen] = _Kernels(len(self.known), entries, sources)
@@ -212,7 +212,7 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
         vectors = vectors_of(Reference(model))
         progress("the host")
         bench = _Bench(model, Path(name), vectors, progress)
-        builds = _builds(cores)
+        builds = [build for build in _builds(cores) if selected(build.selection, bench.programs)]
         progress("compiling and running")
         done = 0
 

@@ -70,8 +70,11 @@ def has_unit(core: Core | None) -> bool:
 
 
 def selected(chosen: Selection, programs: Mapping[Scalar, Program]) -> dict[Scalar, Program]:
-    """The kernels of a selection; one at least of each scalar type."""
-    return {scalar: _selected(chosen, scalar, program) for scalar, program in programs.items()}
+    """The kernels of a selection by scalar type, where there are any."""
+    found = {scalar: replace(program, kernels=tuple(_kept(chosen, scalar, program)))
+             for scalar, program in programs.items()}
+    return {scalar: with_library_trig(program) if chosen.library else program
+            for scalar, program in found.items() if program.kernels}
 
 
 def small_kernels(program: Program) -> Program:
@@ -84,16 +87,12 @@ def beyond_pairs(double: Program) -> tuple[Kernel, ...]:
     return tuple(kernel for kernel in double.kernels if _size(kernel) > MOST_IN_PAIRS)
 
 
-def _selected(chosen: Selection, scalar: Scalar, program: Program) -> Program:
-    kept = tuple(_kept(chosen, scalar, program)) or (min(program.kernels, key=_size),)
-    found = replace(program, kernels=kept)
-    return with_library_trig(found) if chosen.library else found
-
-
 def _kept(chosen: Selection, scalar: Scalar, program: Program) -> Iterator[Kernel]:
+    # where all are large the smallest stands for the small ones
+    smallest = min(program.kernels, key=_size)
     for number, kernel in enumerate(program.kernels):
-        if _is_small(kernel):
-            if kernel.name == "inverse_dynamics" or _falls_into(chosen.small, number):
+        if _is_small(kernel) or kernel is smallest:
+            if (_is_small(kernel) and kernel.name == "inverse_dynamics") or _falls_into(chosen.small, number):
                 yield kernel
         elif chosen.large is not None and _falls_into(chosen.large, number):
             fits = chosen.pairs == "all" or (chosen.pairs == "fitting" and _size(kernel) <= MOST_IN_PAIRS)
