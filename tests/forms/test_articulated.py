@@ -10,14 +10,17 @@ import pytest
 import shipped
 
 from symgen.dynamics.forms.articulated import articulated
-from symgen.dynamics.forms.loop_accelerations import loop_accelerations
+from symgen.dynamics.forms.loop_points import acceleration, loop_points
 from symgen.dynamics.forms.motion import Problem
 from symgen.dynamics.forms.schur import schur_qr
 from symgen.dynamics.genericity import genericity, parameter_values
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.newton_euler import frame_motions
 from symgen.graph.evaluate import Evaluator
 from symgen.model.load import load_model
+from symgen.model.mechanism import WORLD
 from symgen.model.model import Model
+from symgen.model.triples import applied
 
 # revolute and prismatic joints, rotors, points of wheels, floating bodies in the plane, damped and driven
 NAMES = ("scara", "five_bar", "delta", "differential_drive", "rolling_disc", "front_car_bodies", "arm7", "gough_loops")
@@ -145,12 +148,17 @@ def test_loops_in_space_by_accelerations_of_points(tmp_path: Path, text: str) ->
     path = tmp_path / "loop.yaml"
     path.write_text(text, encoding="utf-8")
     mechanics, plain = (Mechanics(load_model(path)) for _ in range(2))
-    found = loop_accelerations(mechanics)
-    assert list(found) == [0]
+    (loop,) = loop_points(mechanics)
+    assert loop.rows == {2: 0}
+    rest = (mechanics.graph.zero,) * mechanics.n
+    motions = frame_motions(mechanics.bodies, mechanics.qd, rest, mechanics.bodies.gravity)
     expected = plain.constraint_acceleration_bias(plain.qd)[0]
     source = random.Random(7)
     point = parameter_values(plain) | {str(x.payload): source.uniform(-1, 1) for x in (*plain.q, *plain.qd)}
-    assert Evaluator([found[0]])(point)[0] == pytest.approx(Evaluator([expected])(point)[0], rel=1e-12)
+    for axes in (WORLD, *loop.frames):
+        along = acceleration(mechanics, motions, loop, axes)
+        found = applied(mechanics.bodies.kinematics.axes(axes), along)[2]
+        assert Evaluator([found])(point)[0] == pytest.approx(Evaluator([expected])(point)[0], rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["gough_stewart", "tilted_four_bar", "skate"])

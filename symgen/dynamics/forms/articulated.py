@@ -8,18 +8,20 @@ were rounded one by one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 from symgen.dynamics.articulated import ArticulatedFactor, Six
 from symgen.dynamics.forms.definite import Definite
 from symgen.dynamics.forms.definiteness import positive_definite
-from symgen.dynamics.forms.loop_accelerations import loop_accelerations
+from symgen.dynamics.forms.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.schur import along_factor
 from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.newton_euler import inertial_wrenches
+from symgen.dynamics.newton_euler import frame_motions, inertial_wrenches
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import LONGEST_PRODUCT
 from symgen.graph.calculus import gradient
@@ -30,8 +32,9 @@ from symgen.graph.traverse import substitute
 from symgen.model.components import components_in, definitions_before_frames
 from symgen.model.expression import Number
 from symgen.model.kinematics import Kinematics, Twist
-from symgen.model.mechanism import component
+from symgen.model.mechanism import WORLD, component
 from symgen.model.model import Model
+from symgen.model.triples import applied, transposed, triple
 
 
 class _Loose(Kinematics[Scalar, Scalar]):
@@ -50,14 +53,43 @@ class _Loose(Kinematics[Scalar, Scalar]):
         return Twist((a, b, c), (x, y, z))
 
 
-class _Bodies(Problem):
-    """Loops in space are accelerated as their points are."""
+class _Loops(Problem):
+    """Loops in space are accelerated as their points are; each has its rows along the axes of the frame beside it."""
+
+    def __init__(
+        self, mechanics: Mechanics, guards: tuple[Guard, ...], loops: Sequence[tuple[LoopPoint, str]]
+    ) -> None:
+        super().__init__(mechanics, guards)
+        self._loops = loops
 
     @cached_property
     def bias(self) -> Vector:
-        # the first way to a function is the one that stands in the graph
-        found = loop_accelerations(self._mechanics)
-        return super().bias if len(found) < self.r else tuple(found[i] for i in range(self.r))
+        mechanics = self._mechanics
+        rest = (self.graph.zero,) * self.n
+        motions = frame_motions(mechanics.bodies, mechanics.qd, rest, mechanics.bodies.gravity) if self._loops else {}
+        held = [i for loop, _ in self._loops if motions.keys() >= set(loop.frames) for i in loop.rows.values()]
+        if len(held) < self.r:
+            return self._turned(super().bias, inward=True)
+        # nothing else is worked out: the first way to a function is the one that stands in the graph
+        found = dict[int, Scalar]()
+        for loop, axes in self._loops:
+            along = acceleration(mechanics, motions, loop, axes)
+            found |= {i: along[axis] for axis, i in loop.rows.items()}
+        return tuple(found[i] for i in range(self.r))
+
+    def of_the_model(self, multipliers: Vector) -> Vector:
+        """Multipliers of the model's rows from those of the rows along the loops' axes."""
+        return self._turned(multipliers, inward=False)
+
+    def _turned(self, values: Vector, inward: bool) -> Vector:
+        found = list(values)
+        for loop, frame in self._loops:
+            if frame != WORLD:
+                axes = self._mechanics.bodies.kinematics.axes(frame)
+                three = triple([values[i] for i in loop.rows.values()])
+                for i, x in zip(loop.rows.values(), applied(transposed(axes) if inward else axes, three), strict=True):
+                    found[i] = x
+        return tuple(found)
 
 
 def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] | None:
@@ -80,9 +112,29 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
     rows, graph = mechanics.constraint_jacobian, mechanics.graph
     few = 0 < len(rows) <= LONGEST_PRODUCT
     guards = reflected(graph, rows, mechanics.n, generic.rank).guards if few else ()
-    columns = [factor.lowered(direct, wrenches) for direct, wrenches in _forces(mechanics)]
+    columns = [factor.lowered(direct, loads) for direct, loads in _forces(mechanics)]
+    loops = list[tuple[LoopPoint, str]]()
+    for loop in loop_points(mechanics):
+        frame, own = _along_best_axes(mechanics, factor, loop, [columns[i] for i in loop.rows.values()])
+        for i, column in zip(loop.rows.values(), own, strict=True):
+            columns[i] = column
+        loops.append((loop, frame))
+    problem = _Loops(mechanics, guards, loops)
     force = factor.lowered(mechanics.given_force, _weights_and_inertial_forces(mechanics))
-    return mechanics, along_factor(_Bodies(mechanics, guards), factor, columns, force)
+    motion = along_factor(problem, factor, columns, force)
+    return mechanics, replace(motion, multipliers=problem.of_the_model(motion.multipliers))
+
+
+def _along_best_axes(
+    mechanics: Mechanics, factor: ArticulatedFactor, loop: LoopPoint, columns: list[Vector]
+) -> tuple[str, list[Vector]]:
+    """The frame along whose axes a loop's columns hold least, and these; they are given along the axes of the world."""
+    none = (mechanics.graph.zero,) * mechanics.n
+    found = {WORLD: columns}
+    if len(loop.rows) == 3:
+        for frame in loop.frames:
+            found[frame] = [factor.lowered(none, loads) for loads in wrenches(mechanics, loop, frame)]
+    return min(found.items(), key=lambda one: sum(not entry.is_zero for column in one[1] for entry in column))
 
 
 def _weights_and_inertial_forces(mechanics: Mechanics) -> dict[str, Six]:
