@@ -18,7 +18,7 @@ from symgen.model.energy_form import energy_form
 from symgen.model.expression import Name
 from symgen.model.model import Model
 from symgen.verify.reference import Reference
-from symgen.verify.reference_linear import columns_of, determinant, rows_of
+from symgen.verify.reference_linear import determinant
 
 if TYPE_CHECKING:
     from sympy.polys.rings import PolyElement
@@ -205,9 +205,8 @@ def _minors_of_rows(reference: Reference, columns: Sequence[int]) -> Values:
     rank = reference.ranks.constraints
 
     def values(q: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
-        at = reference.system.configuration(q, parameters, reference.literals())
-        part = columns_of(at.constraints, columns)
-        return [determinant(rows_of(part, rows)) for rows in combinations(range(part.nrows()), rank)]
+        constraints, _ = reference.system.matrices(q, parameters, reference.literals())
+        return _minors(constraints.tolist(), rank, [columns])
 
     return values
 
@@ -229,18 +228,17 @@ def _all_minors(reference: Reference, with_inputs: bool) -> Values:
     size = ranks.constraints + (ranks.actuation if with_inputs else 0)
 
     def values(q: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
-        at = reference.system.configuration(q, parameters, reference.literals())
-        rows = at.constraints.tolist() + (at.control.transpose().tolist() if with_inputs else [])
-        matrix = _matrix(rows, reference.system.n)
-        return [
-            determinant(columns_of(part, columns))
-            for chosen in combinations(range(len(rows)), size)
-            for part in [rows_of(matrix, chosen)]
-            for columns in combinations(range(reference.system.n), size)
-        ]
+        constraints, control = reference.system.matrices(q, parameters, reference.literals())
+        rows = constraints.tolist() + (control.transpose().tolist() if with_inputs else [])
+        return _minors(rows, size, list(combinations(range(reference.system.n), size)))
 
     return values
 
 
-def _matrix(rows: list[list[Any]], width: int) -> Any:
-    return arb_mat(len(rows), width, [entry for row in rows for entry in row])
+def _minors(rows: list[list[Any]], size: int, columns: Sequence[Sequence[int]]) -> list[Any]:
+    """The determinants of all choices of rows with each of these choices of columns."""
+    return [
+        determinant(arb_mat(size, size, [row[j] for row in chosen for j in places]))
+        for chosen in combinations(rows, size)
+        for places in columns
+    ]

@@ -63,14 +63,22 @@ class ParameterValues:
 
 @dataclass(frozen=True)
 class Configuration:
-    """Everything that depends on q and parameters alone."""
+    """Everything that depends on q and parameters alone; G only where it is asked for, which no search does."""
 
-    mass: Any  # n x n
+    written_mass: Any  # n x n, of the energy that is written out
     constraints: Any  # r x n
     residual: Any  # r_g x 1
     control: Any  # n x m
     potential_gradient: Any  # n x 1
     jacobian: Any  # 6 rows a body x n: velocities of centres in world axes, turning rates in body axes
+    weights: Any  # 10 a body x 1: its mass and the entries of its inertia
+
+    @cached_property
+    def mass(self) -> Any:
+        """G (n x n)."""
+        if not self.weights.nrows():
+            return self.written_mass
+        return self.written_mass + self.jacobian.transpose() * weighted(self.jacobian, self.weights.entries())
 
 
 class System:
@@ -104,6 +112,7 @@ class System:
         self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (6 * count, n), (10 * count, 1))
         self._configuration = replay_of(self._tape, [x for block in blocks for x in block])
         self._geometry = replay_of(self._tape, [*blocks[2], *blocks[1][: self.r_geometric * n]])
+        self._matrices = replay_of(self._tape, [*blocks[1], *blocks[3]])
 
     def configuration(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> Configuration:
         """Evaluate at q."""
@@ -114,10 +123,13 @@ class System:
             end = start + rows * columns
             matrices.append(arb_mat(rows, columns, values[start:end]))
             start = end
-        mass, constraints, residual, control, potential, jacobian, weights = matrices
-        if weights.nrows():
-            mass = mass + jacobian.transpose() * weighted(jacobian, weights.entries())
-        return Configuration(mass, constraints, residual, control, potential, jacobian)
+        return Configuration(*matrices)
+
+    def matrices(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
+        """B (r x n) and M (n x m) at q."""
+        values = self._matrices.run([*q, *([None] * self.n), *parameters, *literals])
+        size = self.r * self.n
+        return arb_mat(self.r, self.n, values[:size]), arb_mat(self.n, self.m, values[size:])
 
     @cached_property
     def gradients(self) -> Gradients:
