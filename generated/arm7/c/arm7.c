@@ -27,7 +27,8 @@
 
 /* Before loops over the lanes of vectors: where there are none but an FPU, and flash to spare, there is no loop. */
 #if !defined(__SSE2__) && !defined(__aarch64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__OPTIMIZE_SIZE__) && (defined(__ARM_FP) || defined(__riscv_flen))
+    !defined(__OPTIMIZE_SIZE__) && \
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define ARM7_EACH _Pragma("GCC unroll 16")
 #else
 #define ARM7_EACH
@@ -104,7 +105,7 @@ ARM7_INLINE void arm7_pair(const double x, double *sine, double *cosine) {
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if ARM7_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define ARM7_GROUP ARM7_INLINE
 #define ARM7_UNROLL _Pragma("GCC unroll 16")
 #else

@@ -96,7 +96,7 @@ CAR_WITH_TRAILER_INLINE void car_with_trailer_pair(const double x, double *sine,
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if CAR_WITH_TRAILER_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define CAR_WITH_TRAILER_GROUP CAR_WITH_TRAILER_INLINE
 #define CAR_WITH_TRAILER_UNROLL _Pragma("GCC unroll 16")
 #else

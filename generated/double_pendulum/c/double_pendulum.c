@@ -100,7 +100,7 @@ static void double_pendulum_sincos(const double angle, double *sine, double *cos
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if DOUBLE_PENDULUM_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define DOUBLE_PENDULUM_GROUP DOUBLE_PENDULUM_INLINE
 #define DOUBLE_PENDULUM_UNROLL _Pragma("GCC unroll 16")
 #else

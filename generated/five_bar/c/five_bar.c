@@ -96,7 +96,7 @@ FIVE_BAR_INLINE void five_bar_pair(const double x, double *sine, double *cosine)
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if FIVE_BAR_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define FIVE_BAR_GROUP FIVE_BAR_INLINE
 #define FIVE_BAR_UNROLL _Pragma("GCC unroll 16")
 #else

@@ -96,7 +96,7 @@ FRONT_CAR_BODIES_INLINE void front_car_bodies_pair(const double x, double *sine,
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if FRONT_CAR_BODIES_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define FRONT_CAR_BODIES_GROUP FRONT_CAR_BODIES_INLINE
 #define FRONT_CAR_BODIES_UNROLL _Pragma("GCC unroll 16")
 #else

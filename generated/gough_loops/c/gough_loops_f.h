@@ -41,8 +41,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     501    801     20      4     16      0
- * forward_dynamics    3168   4177     72     19     16      0
- * multipliers         3082   4006     89     19     16      0
+ * forward_dynamics    2873   3844     72     19     16      0
+ * multipliers         2819   3747     89     19     16      0
  * singularity         2713   3511    133     37     16      0
  * (changes of sign are not counted)
  *

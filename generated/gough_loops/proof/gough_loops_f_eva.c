@@ -123,7 +123,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t107, t136, t215, t227, t355, t66, t490, t69, t564, t856, t1056, t1084, t1311, t1336, t1610, t1656, t1686, t1967, t1990, t2582, t2924, t2952, t3329, t3352, t3774, t4193, t4221, t4680, t4703, t4794, t4813, t4826, t4847, t4866, t4879, t4898, t4915, t4926, t4945, t4962, t4983, t5002, t5013, t5031, t5035, t5051, t5067, t140, t239, t357, t495, t566, t858, t1086, t1338, t1612, t1691, t1992, t2584, t2954, t3354, t3776, t4225, t4707, t4774, t6255. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t103, t137, t200, t312, t77, t74, t394, t606, t802, t996, t993, t1035, t1280, t1556, t1622, t1619, t1654, t2181, t2538, t2604, t2601, t2643, t3093, t3517, t3951, t3948, t3990, t4347, t4436, t4451, t4458, t4476, t4490, t4496, t4508, t4520, t4525, t4537, t4549, t4566, t4580, t4585, t4597, t4601, t4613, t4623, t203, t487, t677, t396, t608, t804, t1037, t1282, t1558, t1656, t2183, t2540, t2645, t3095, t3519, t4010, t4349, t4419, t5600. */
 void eva_forward_dynamics(void) {
     float q[24];
     float qd[24];
@@ -208,7 +208,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t107, t136, t215, t227, t355, t66, t490, t69, t564, t856, t1056, t1084, t1311, t1336, t1610, t1656, t1686, t1967, t1990, t2582, t2924, t2952, t3329, t3352, t3774, t4193, t4221, t4680, t4703, t4794, t4813, t4826, t4847, t4866, t4879, t4898, t4915, t4926, t4945, t4962, t4983, t5002, t5013, t5031, t5035, t5051, t5067, t6012, t140, t239, t357, t495, t566, t858, t1086, t1338, t1612, t1691, t1992, t2584, t2954, t3354, t3776, t4225, t4707, t4774. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t103, t137, t200, t312, t77, t74, t394, t606, t802, t996, t993, t1035, t1280, t1556, t1622, t1619, t1654, t2181, t2538, t2604, t2601, t2643, t3093, t3517, t3951, t3948, t3990, t4347, t4436, t4451, t4458, t4476, t4490, t4496, t4508, t4520, t4525, t4537, t4549, t4566, t4580, t4585, t4597, t4601, t4613, t4623, t203, t487, t677, t396, t608, t804, t1037, t1282, t1558, t1656, t2183, t2540, t2645, t3095, t3519, t4010, t4349, t6206, t4419. */
 void eva_multipliers(void) {
     float q[24];
     float qd[24];

@@ -96,7 +96,7 @@ RAPKM_BODIES_INLINE void rapkm_bodies_pair(const double x, double *sine, double 
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if RAPKM_BODIES_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define RAPKM_BODIES_GROUP RAPKM_BODIES_INLINE
 #define RAPKM_BODIES_UNROLL _Pragma("GCC unroll 16")
 #else

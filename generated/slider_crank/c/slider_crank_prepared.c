@@ -96,7 +96,7 @@ SLIDER_CRANK_INLINE void slider_crank_pair(const double x, double *sine, double 
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if SLIDER_CRANK_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define SLIDER_CRANK_GROUP SLIDER_CRANK_INLINE
 #define SLIDER_CRANK_UNROLL _Pragma("GCC unroll 16")
 #else

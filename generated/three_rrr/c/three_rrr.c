@@ -100,7 +100,7 @@ static void three_rrr_sincos(const double angle, double *sine, double *cosine) {
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if THREE_RRR_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define THREE_RRR_GROUP THREE_RRR_INLINE
 #define THREE_RRR_UNROLL _Pragma("GCC unroll 16")
 #else

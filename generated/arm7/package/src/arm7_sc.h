@@ -71,7 +71,8 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
 
 /* Before loops over the lanes of vectors: where there are none but an FPU, and flash to spare, there is no loop. */
 #if !defined(__SSE2__) && !defined(__aarch64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__OPTIMIZE_SIZE__) && (defined(__ARM_FP) || defined(__riscv_flen))
+    !defined(__OPTIMIZE_SIZE__) && \
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define ARM7_EACH _Pragma("GCC unroll 16")
 #else
 #define ARM7_EACH

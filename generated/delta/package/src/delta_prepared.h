@@ -138,7 +138,7 @@ DELTA_INLINE void delta_pair(const double x, double *sine, double *cosine) {
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if DELTA_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define DELTA_GROUP DELTA_INLINE
 #define DELTA_UNROLL _Pragma("GCC unroll 16")
 #else

@@ -185,7 +185,7 @@ DIFFERENTIAL_DRIVE_INLINE void differential_drive_pair(const double x, double *s
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if DIFFERENTIAL_DRIVE_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define DIFFERENTIAL_DRIVE_GROUP DIFFERENTIAL_DRIVE_INLINE
 #define DIFFERENTIAL_DRIVE_UNROLL _Pragma("GCC unroll 16")
 #else

@@ -307,7 +307,7 @@ static void front_car_sincos(const double angle, double *sine, double *cosine) {
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if FRONT_CAR_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define FRONT_CAR_GROUP FRONT_CAR_INLINE
 #define FRONT_CAR_UNROLL _Pragma("GCC unroll 16")
 #else

@@ -200,7 +200,7 @@ GOUGH_STEWART_INLINE void gough_stewart_pair(const double x, double *sine, doubl
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if GOUGH_STEWART_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define GOUGH_STEWART_GROUP GOUGH_STEWART_INLINE
 #define GOUGH_STEWART_UNROLL _Pragma("GCC unroll 16")
 #else

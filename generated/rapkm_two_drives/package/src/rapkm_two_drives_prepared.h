@@ -129,7 +129,7 @@ RAPKM_TWO_DRIVES_INLINE void rapkm_two_drives_pair(const double x, double *sine,
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if RAPKM_TWO_DRIVES_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define RAPKM_TWO_DRIVES_GROUP RAPKM_TWO_DRIVES_INLINE
 #define RAPKM_TWO_DRIVES_UNROLL _Pragma("GCC unroll 16")
 #else

@@ -137,7 +137,7 @@ static void tilted_four_bar_sincos(const double angle, double *sine, double *cos
 
 /* Where there are none but an FPU, and flash to spare, a microcontroller is faster without a loop. */
 #if TILTED_FOUR_BAR_LANES == 1 && defined(__GNUC__) && !defined(__clang__) && !defined(__OPTIMIZE_SIZE__) && \
-    (defined(__ARM_FP) || defined(__riscv_flen))
+    ((defined(__ARM_FP) && (__ARM_FP & 8)) || (defined(__riscv_flen) && __riscv_flen >= 64))
 #define TILTED_FOUR_BAR_GROUP TILTED_FOUR_BAR_INLINE
 #define TILTED_FOUR_BAR_UNROLL _Pragma("GCC unroll 16")
 #else
