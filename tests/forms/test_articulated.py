@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import random
 from pathlib import Path
+from typing import Any
 
 import pytest
 import shipped
 
+import symgen.dynamics.forms.articulated as by_frames
 from symgen.dynamics.forms.articulated import articulated
 from symgen.dynamics.forms.loop_points import acceleration, loop_points
 from symgen.dynamics.forms.motion import Problem
@@ -60,6 +62,11 @@ rotor_inertias:
   c: J/10
 """
 
+
+# the tip stays at a place of the world, in place of a height only
+HELD = """to_x: tip.x - l
+    to_y: tip.y
+    to_z: tip.z - l"""
 
 FREE = """model: free
 coordinates:
@@ -140,6 +147,22 @@ def test_a_free_body_that_is_driven_by_its_coordinates(tmp_path: Path) -> None:
     assert found is not None
     last = Evaluator([found[1].guards[-1].denominator])
     assert abs(last({"theta": 1.2})[0]) == pytest.approx(math.cos(1.2))
+
+
+def test_a_loop_in_space_beside_other_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its rows are taken along other axes than the world's; those of the gear and the skate stay what they are."""
+    chosen = []
+
+    def best_axes(*given: Any) -> Any:
+        chosen.append(along_best_axes(*given))
+        return chosen[-1]
+
+    along_best_axes = by_frames._along_best_axes
+    monkeypatch.setattr(by_frames, "_along_best_axes", best_axes)
+    path = tmp_path / "held.yaml"
+    path.write_text(JOINTS.replace("height: tip.z - l", HELD), encoding="utf-8")
+    assert compared(load_model(path)) < 1e-9
+    assert [frame for frame, _ in chosen] == ["slide"]
 
 
 @pytest.mark.parametrize("text", [FREE, JOINTS])
