@@ -3,7 +3,7 @@
 u of up to a thousand operations is in every build, and every kernel on every core at gcc -Os, which tells bytes,
 stack and instructions; small ones at gcc -O2 as well.  Of other kernels and builds each core has its share: with
 six cores every kernel is built at every level with both compilers on two of them, and every core has something of
-every build.  With up to three cores each of them has everything.
+every build.  With up to three cores each of them has everything at every level.
 
 In float64 on a core without a unit for it every number is a pair of words, and the registers of thousands of pairs
 take gcc half a minute a build: there it builds large kernels at -Os only, and very large ones not at all.
@@ -47,13 +47,14 @@ def selection(core: Core | None, compiler: Compiler, level: str, trig: str, shar
     """What is built for a core (None: the host) that has this share."""
     if trig == LIBM:
         return Selection(share, library=True)
-    if (compiler, level) not in WITH_LARGE:
+    alone = core is not None and share == ALL
+    if (compiler, level) not in WITH_LARGE and not alone:
         return Selection(share)
     if core is None:
         return Selection(ALL, ALL, companions=True)
     if compiler == "clang":
         return Selection(share, share, companions=True)
-    if level == SMALL:
+    if level == SMALL or alone:
         return Selection(ALL, ALL, "all" if has_unit(core) else "fitting", companions=True)
     return Selection(ALL, share, "all" if has_unit(core) else "none", companions=True)
 
