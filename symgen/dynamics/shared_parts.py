@@ -126,11 +126,18 @@ def _age(pair: _Pair) -> tuple[int, int]:
 
 
 def _with(terms: Sequence[Term], pair: _Pair, whole: Scalar) -> list[Term]:
-    """The terms with `whole` in the place of the first that belongs to the pair."""
-    (_, a), (_, b) = pair
-    first = next(k for k, (_, part) in enumerate(terms) if part is a)
-    second = next(k for k, (_, part) in enumerate(terms) if part is b)
-    sign = terms[first][0]
+    """The terms with `whole` in the place of the first that belongs to the pair.
+
+    A sum may hold a part more than once and with both signs: the two that make the pair are taken.
+    """
+    (_, a), (opposite, b) = pair
+    sign, first, second = next(
+        (sign, k, second)
+        for k, (sign, part) in enumerate(terms)
+        if part is a
+        for second, term in enumerate(terms)
+        if term == (sign * opposite, b)
+    )
     rest = [term for k, term in enumerate(terms) if k not in (first, second)]
     rest.insert(min(first, second), (sign, whole))
     return rest

@@ -171,10 +171,10 @@ def _value(graph: Graph, image: dict[Scalar, Scalar], name: str, angle: Scalar) 
 
 
 def _signed(graph: Graph, sign_a: int, a: Scalar, sign_b: int, b: Scalar) -> Scalar:
-    """sign_a a + sign_b b as it stands; at least one sign is positive, since an angle leads with a positive leaf."""
+    """sign_a a + sign_b b as it stands."""
     if sign_a > 0:
         return graph.raw("add" if sign_b > 0 else "sub", (a, b))
-    return graph.raw("sub", (b, a))
+    return graph.raw("sub", (b, a)) if sign_b > 0 else graph.raw("neg", (graph.raw("add", (a, b)),))
 
 
 def _replace(graph: Graph, outputs: Sequence[Scalar], image: dict[Scalar, Scalar]) -> list[Scalar]:

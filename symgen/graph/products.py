@@ -63,12 +63,14 @@ class Products:
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
         """a + sign * b where the two are products that differ in constants or in a pair of sines and cosines only."""
         (k1, left), (k2, right) = self.monomial(a), self.monomial(b)
-        if left == right:
+        if left == right and k1:
             return a * (Fraction(k1 + sign * k2) / k1)
         if abs(k1) != abs(k2) or a not in self._turning or b not in self._turning:
             return None
-        lost = [f for f, c in left.items() for _ in range(c - right.get(f, 0))]
-        gained = [f for f, c in right.items() for _ in range(c - left.get(f, 0))]
+        # factors of either side: a divisor of one alone is a factor that the other has more often
+        more = {f: left.get(f, 0) - right.get(f, 0) for f in {**left, **right}}
+        lost = [f for f, count in more.items() for _ in range(count)]
+        gained = [f for f, count in more.items() for _ in range(-count)]
         if len(lost) != 2 or len(gained) != 2 or not all(f.op in ("sin", "cos") for f in (*lost, *gained)):
             return None
         angle = self._addition_theorem(lost, gained, sign if k1 == k2 else -sign)

@@ -1,0 +1,58 @@
+"""Rewriting rules as identities in a prime field: what a rule makes has the value of what was asked for, exactly."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+
+from symgen.dynamics.shared_parts import with_shared_products, with_shared_sums
+from symgen.graph.fingerprint import PRIME
+from symgen.graph.scalar import Graph, Scalar
+
+DRAWS = 400
+
+
+def _product(graph: Graph, draw: random.Random) -> Scalar:
+    """A number times sines and cosines of two angles and powers, of either sign, of two symbols."""
+    angles = [graph.symbol(name) for name in "pq"]
+    factors = [graph.trig(draw.choice(("sin", "cos")), angle) for angle in angles]
+    total = graph.const(draw.choice((1, -1, 1, 2, Fraction(1, 2))))
+    for factor in draw.sample(factors, 2):
+        total = total * factor
+    for name in "km":
+        power = draw.choice((0, 0, 1, -1, -2))
+        for _ in range(abs(power)):
+            total = total * graph.symbol(name) if power > 0 else total / graph.symbol(name)
+    return total
+
+
+def test_sums_of_products_of_sines_keep_every_divisor() -> None:
+    combined = 0
+    for seed in range(DRAWS):
+        graph, draw = Graph(), random.Random(seed)
+        a, b = _product(graph, draw), _product(graph, draw)
+        assert (a + b).value == (a.value + b.value) % PRIME
+        assert (a - b).value == (a.value - b.value) % PRIME
+        combined += (a + b).op != "add"
+    assert combined > DRAWS // 20
+
+
+def _sum(graph: Graph, draw: random.Random, op: tuple[str, ...], parts: list[Scalar]) -> Scalar:
+    total = draw.choice(parts)
+    for _ in range(draw.randrange(2, 6)):
+        total = graph.raw(draw.choice(op), (total, draw.choice(parts)))
+    return total
+
+
+def test_parts_that_stand_in_a_sum_with_both_signs_are_told_apart() -> None:
+    changed = 0
+    for seed in range(DRAWS):
+        draw = random.Random(seed)
+        for op, step in ((("add", "sub"), with_shared_sums), (("mul",), with_shared_products)):
+            graph = Graph()
+            parts = [graph.symbol(name) for name in "abcd"]
+            outputs = [_sum(graph, draw, op, parts) for _ in range(4)]
+            found = step(graph, outputs)
+            assert [x.value for x in found] == [x.value for x in outputs]
+            changed += found != outputs
+    assert changed > DRAWS
