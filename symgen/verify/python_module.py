@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 import types
 from collections.abc import Sequence
 from typing import Any
@@ -21,11 +20,7 @@ class PythonModule:
 
     def __init__(self, source: str) -> None:
         self.module = types.ModuleType(MODULE_NAME)
-        sys.modules[MODULE_NAME] = self.module  # dataclasses look their module up by name
-        try:
-            exec(compile(source, "<generated module>", "exec"), self.module.__dict__)
-        finally:
-            del sys.modules[MODULE_NAME]
+        exec(compile(source, "<generated module>", "exec"), self.module.__dict__)
 
     def run(self, kernel: Kernel, states: Sequence[State]) -> list[Outcome]:
         """All states in one vectorised call; a state without result has NaN entries and no status of its own."""
