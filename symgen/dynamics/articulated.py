@@ -9,7 +9,7 @@ like small turns of the joints instead of errors of single entries of G (Feather
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from symgen.dynamics.bodies import Bodies, Vector3
 from symgen.dynamics.free_joints import free_joint
@@ -46,43 +46,41 @@ class ArticulatedFactor:
         self._bodies = bodies
         self.graph: Graph = bodies.graph
         mechanism = bodies.mechanism
-        self._frames = [frame.name for frame in mechanism.frames]
+        self.frames = [frame.name for frame in mechanism.frames]
         self._parents = {frame.name: frame.parent for frame in mechanism.frames}
-        self._rotors = self._rotor_inertias()
-        directions = {name: self._directions(name) for name in self._frames}
+        self.rotors = self._rotor_inertias()
+        directions = {name: self._moved_by(name) for name in self.frames}
         free = {name: free_joint(dict(own)) for name, own in directions.items() if len(own) == 6}
         self._free = {name: joint for name, joint in free.items() if joint is not None}
         moved = [coordinate for own in directions.values() for coordinate, _ in own]
         if sorted(moved) != list(range(len(bodies.q))):
             raise ValueError("a coordinate moves no frame, or several")
-        directions |= {name: joint.directions(self.graph) for name, joint in self._free.items()}
+        # by frame: its coordinates, and the motions they give the frame in its axes; unit twists where it moves freely
+        self.directions = directions | {name: joint.directions(self.graph) for name, joint in self._free.items()}
         self._yielding: dict[str, list[Yielding]] = {}
-        sizes = self._sizes()
+        sizes = self.sizes()
         pivots: dict[int, Scalar] = {}
         scales: dict[int, Scalar] = {}
         self.own: dict[int, Scalar] = {}
-        inertias = {name: self._own_inertia(name) for name in self._frames}
-        for name in reversed(self._frames):
+        inertias = {name: self.own_inertia(name) for name in self.frames}
+        for name in reversed(self.frames):
             inertia = inertias[name]
-            rigid = self._own_inertia(name)
+            rigid = self.own_inertia(name)
             found: list[Yielding] = []
-            for coordinate, direction in reversed(directions[name]):
-                rotor = self._rotors.get(coordinate, self.graph.zero)
+            for coordinate, direction in reversed(self.directions[name]):
+                rotor = self.rotors.get(coordinate, self.graph.zero)
                 met = self._times(inertia, direction)
                 pivot = self._dot(direction, met) + rotor
                 share = tuple(x if x.is_zero else x / pivot for x in met)
-                inertia = self._freed(inertia, direction, met, share, rotor)
+                inertia = self.freed(inertia, direction, met, share, rotor)
                 found.append(Yielding(coordinate, direction, pivot, share))
                 pivots[coordinate] = pivot
                 self.own[coordinate] = self._dot(direction, self._times(rigid, direction)) + rotor
-                about, mass = sizes[name]
-                scales[coordinate] = (
-                    self._squared(direction[:3]) * about + self._squared(direction[3:]) * mass + rotor
-                )
+                scales[coordinate] = self.size(direction, sizes[name]) + rotor
             self._yielding[name] = found
             parent = self._parents[name]
             if parent != WORLD:
-                inertias[parent] = _summed(inertias[parent], self._carried_inertia(name, inertia))
+                inertias[parent] = _summed(inertias[parent], self.carried_inertia(name, inertia))
         order = range(len(bodies.q))
         self.pivots: list[Scalar] = [pivots[j] for j in order]
         turns = (Guard(Status.MASS_RANK, joint.determinant, 1) for joint in self._free.values())
@@ -91,9 +89,9 @@ class ArticulatedFactor:
     def lowered(self, b: Sequence[Scalar], wrenches: Mapping[str, Six] | None = None) -> Vector:
         """The solution of L y = b; `wrenches` on frames are part of the generalized force b."""
         zero = self.graph.zero
-        loads = {name: (wrenches or {}).get(name, (zero,) * 6) for name in self._frames}
+        loads = {name: (wrenches or {}).get(name, (zero,) * 6) for name in self.frames}
         y = list(b)
-        for name in reversed(self._frames):
+        for name in reversed(self.frames):
             load = loads[name]
             if name in self._free:
                 y[:] = self._replaced(y, self._free[name].wrench(y))
@@ -116,7 +114,7 @@ class ArticulatedFactor:
         zero = self.graph.zero
         twists: dict[str, Six] = {WORLD: (zero,) * 6}
         x = list(b)
-        for name in self._frames:
+        for name in self.frames:
             twist = self._carried_twist(name, twists[self._parents[name]])
             for one in reversed(self._yielding[name]):
                 rate = x[one.coordinate] - self._dot(one.share, twist)
@@ -131,7 +129,7 @@ class ArticulatedFactor:
     def _replaced(given: Sequence[Scalar], new: Mapping[int, Scalar]) -> Vector:
         return tuple(new.get(j, entry) for j, entry in enumerate(given))
 
-    def _directions(self, name: str) -> list[tuple[int, Six]]:
+    def _moved_by(self, name: str) -> list[tuple[int, Six]]:
         """The motions that each coordinate gives the frame against its parent, in the frame's axes."""
         joint = self._bodies.kinematics.joint(name)
         moving = applied(transposed(joint.axes), joint.place_rate)
@@ -151,7 +149,19 @@ class ArticulatedFactor:
             found[j] = found.get(j, self.graph.zero) + self._bodies.scalars.value(rotor.inertia)
         return found
 
-    def _own_inertia(self, name: str) -> Matrix:
+    def children(self, name: str) -> list[str]:
+        """The frames that hang on a frame."""
+        return [child for child, parent in self._parents.items() if parent == name]
+
+    def bodies_of(self, name: str) -> tuple[list[Scalar], Matrix]:
+        """The masses of a frame's bodies, and the sum of their inertias about their centres of mass."""
+        bodies = [body for body in self._bodies.mechanism.bodies if body.frame == name]
+        total: Matrix = ((self.graph.zero,) * 3,) * 3
+        for body in bodies:
+            total = _summed(total, self._bodies.inertia(body.name))
+        return [self._bodies.scalars.value(body.mass) for body in bodies], total
+
+    def own_inertia(self, name: str) -> Matrix:
         """Of the bodies of a frame about its origin: [[I + m (c.c - c c^T), m [c]], [.., m]]."""
         graph, zero = self.graph, self.graph.zero
         total: Matrix = ((zero,) * 6,) * 6
@@ -175,7 +185,7 @@ class ArticulatedFactor:
             total = _summed(total, (*upper, *lower))
         return total
 
-    def _freed(self, inertia: Matrix, direction: Six, met: Six, share: Six, rotor: Scalar) -> Matrix:
+    def freed(self, inertia: Matrix, direction: Six, met: Six, share: Six, rotor: Scalar) -> Matrix:
         """inertia - met share^T; along a unit direction only what a rotor keeps is left, without a difference."""
         units = [i for i, d in enumerate(direction) if not d.is_zero]
         along = units[0] if len(units) == 1 and direction[units[0]].is_one else None
@@ -191,7 +201,7 @@ class ArticulatedFactor:
 
         return _symmetric(entry)
 
-    def _carried_inertia(self, name: str, inertia: Matrix) -> Matrix:
+    def carried_inertia(self, name: str, inertia: Matrix) -> Matrix:
         """In the parent's axes and about its origin: A - H [r] + [r] H^T - [r] M [r], H + [r] M, M."""
         joint = self._bodies.kinematics.joint(name)
         axes, r = joint.axes, joint.place
@@ -230,10 +240,18 @@ class ArticulatedFactor:
         linear = plus((twist[3], twist[4], twist[5]), cross(angular, joint.place))
         return (*applied(inward, angular), *applied(inward, linear))
 
-    def _sizes(self) -> dict[str, tuple[Scalar, Scalar]]:
-        """For each frame with all it carries: bounds of the moment of inertia about its origin, and the mass."""
+    def size(self, direction: Six, bounds: tuple[Scalar, Scalar]) -> Scalar:
+        """A bound of the inertia along a motion, from those of the moment of inertia and the mass."""
+        about, mass = bounds
+        return self._squared(direction[:3]) * about + self._squared(direction[3:]) * mass
+
+    def sizes(self, alone: Collection[str] = ()) -> dict[str, tuple[Scalar, Scalar]]:
+        """For each frame with all it carries: bounds of the moment of inertia about its origin, and the mass.
+
+        Frames that are `alone` carry nothing but their own bodies.
+        """
         graph, zero = self.graph, self.graph.zero
-        about, first, mass = (dict.fromkeys(self._frames, zero) for _ in range(3))
+        about, first, mass = (dict.fromkeys(self.frames, zero) for _ in range(3))
         for body in self._bodies.mechanism.bodies:
             if body.frame == WORLD:
                 continue
@@ -242,14 +260,14 @@ class ArticulatedFactor:
             own = graph.sum(magnitude(graph, [rows[i][i] for i in range(3)]))
             about[body.frame] = about[body.frame] + own + m * arm * arm
             first[body.frame], mass[body.frame] = first[body.frame] + m * arm, mass[body.frame] + m
-        for name in reversed(self._frames):
+        for name in reversed(self.frames):
             parent = self._parents[name]
-            if parent != WORLD:
+            if parent != WORLD and parent not in alone:
                 arm = graph.sum(magnitude(graph, self._bodies.kinematics.joint(name).place))
                 moment, m = first[name], mass[name]
                 about[parent] = about[parent] + about[name] + (moment + moment + m * arm) * arm
                 first[parent], mass[parent] = first[parent] + moment + m * arm, mass[parent] + m
-        return {name: (about[name], mass[name]) for name in self._frames}
+        return {name: (about[name], mass[name]) for name in self.frames}
 
     def _squared(self, vector: Six) -> Scalar:
         return self.graph.sum(x * x for x in magnitude(self.graph, vector))

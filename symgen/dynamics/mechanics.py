@@ -19,6 +19,7 @@ from symgen.graph.traverse import cost, substitute
 from symgen.model.components import components_in, definitions_before_frames
 from symgen.model.expression import Expression
 from symgen.model.model import Model
+from symgen.model.signs import nonnegative_parameters, positive_parameters
 from symgen.model.triples import Rows
 
 
@@ -83,6 +84,16 @@ class Mechanics:
     def m(self) -> int:
         """Number of inputs."""
         return len(self.u)
+
+    @cached_property
+    def positive(self) -> frozenset[str]:
+        """The parameters that are positive, by their ranges or by nature."""
+        return positive_parameters(self.model)
+
+    @cached_property
+    def nonnegative(self) -> frozenset[str]:
+        """The parameters that are positive or 0, by nature: masses and moments of inertia."""
+        return nonnegative_parameters(self.model)
 
     # energies --------------------------------------------------------------------------------------------------------
 

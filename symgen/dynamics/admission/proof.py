@@ -106,7 +106,7 @@ class Proof:
                 return all(map(self._nonnegative, node.args))
             case _:
                 bounds = self._definite.bounds(node)
-                return bounds is not None and bounds[0] >= 0
+                return bounds is not None and bounds.low >= 0
 
     def _forced(self, node: Scalar) -> list[Scalar]:
         """What is 0 where the node is."""

@@ -13,8 +13,7 @@ from dataclasses import replace
 from functools import cached_property
 
 from symgen.dynamics.articulated import ArticulatedFactor, Six
-from symgen.dynamics.forms.definite import Definite
-from symgen.dynamics.forms.definiteness import positive_definite
+from symgen.dynamics.forms.local_inertias import definite_by_frames
 from symgen.dynamics.forms.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.schur import along_factor
@@ -106,8 +105,7 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
         factor = ArticulatedFactor(mechanics.bodies)
     except ValueError:
         return None
-    definite = Definite(mechanics)
-    if not all(definite.holds(own) for own in factor.own.values()) and not positive_definite(mechanics):
+    if not definite_by_frames(mechanics, factor):
         return None
     rows, graph = mechanics.constraint_jacobian, mechanics.graph
     few = 0 < len(rows) <= LONGEST_PRODUCT

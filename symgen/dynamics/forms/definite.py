@@ -1,42 +1,63 @@
-"""Which scalars of parameters cannot vanish: intervals over the declared ranges (Moore, Interval Analysis)."""
+"""Which scalars of parameters cannot vanish: intervals over the declared ranges (Moore, Interval Analysis).
+
+Parameters without a range that are positive by nature (`symgen.model.signs`) lie between 0 and infinity.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from fractions import Fraction
 from functools import reduce
+from math import inf
 from typing import TypeAlias
 
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.scalar import Scalar
 from symgen.graph.traverse import topological
+from symgen.records import dataclass
 
-Interval: TypeAlias = tuple[Fraction, Fraction]
+# floats are infinities only
+Bound: TypeAlias = Fraction | float
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """Bounds of a scalar, and whether it is known not to be 0 although a bound may be."""
+
+    low: Bound
+    high: Bound
+    nonzero: bool
 
 
 class Definite:
-    """Bounds of scalars that depend on parameters with a declared range only."""
+    """Bounds of scalars that depend only on parameters with a declared range or positive by nature."""
 
     def __init__(self, mechanics: Mechanics) -> None:
-        self._ranges: dict[str, Interval] = {
-            parameter.name: (Fraction(parameter.range[0]), Fraction(parameter.range[1]))
-            for parameter in mechanics.model.parameters
-            if parameter.range is not None
-        }
+        self._ranges: dict[str, Interval] = {}
+        for parameter in mechanics.model.parameters:
+            if parameter.range is not None:
+                low, high = Fraction(parameter.range[0]), Fraction(parameter.range[1])
+                self._ranges[parameter.name] = Interval(low, high, low > 0 or high < 0)
+            elif parameter.name in mechanics.positive:
+                self._ranges[parameter.name] = Interval(Fraction(0), inf, True)
+            elif parameter.name in mechanics.nonnegative:
+                self._ranges[parameter.name] = Interval(Fraction(0), inf, False)
+            else:
+                # of either sign, or 0: its square is not negative
+                self._ranges[parameter.name] = Interval(-inf, inf, False)
         self._known: dict[Scalar, Interval | None] = {}
         self._graph = mechanics.graph
 
     def holds(self, node: Scalar) -> bool:
         """Whether the scalar is never 0, whatever the parameters are within their ranges."""
         bounds = self.bounds(node)
-        return bounds is not None and (bounds[0] > 0 or bounds[1] < 0)
+        return bounds is not None and bounds.nonzero
 
     def parameter(self, name: str) -> Scalar:
         """The parameter of that name."""
         return self._graph.symbol(name)
 
     def bounds(self, node: Scalar) -> Interval | None:
-        """An enclosure, or None where the scalar depends on anything else or may be unbounded."""
+        """An enclosure, or None where the scalar depends on anything else or is not bounded on either side."""
         for inner in topological([node], self._known):
             args = [self._known[argument] for argument in inner.args]
             self._known[inner] = self._enclosure(inner, args)
@@ -44,7 +65,7 @@ class Definite:
 
     def _enclosure(self, node: Scalar, args: list[Interval | None]) -> Interval | None:
         if node.constant is not None:
-            return node.constant, node.constant
+            return Interval(node.constant, node.constant, not node.is_zero)
         if node.op == "symbol":
             return self._ranges.get(str(node.payload))
         given = [a for a in args if a is not None]
@@ -52,20 +73,31 @@ class Definite:
             return None
         match node.op:
             case "add":
-                return given[0][0] + given[1][0], given[0][1] + given[1][1]
+                return _sum(given[0], given[1])
             case "sub":
-                return given[0][0] - given[1][1], given[0][1] - given[1][0]
+                return _sum(given[0], _negative(given[1]))
             case "neg":
-                return -given[0][1], -given[0][0]
+                return _negative(given[0])
             case "mul" if node.args[0] is node.args[1]:
-                low, high = sorted(map(abs, given[0]))
-                return (Fraction(0) if given[0][0] <= 0 <= given[0][1] else low * low), high * high
+                return _square(given[0])
             case "mul":
-                return _hull(a * b for a in given[0] for b in given[1])
-            case "div" if not given[1][0] <= 0 <= given[1][1]:
-                return _hull(a / b for a in given[0] for b in given[1])
+                return self._product(node, given[0], given[1])
+            case "div" if given[1].nonzero and not given[1].low < 0 < given[1].high:
+                return _product(given[0], _inverse(given[1]))
             case _:
                 return None
+
+    def _product(self, node: Scalar, a: Interval, b: Interval) -> Interval:
+        """Of a product: one of even powers, as (m c) c with m > 0 is, is not negative whatever c is."""
+        found = _product(a, b)
+        if found.low >= 0:
+            return found
+        coefficient, powers = self._graph.products.monomial(node)
+        for factor, power in powers.items():
+            bounds = self._known.get(factor)
+            if bounds is None or power < 1 or (power % 2 and bounds.low < 0):
+                return found
+        return Interval(Fraction(0), found.high, found.nonzero) if coefficient > 0 else found
 
     def content(self, entries: list[Scalar]) -> Scalar:
         """The largest product of definite factors that divides every entry; 1 where there is none."""
@@ -98,6 +130,30 @@ class Definite:
         return (content / divisor) * self.without(entry, content)
 
 
-def _hull(values: Iterable[Fraction]) -> Interval:
-    found = list(values)
-    return min(found), max(found)
+def _sum(a: Interval, b: Interval) -> Interval:
+    low, high = a.low + b.low, a.high + b.high
+    one_side = (a.low >= 0 and b.low >= 0) or (a.high <= 0 and b.high <= 0)
+    return Interval(low, high, low > 0 or high < 0 or (one_side and (a.nonzero or b.nonzero)))
+
+
+def _negative(a: Interval) -> Interval:
+    return Interval(-a.high, -a.low, a.nonzero)
+
+
+def _square(a: Interval) -> Interval:
+    found = _product(a, a)
+    return found if found.low >= 0 else Interval(Fraction(0), found.high, a.nonzero)
+
+
+def _product(a: Interval, b: Interval) -> Interval:
+    # 0 times infinity is 0 here: infinity only says that there is no bound
+    ends: list[Bound] = [x * y if x and y else Fraction(0) for x in (a.low, a.high) for y in (b.low, b.high)]
+    return Interval(min(ends), max(ends), a.nonzero and b.nonzero)
+
+
+def _inverse(a: Interval) -> Interval:
+    """1 / a for an interval on one side of 0."""
+    if a.high <= 0:
+        return _negative(_inverse(_negative(a)))
+    low = Fraction(0) if a.high == inf else 1 / a.high
+    return Interval(low, 1 / a.low if a.low else inf, True)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Sequence
 from decimal import Decimal
 from functools import lru_cache
 
@@ -70,7 +71,7 @@ def indefinite(mechanics: Mechanics) -> Indefinite | None:
     if all(pivot.constant is not None for pivot in pivots):
         negative = (i % factor.size for i, pivot in enumerate(pivots) if not (pivot.constant or 0) > 0)
         return next((Indefinite(i, factor.pivots[i], ()) for i in negative), None)
-    least, point, i = _smallest(mechanics, pivots)
+    least, point, i = smallest(mechanics, pivots)
     if least > SMALLEST:
         return None
     i %= factor.size
@@ -79,8 +80,8 @@ def indefinite(mechanics: Mechanics) -> Indefinite | None:
     return Indefinite(i, factor.pivots[i], state)
 
 
-def _smallest(mechanics: Mechanics, pivots: list[Scalar]) -> tuple[float, dict[str, float], int]:
-    """The smallest pivot found, where it was found, and whose it is."""
+def smallest(mechanics: Mechanics, pivots: Sequence[Scalar]) -> tuple[float, dict[str, float], int]:
+    """The smallest of pivots found in the ranges, where it was found, and whose it is."""
     evaluate = Evaluator(pivots)
     known = parameter_values(mechanics)
     reached = {str(node.payload) for node in topological(pivots) if node.op == "symbol"}

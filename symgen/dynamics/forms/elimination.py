@@ -67,7 +67,7 @@ class Elimination:
         self._nonzero = {
             mechanics.graph.symbol(p.name)
             for p in mechanics.model.parameters
-            if p.range is not None and (p.range[0] > 0 or p.range[1] < 0)
+            if p.name in mechanics.positive or (p.range is not None and p.range[1] < 0)
         }
 
     def reduce(self) -> None:

@@ -256,9 +256,9 @@ def _symbols_back(mechanics: Mechanics, change: AbsoluteAngles | None) -> dict[S
 
 
 def _positive_sizes(mechanics: Mechanics) -> dict[Scalar, Scalar]:
-    """|p| = p for parameters that are declared positive."""
+    """|p| = p for parameters that are positive."""
     graph = mechanics.graph
-    positive = [graph.symbol(p.name) for p in mechanics.model.parameters if p.range is not None and p.range[0] > 0]
+    positive = [graph.symbol(p.name) for p in mechanics.model.parameters if p.name in mechanics.positive]
     return {graph.function("abs", (p,)): p for p in positive}
 
 
