@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run test generated mechanisms fuzz proof firmware firmware-goals bench bench-mechanisms generation stress skipping trig docs lock robots
+.PHONY: run test generated mechanisms fuzz proof firmware firmware-goals bench bench-mechanisms generation stress skipping trig zoo docs lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -64,6 +64,15 @@ firmware-goals: $(VENV)/installed
 
 target-%: models/%.yaml $(VENV)/installed
 	$(BIN)/symgen target $< --cpu all --quiet
+
+# Random systems through the whole command, each ending looked at: a chunk of a campaign, or as much as fits in a time.
+ZOO_SEED ?= $(shell git rev-list --count HEAD)
+ZOO_FIRST ?= 0
+ZOO_DRAWS ?= 1000
+ZOO_SECONDS ?= 0
+zoo: $(VENV)/installed
+	$(BIN)/python -m symgen.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --draws $(ZOO_DRAWS) --seconds $(ZOO_SECONDS) \
+	    --out build/zoo
 
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed

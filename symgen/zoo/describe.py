@@ -1,0 +1,78 @@
+"""A drawn system as data, and the model file it becomes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+# blocks in the order in which people write them
+ORDER = (
+    "model", "description", "coordinates", "parameters", "definitions", "gravity", "frames", "joints", "bodies",
+    "rotor_inertias", "points", "loops", "rolling", "springs", "friction", "forces", "kinetic_energy",
+    "potential_energy", "constraints", "inputs", "allocation", "applied_forces", "outputs", "independent_velocities",
+    "configuration", "ranges", "tolerances", "trig_range",
+)  # fmt: skip
+PLAIN = re.compile(r"[A-Za-z_0-9.+*/() -]+")
+
+
+@dataclass(frozen=True)
+class Terms:
+    """A sum that is written out, term by term, so that a shrinker can take terms away."""
+
+    terms: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return " + ".join(term if not term.startswith("-") else f"({term})" for term in self.terms) or "0"
+
+
+@dataclass(frozen=True)
+class Description:
+    """A model file as data: blocks of mappings, lists, texts and sums.
+
+    `start` is a configuration that satisfies the constraints by construction, whether the file tells it or not.
+    """
+
+    family: str
+    blocks: Mapping[str, Any]
+    start: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def text(self) -> str:
+        """The model file."""
+        lines: list[str] = []
+        known = [key for key in ORDER if key in self.blocks]
+        for key in (*known, *(key for key in self.blocks if key not in ORDER)):
+            value = self.blocks[key]
+            if isinstance(value, Mapping) and value:
+                lines.append(f"{key}:")
+                lines += _entries(value, "  ", key)
+            else:
+                lines.append(f"{key}: {flow(value)}")
+        return "\n".join(lines) + "\n"
+
+
+def _entries(value: Mapping[str, Any], indent: str, block: str) -> list[str]:
+    lines = []
+    for key, entry in value.items():
+        if block == "constraints" and isinstance(entry, Mapping):
+            lines.append(f"{indent}{key}:")
+            lines += _entries(entry, indent + "  ", "")
+        else:
+            lines.append(f"{indent}{key}: {flow(entry)}")
+    return lines
+
+
+def flow(value: Any) -> str:
+    """A value in one line."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key}: {flow(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(flow(entry) for entry in value) + "]"
+    text = str(value)
+    if PLAIN.fullmatch(text) and not text.startswith(("*", "-", " ")) and not text.endswith(" "):
+        return text
+    if re.fullmatch(r"-[0-9.][0-9.e+-]*", text):
+        return text
+    return '"' + text + '"'

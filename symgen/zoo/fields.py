@@ -1,0 +1,79 @@
+"""The arithmetics in which expressions are evaluated: floats for drawing, balls for the witness."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any, ClassVar
+
+# 50 digits and as many again for what cancels
+BITS = 340
+
+
+class Floats:
+    """Double precision."""
+
+    functions: ClassVar[dict[str, Callable[..., Any]]] = {
+        name: getattr(math, name)
+        for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log", "sinh", "cosh", "tanh")
+    }
+
+    def number(self, value: Fraction) -> float:
+        """The nearest float."""
+        return value.numerator / value.denominator
+
+    def pi(self) -> float:
+        """pi."""
+        return math.pi
+
+    def power(self, base: float, exponent: Fraction) -> float:
+        """base to a rational power."""
+        return float(base ** (exponent.numerator if exponent.denominator == 1 else float(exponent)))
+
+
+class Balls:
+    """Ball arithmetic of `BITS` bits."""
+
+    def __init__(self) -> None:
+        from flint import arb
+
+        self._arb = arb
+        self.functions: dict[str, Callable[..., Any]] = {
+            name: getattr(arb, name)
+            for name in ("sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "exp", "log", "sinh", "cosh", "tanh")
+        } | {"atan2": lambda y, x: arb.atan2(y, x)}
+        self._numbers: dict[Fraction, Any] = {}
+
+    def number(self, value: Fraction) -> Any:
+        """The ball of a rational."""
+        found = self._numbers.get(value)
+        if found is None:
+            found = self._numbers[value] = self._arb(value.numerator) / self._arb(value.denominator)
+        return found
+
+    def pi(self) -> Any:
+        """pi."""
+        return self._arb.pi()
+
+    def power(self, base: Any, exponent: Fraction) -> Any:
+        """base to a rational power."""
+        if exponent.denominator == 1:
+            return base**exponent.numerator
+        if exponent.denominator == 2:
+            return base.sqrt() ** exponent.numerator
+        return base ** (self._arb(exponent.numerator) / self._arb(exponent.denominator))
+
+
+@contextmanager
+def precision(bits: int = BITS) -> Iterator[None]:
+    """Balls of so many bits inside."""
+    from flint import ctx
+
+    before = ctx.prec
+    ctx.prec = bits
+    try:
+        yield
+    finally:
+        ctx.prec = before

@@ -1,0 +1,91 @@
+"""A drawing in progress: a model file that grows around a configuration at which everything is measured."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from symgen.zoo.dice import Dice, decimal, exact
+from symgen.zoo.fields import Floats
+from symgen.zoo.names import Namer
+from symgen.zoo.reader import System
+from symgen.zoo.tape import Node
+
+
+class Sketch:
+    """A model file that grows, with a configuration at which everything drawn so far can be measured."""
+
+    def __init__(self, dice: Dice, family: str) -> None:
+        self.dice, self.family = dice, family
+        self.name = Namer(dice, 0.5 if dice.chance(0.12) else 0)
+        self.blocks: dict[str, Any] = {"model": "zoo"}
+        self.start: dict[str, float] = {}
+
+    def block(self, name: str) -> dict[str, Any]:
+        """A block, made where it is missing."""
+        found: dict[str, Any] = self.blocks.setdefault(name, {})
+        return found
+
+    def coordinate(self, plain: str, value: float, unit: str = "rad") -> str:
+        """A new coordinate with its value at the start."""
+        name = self.name(plain)
+        self.block("coordinates")[name] = {"unit": unit} if self.dice.chance(0.7) else {}
+        self.start[name] = value
+        return name
+
+    def parameter(self, plain: str, value: str, positive: bool = True) -> str:
+        """A parameter, or its value as a literal."""
+        if self.dice.chance(0.2):
+            return value if not value.startswith("-") else f"({value})"
+        name = self.name(plain)
+        entry: dict[str, Any] = {"value": value}
+        if positive and float(value) > 0 and self.dice.chance(0.3):
+            entry["range"] = [decimal(float(value) * 0.7, 3), decimal(float(value) * 1.4, 3)]
+        self.block("parameters")[name] = entry
+        return name
+
+    def definition(self, plain: str, text: str, always: bool = False) -> str:
+        """A definition, or the text in brackets."""
+        if not always and self.inlined:
+            return f"({text})"
+        name = self.name(plain)
+        self.block("definitions")[name] = text
+        return name
+
+    inlined = False
+
+    def measured(self, text: str) -> float:
+        """What an expression is at the start."""
+        system = System(self.blocks)
+        return self.values(system, [system.read(text)])[0]
+
+    def values(self, system: System, nodes: list[Node]) -> list[float]:
+        """Numbers of nodes at the start."""
+        floats = Floats()
+        values: dict[str, float] = {**self.start, **dict.fromkeys((f"{name}_dot" for name in self.start), 0.0)}
+        for name, value in system.parameters.items():
+            values[name] = system.tape.evaluate([value], values, floats)[0]
+        return [float(value) for value in system.tape.evaluate(nodes, values, floats)]
+
+    def place(self, owner: str) -> list[float]:
+        """Where a point or the origin of a frame is at the start."""
+        system = System(self.blocks)
+        return self.values(system, list(system.place(owner)))
+
+    def axes(self, frame: str) -> list[list[float]]:
+        """The attitude of a frame at the start, as rows of its matrix."""
+        system = System(self.blocks)
+        flat = self.values(system, [entry for row in system.frames.pose(frame).axes for entry in row])
+        return [flat[0:3], flat[3:6], flat[6:9]]
+
+    def row(self, plain: str, text: str, measured: bool = True) -> str:
+        """A geometric row that holds at the start."""
+        if measured:
+            value = self.measured(text)
+            if abs(value) > 1e-12 or self.dice.chance(0.5):
+                place = self.parameter(f"{plain}_at", exact(value), positive=False)
+                text = f"{text} - {place}"
+        if self.dice.chance(0.08):
+            text = f"{self.dice.choice(('1e-6', '1e6', '1e-3', '250'))}*({text})"
+        name = self.name(plain)
+        self.block("constraints").setdefault("geometric", {})[name] = text
+        return name
