@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from symgen.graph.angles import share_angles
+from symgen.graph.identity import same_values
 from symgen.graph.polynomial import Multiplier, refactored
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import topological
@@ -45,7 +46,9 @@ class Factoring:
         if multiplier is None:
             multiplier = Multiplier(self.graph, lambda node: node in kept or self.fixed(node))
             self._multipliers[kept] = multiplier
-        return tuple(refactored(self.graph, share_angles(self.graph, outputs), multiplier, self.fixed))
+        shorter = refactored(self.graph, share_angles(self.graph, outputs), multiplier, self.fixed)
+        same_values("multiplying out and factoring", outputs, shorter)
+        return tuple(shorter)
 
     def cancelled(self, scalar: Scalar) -> Scalar:
         """The scalar multiplied out and factored where that makes it shorter."""

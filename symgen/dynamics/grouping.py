@@ -16,6 +16,7 @@ from symgen.dynamics.late_factors import with_late_factors
 from symgen.dynamics.opposites import with_one_difference
 from symgen.dynamics.shared_parts import with_shared_products, with_shared_sums
 from symgen.dynamics.sum_factors import with_common_factors
+from symgen.graph.identity import same_values
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import cost, reached, topological, uses_of
 from symgen.records import dataclass
@@ -41,7 +42,9 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
     improved = _Improvement(graph, factoring)
     start = improved(_weighed(_unified(graph, outputs)), _SIGNS_AND_NUMBERS)
     best = _best_of_several(improved, start) if len(reached(outputs)) <= SHORT else improved(start, _ONE_WAY)
-    return list(improved(best, (_with_quotients, _with_early_factors)).outputs)
+    found = list(improved(best, (_with_quotients, _with_early_factors)).outputs)
+    same_values("regrouping", outputs, found)
+    return found
 
 
 def _best_of_several(improved: _Improvement, start: _Weighed) -> _Weighed:
@@ -72,6 +75,7 @@ class _Improvement:
 
     def _after(self, step: _Step, best: _Weighed) -> _Weighed:
         changed = step(self._graph, self._factoring, best.outputs)
+        same_values(step.__name__.replace("_", " ").strip(), best.outputs, changed)
         if tuple(changed) == best.outputs:
             return best
         found = _weighed(_unified(self._graph, changed))

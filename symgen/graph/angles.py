@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
+from symgen.graph.identity import same_values
 from symgen.graph.scalar import PI, Graph, Scalar
 from symgen.graph.traverse import reached, topological
 from symgen.model.fixed_angles import sine_of_steps
@@ -47,7 +48,9 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Sc
         image[graph.trig("cos", angle)] = _signed(graph, 1, level[0], -sign_a * sign_b, level[1])
     if not image:
         return list(outputs)
-    return _replace(graph, outputs, image)
+    shared = _replace(graph, outputs, image)
+    same_values("sharing sines and cosines", outputs, shared)
+    return shared
 
 
 def angles_of(outputs: Sequence[Scalar]) -> list[Scalar]:

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 from fractions import Fraction
 
+from symgen.graph.identity import same_values
 from symgen.graph.scalar import Graph, Scalar
 
 # Sums nested deeper than this are taken as they stand.
@@ -20,7 +21,11 @@ def usual_number(values: Iterable[Scalar]) -> Fraction:
 
 def divided(graph: Graph, value: Scalar, number: Fraction) -> Scalar:
     """value / number, taken out of the terms that hold it instead of divided by."""
-    return value if number == 1 else _divided(graph, value, number, DEEPEST)
+    if number == 1:
+        return value
+    found = _divided(graph, value, number, DEEPEST)
+    same_values("dividing by a number", [graph.raw("mul", (value, graph.const(1 / number)))], [found])
+    return found
 
 
 def _number(value: Scalar, depth: int) -> Fraction:

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
+from symgen.graph.fingerprint import PRIME
+
 if TYPE_CHECKING:
     from symgen.graph.scalar import Graph, Scalar
 
@@ -67,8 +69,10 @@ class Products:
             return a * (Fraction(k1 + sign * k2) / k1)
         if abs(k1) != abs(k2) or a not in self._turning or b not in self._turning:
             return None
-        # factors of either side: a divisor of one alone is a factor that the other has more often
+        # factors of either side; what one of them alone is divided by stays
         more = {f: left.get(f, 0) - right.get(f, 0) for f in {**left, **right}}
+        if any(count and min(left.get(f, 0), right.get(f, 0)) < 0 for f, count in more.items()):
+            return None
         lost = [f for f, count in more.items() for _ in range(count)]
         gained = [f for f, count in more.items() for _ in range(-count)]
         if len(lost) != 2 or len(gained) != 2 or not all(f.op in ("sin", "cos") for f in (*lost, *gained)):
@@ -76,8 +80,14 @@ class Products:
         angle = self._addition_theorem(lost, gained, sign if k1 == k2 else -sign)
         if angle is None:
             return None
-        rest = {f: c - lost.count(f) for f, c in left.items() if c != lost.count(f)}
-        return k1 * (self._product(rest) * angle)
+        rest = {f: common for f in more if (common := min(left.get(f, 0), right.get(f, 0)))}
+        found = k1 * (self._product(rest) * angle)
+        if found.value != (a.value + sign * b.value) % PRIME:
+            from symgen.graph.identity import same_values  # which needs graphs
+
+            asked = self._graph.raw("add" if sign > 0 else "sub", (a, b))
+            same_values("the addition theorem", [asked], [found])
+        return found
 
     def quotient(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction = 1) -> Scalar:
         """`a` over a number times powers of its factors, which are left out instead of divided by."""

@@ -12,17 +12,17 @@ from symgen.graph.scalar import Graph, Scalar
 DRAWS = 400
 
 
-def _product(graph: Graph, draw: random.Random) -> Scalar:
-    """A number times sines and cosines of two angles and powers, of either sign, of two symbols."""
-    angles = [graph.symbol(name) for name in "pq"]
-    factors = [graph.trig(draw.choice(("sin", "cos")), angle) for angle in angles]
-    total = graph.const(draw.choice((1, -1, 1, 2, Fraction(1, 2))))
-    for factor in draw.sample(factors, 2):
-        total = total * factor
-    for name in "km":
-        power = draw.choice((0, 0, 1, -1, -2))
-        for _ in range(abs(power)):
-            total = total * graph.symbol(name) if power > 0 else total / graph.symbol(name)
+def _product(graph: Graph, draw: random.Random, powers: dict[Scalar, int], angles: list[Scalar]) -> Scalar:
+    """A number times powers, of either sign, and a sine or cosine of each angle."""
+    counts = dict(powers)
+    for angle in angles:
+        turned = graph.trig(draw.choice(("sin", "cos")), angle)
+        counts[turned] = counts.get(turned, 0) + 1
+    total = graph.const(draw.choice((1, -1, 1, 1, Fraction(1, 2))))
+    for factor in draw.sample([*counts], len(counts)):
+        count = counts[factor]
+        for _ in range(abs(count)):
+            total = total * factor if count > 0 else total / factor
     return total
 
 
@@ -30,7 +30,11 @@ def test_sums_of_products_of_sines_keep_every_divisor() -> None:
     combined = 0
     for seed in range(DRAWS):
         graph, draw = Graph(), random.Random(seed)
-        a, b = _product(graph, draw), _product(graph, draw)
+        p, q = (graph.symbol(name) for name in "pq")
+        factors = [graph.trig(op, angle) for op in ("sin", "cos") for angle in (p, q, p + q)]
+        factors += [graph.symbol(name) for name in "km"]
+        common = {factor: draw.choice((0, 0, 1, -1, -2)) for factor in factors}
+        a, b = (_product(graph, draw, common, draw.choice(([p, q], [p, p + q], [q, q]))) for _ in range(2))
         assert (a + b).value == (a.value + b.value) % PRIME
         assert (a - b).value == (a.value - b.value) % PRIME
         combined += (a + b).op != "add"

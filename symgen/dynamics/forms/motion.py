@@ -10,6 +10,7 @@ from functools import cached_property
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.angles import share_angles
+from symgen.graph.identity import same_values
 from symgen.graph.matrix import Matrix, Vector
 from symgen.graph.polynomial import Multiplier, refactored
 from symgen.graph.scalar import Graph, Scalar
@@ -62,4 +63,6 @@ class Problem:
         Inertias that occur in several entries of G (an angle relative to a turning body) then cancel exactly.
         """
         fixed = self._mechanics.factoring.fixed
-        return refactored(self.graph, share_angles(self.graph, values), self._multiplier, fixed)
+        found = refactored(self.graph, share_angles(self.graph, values), self._multiplier, fixed)
+        same_values("multiplying sums of parameters out", values, found)
+        return found

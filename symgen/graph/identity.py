@@ -1,0 +1,53 @@
+"""Whatever rewrites scalars is held to be an identity while it works: wrong algebra ends generation, it is not emitted.
+
+Every scalar carries its value in a prime field (fingerprint), so that two scalars are compared by comparing two
+numbers.  Only where these differ is more to be done: fingerprints know neither that a root's square is what it is the
+root of, nor what turns by fixed angles do, and then exact evaluation decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from symgen.diagnostics import SymgenBug
+from symgen.graph.exact import exact_values
+from symgen.graph.scalar import Scalar
+
+# Points at which identities are looked at until none of the values given is divided by 0.
+POINTS = 3
+
+
+class _Thoroughly:
+    """Whether exact evaluation looks at every identity, that of equal fingerprints too."""
+
+    on = False
+
+
+@contextmanager
+def every_identity_evaluated() -> Iterator[None]:
+    """While this lasts nothing is taken on the word of fingerprints, whose angles are read by the graph's own rules."""
+    before, _Thoroughly.on = _Thoroughly.on, True
+    try:
+        yield
+    finally:
+        _Thoroughly.on = before
+
+
+def same_values(rule: str, before: Sequence[Scalar], after: Sequence[Scalar]) -> None:
+    """Raises SymgenBug, naming the rule, where a scalar is not the same function after it as before."""
+    if len(before) != len(after):
+        raise SymgenBug(f"{rule}: {len(after)} scalars in place of {len(before)}")
+    differ = [
+        (one, other)
+        for one, other in zip(before, after, strict=True)
+        if (one.value != other.value or _Thoroughly.on) and one is not other
+    ]
+    for seed in range(POINTS):
+        if not differ:
+            return
+        values = exact_values([scalar for pair in differ for scalar in pair], seed)
+        pairs = list(zip(values[::2], values[1::2], strict=True))
+        if wrong := [k for k, (one, other) in enumerate(pairs) if one is not None and one != other]:
+            raise SymgenBug(f"{rule}: changes the value of {len(wrong)} of {len(before)} scalars")
+        differ = [pair for pair, (one, _) in zip(differ, pairs, strict=True) if one is None]
