@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import gc
 import os
-import signal
 import sys
-import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from io import StringIO, TextIOWrapper
 from pathlib import Path
-from types import FrameType
 
 from symgen import __version__
 from symgen.arguments import add_form, add_generation, add_models, chosen_forms, make_parser, names, parts
 from symgen.ir.kernel import Scalar
 from symgen.measuring import bench, simulate, stress, target
 from symgen.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, guarded
+from symgen.processes import ToolError
 from symgen.results import PARTS, Options, Result, WrongUseError
+from symgen.signals import EndedError, signals_end_the_run
 from symgen.terminal import SPELLED, Progress, notice_line, summary_table
+from symgen.write import begin_writing, changed_folders, compare, recover_folders, write_files
 
-INTERRUPTED, READER_GONE, TERMINATED = 130, 141, 143  # as a shell reports these signals
+INTERRUPTED, READER_GONE = 130, 141  # as a shell reports these signals
 _SCALARS: dict[str, tuple[Scalar, ...]] = {
     "float64": ("float64",),
     "float32": ("float32",),
@@ -57,23 +58,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # large graphs live until the end of a command: looking for cycles in them costs a twentieth of its time
         gc.disable()
     _prepare_streams()
-    if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, _terminated)
+    begin_writing()
     command, rest = (given[0], given[1:]) if given and given[0] in _COMMANDS else ("", given)
     try:
-        code = _COMMANDS[command](rest) if command else _generate(rest)
-        sys.stdout.flush()
+        with signals_end_the_run():
+            code = _COMMANDS[command](rest) if command else _generate(rest)
+            sys.stdout.flush()
         if arguments is None:
             # the interpreter looks for cycles once more at its end, to free what the process gives back anyway
             gc.freeze()
         return code
-    except KeyboardInterrupt:
-        print("\ninterrupted; earlier output is unchanged", file=sys.stderr)
-        return INTERRUPTED
+    except (KeyboardInterrupt, EndedError) as ending:
+        return _ended(ending)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # no second complaint at exit
         return READER_GONE
-    except WrongUseError as error:
+    except (WrongUseError, ToolError) as error:
         return _complain(str(error))
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
@@ -88,9 +88,16 @@ def _prepare_streams() -> None:
             stream.reconfigure(errors=SPELLED)
 
 
-def _terminated(_signal: int, _frame: FrameType | None) -> None:
-    """Leaves as after any error, so that compilers, processes and temporary folders go too."""
-    raise SystemExit(TERMINATED)
+def _ended(ending: KeyboardInterrupt | EndedError) -> int:
+    """Says what became of the output, and returns the exit code."""
+    word, code = "interrupted", INTERRUPTED
+    if isinstance(ending, EndedError):
+        word, code = ending.meaning, ending.number
+    folders = ", ".join(map(str, changed_folders()))
+    told = f"new files are in {folders}, each complete; all else is unchanged" if folders else "earlier output is unchanged"
+    with suppress(OSError):  # the terminal may be gone
+        print(f"\n{word}; {told}", file=sys.stderr, flush=True)
+    return code
 
 
 def _complain(message: str) -> int:
@@ -127,6 +134,7 @@ def _generate(arguments: list[str]) -> int:
         measured=given.out,
     )
     finish = _check_files if given.check else _write_files
+    recover_folders(given.out)
     return _each_model(given.models, options, given.quiet, lambda result: finish(result, given.out, given.quiet))
 
 
@@ -141,6 +149,7 @@ def _verify(arguments: list[str]) -> int:
 
     if find_compiler() is None:
         raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")
+    recover_folders(given.out)
     options = Options(parts=("c", "python"), states=given.states, forms=chosen_forms(given.forms), trig=given.trig)
     return _each_model(
         given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)
@@ -229,19 +238,24 @@ def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: C
 
 
 def _write_files(result: Result, out: Path, quiet: bool) -> int:
-    from symgen.write import write_files
-
-    written = write_files(out / result.model.name, result.files)
+    tell = _unheard if quiet else _heard
+    written = write_files(out / result.model.name, result.files, tell)
     if not quiet:
         print(summary_table(result.model.name, result.summary))
         print("written:", *(f"  {path}" for path in written), "", sep="\n")
     return DONE
 
 
+def _heard(message: str) -> None:
+    print(message, file=sys.stderr)
+
+
+def _unheard(_message: str) -> None:
+    return
+
+
 def _write_certificate(result: Result, out: Path, quiet: bool) -> int:
     """The certificate speaks of what symgen makes now; other files on disk are a failure, not a certificate."""
-    from symgen.write import compare, write_files
-
     folder = out / result.model.name
     certificate = {path: content for path, content in result.files.items() if path == "certificate.json"}
     sources = {path: content for path, content in result.files.items() if path.startswith(("c/", "python/"))}
@@ -258,8 +272,6 @@ def _write_certificate(result: Result, out: Path, quiet: bool) -> int:
 
 
 def _check_files(result: Result, out: Path, quiet: bool) -> int:
-    from symgen.write import compare
-
     differences = compare(out / result.model.name, result.files)
     if differences:
         print(*differences, sep="\n")

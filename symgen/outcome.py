@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from symgen.diagnostics import ModelError, SymgenBug
+from symgen.processes import ToolError
 from symgen.results import WrongUseError
 from symgen.terminal import Progress
 
@@ -45,6 +46,8 @@ def guarded(work: Callable[[], int]) -> int:
         return MODEL_WRONG
     except (WrongUseError, OSError):
         raise
+    except ToolError as error:
+        print(f"symgen: {error}", file=sys.stderr)
     except SymgenBug as error:
         print(f"symgen: internal error: {error}\nThis is a fault of symgen, not of the model.", file=sys.stderr)
     except Exception:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import shutil
 import struct
-import subprocess
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
+from symgen.processes import ToolError, run
 
 # Position-independent for all, as a library that is loaded needs it; see docs/bench for what that means for CasADi.
 FLAGS = ("-O2", "-std=c99", "-ffp-contract=off")
@@ -25,6 +25,7 @@ FLAGS = ("-O2", "-std=c99", "-ffp-contract=off")
 SINGLE = ("-include", "tgmath.h", "-fsingle-precision-constant")
 TIMED_STATES = 256
 PROCESSES = 2
+LONGEST_RUN = 1800.0  # seconds of a compiler, or of a program that measures
 
 
 class BuildError(Exception):
@@ -101,7 +102,7 @@ def results_of(built: Built, folder: Path, candidates: Sequence[CCandidate], tas
     """What each candidate makes of every state: arrays (states, size) by entry; NaN where it reports a status."""
     import numpy as np
 
-    subprocess.run([str(built.program), "results", "0"], cwd=folder, check=True)
+    _done([str(built.program), "results", "0"], folder)
     found: dict[str, Any] = {}
     for scalar, kind in C_TYPE.items():
         entries = [c.entry for c in candidates if c.scalar == scalar]
@@ -113,10 +114,8 @@ def results_of(built: Built, folder: Path, candidates: Sequence[CCandidate], tas
 
 def nanoseconds(built: Built, passes: int) -> dict[str, float]:
     """Median time of one call by entry; the candidates take turns in every pass."""
-    told = subprocess.run(
-        [str(built.program), "time", str(passes)], cwd=built.program.parent, check=True, capture_output=True, text=True
-    )
-    return {name: float(value) for name, value in (line.split() for line in told.stdout.splitlines())}
+    told = _done([str(built.program), "time", str(passes)], built.program.parent)
+    return {name: float(value) for name, value in (line.split() for line in told.splitlines())}
 
 
 def compile_candidate(
@@ -150,14 +149,21 @@ def compile_candidate(
 
 def gcc(arguments: Sequence[str], what: str) -> None:
     """Run gcc; raises BuildError with its words and `what` it refuses."""
-    told = subprocess.run(["gcc", *arguments], capture_output=True, text=True, check=False)
+    told = run(["gcc", *arguments], LONGEST_RUN)
     if told.returncode:
         raise BuildError(f"gcc refuses {what}: {told.stderr[:2000]}")
 
 
+def _done(command: Sequence[str], folder: Path | None = None) -> str:
+    """What a program prints; raises ToolError when it fails."""
+    told = run(command, LONGEST_RUN, folder)
+    if told.returncode:
+        raise ToolError(f"{command[0]} failed ({told.returncode}): {told.stderr[:2000]}")
+    return told.stdout
+
+
 def _code_bytes(target: Path, functions: set[str]) -> int:
-    told = subprocess.run(["nm", "-S", "--defined-only", str(target)], capture_output=True, text=True, check=True)
-    rows = [line.split() for line in told.stdout.splitlines()]
+    rows = [line.split() for line in _done(["nm", "-S", "--defined-only", str(target)]).splitlines()]
     return sum(int(row[1], 16) for row in rows if len(row) == 4 and row[2] in "tT" and _base(row[3]) in functions)
 
 

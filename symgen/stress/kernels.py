@@ -60,10 +60,14 @@ class Runner:
             return
         sources, _ = generated_sources(model, dict(self.files))
         compilations = {s: Compilation(self.compiler, source, folder) for s, source in sources.items()}
-        for scalar, compilation in compilations.items():
-            library = compilation.library()
-            for kernel in self._programs[scalar].kernels:
-                self._functions[scalar, kernel.name] = CFunction(library, model.name, kernel, scalar)
+        try:
+            for scalar, compilation in compilations.items():
+                library = compilation.library()
+                for kernel in self._programs[scalar].kernels:
+                    self._functions[scalar, kernel.name] = CFunction(library, model.name, kernel, scalar)
+        finally:
+            for compilation in compilations.values():
+                compilation.cancel()
 
     def kernel(self, name: str, scalar: Scalar) -> Kernel:
         """The straight-line kernel of a quantity."""

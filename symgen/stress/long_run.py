@@ -7,17 +7,18 @@ Remark 9 (`projected_configuration`, `admissible_velocity`) after every step.
 
 from __future__ import annotations
 
-import subprocess
 from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
 
 import numpy as np
 
+from symgen import processes
 from symgen.emit.render import render
 from symgen.model.model import Model, Path
 from symgen.naming import file_stem
 from symgen.paths.path_equations import PathError
 from symgen.paths.trajectory import solve_path
+from symgen.processes import ToolError
 from symgen.stress.kernels import Kernels
 from symgen.verify.reference import Reference
 
@@ -27,7 +28,7 @@ NODES = 1001
 RECORDS = 200
 BANDWIDTH = 20.0  # of the controller, in rad per lap-time unit: critically damped
 NEEDED = ("inverse_dynamics", "forward_dynamics", "control_matrix", "applied_force", "energy")
-LONGEST_SECONDS = 300.0
+LONGEST_SECONDS = LONGEST_COMPILATION = 300.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,17 +94,19 @@ def _built(model: Model, path: Path, kernels: Kernels, folder: FilePath) -> File
     target = folder / "long_run"
     flags = ("-std=c99", "-O2", "-ffp-contract=off")
     sources = (str(folder / "long_run.c"), str(folder / f"{stem}.c"))
-    subprocess.run([*kernels.compiler.command, *flags, "-o", str(target), *sources, "-lm"], check=True)
+    told = processes.run([*kernels.compiler.command, *flags, "-o", str(target), *sources, "-lm"], LONGEST_COMPILATION)
+    if told.returncode or not target.is_file():
+        raise ToolError(f"{kernels.compiler.command[0]} makes no program: {told.stderr.strip()[:2000]}")
     return target
 
 
 def _run(program: FilePath, table: FilePath, path: str, steps: int, projected: bool) -> Run:
     command = [str(program), str(table), str(steps), str(int(projected))]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_SECONDS, check=False)
+        done = processes.run(command, LONGEST_SECONDS)
         output, complaint = done.stdout, done.stderr.strip()
-    except subprocess.TimeoutExpired:
-        output, complaint = "", f"not done after {LONGEST_SECONDS:.0f} s"
+    except ToolError as error:
+        output, complaint = "", str(error)
     rows = [tuple(map(float, line.split())) for line in output.splitlines()]
     time, drift, slip, tracking, energy = zip(*rows, strict=True) if rows else ((),) * 5
     return Run(path, projected, steps, time, drift, slip, tracking, energy, complaint)

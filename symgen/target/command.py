@@ -8,10 +8,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from symgen.model.load import load_model
+from symgen.processes import ToolError
 from symgen.target.cores import Core
 from symgen.target.run import measure
 from symgen.target.tables import target_tables
-from symgen.target.tools import ToolError, require
+from symgen.target.tools import require
 from symgen.verify.reference import ReferenceValueError
 from symgen.verify.states import VerificationError
 from symgen.write import write_files

@@ -8,9 +8,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from symgen.emit.render import template_folder
+from symgen.processes import ToolError
 from symgen.target.build import Workshop
 from symgen.target.cores import Core
-from symgen.target.tools import EMULATOR, ToolError, run
+from symgen.target.tools import EMULATOR, run
 
 QUIET = ("-display", "none", "-monitor", "none", "-serial", "none", "-nodefaults")
 SEMIHOSTING = ("-chardev", "stdio,id=console", "-semihosting-config", "enable=on,target=native,chardev=console")

@@ -19,6 +19,7 @@ from symgen.emit.c_sc import emit_c_sc
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
+from symgen.processes import ToolError
 from symgen.target.build import STACK_WATCHED, Workshop
 from symgen.target.compare import Units, compare, units_of, uses_library
 from symgen.target.cores import LEVELS, Compiler, Core
@@ -49,7 +50,7 @@ from symgen.target.selection import (
     share,
     small_kernels,
 )
-from symgen.target.tools import EMULATOR, PREFIX, ToolError, compilers, version
+from symgen.target.tools import EMULATOR, PREFIX, compilers, version
 from symgen.target.vectors import FEWEST, Vectors, perturbed, vectors_of
 from symgen.verify.reference import Reference, State
 

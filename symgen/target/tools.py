@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from subprocess import CompletedProcess
 
+from symgen import processes
+from symgen.processes import ToolError
 from symgen.results import WrongUseError
 from symgen.target.cores import Compiler, Core, Family
 
@@ -23,10 +25,6 @@ PACKAGES: dict[str, tuple[str, ...]] = {
     "gcc": ("gcc", "libc6-dev"),
 }
 LONGEST_RUN = 900.0
-
-
-class ToolError(Exception):
-    """A compiler, linker or emulator refused its work; the text is its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,15 +69,9 @@ def toolchain(family: Family) -> Toolchain:
     return Toolchain(prefix, specs, include)
 
 
-def run(command: Sequence[str], folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+def run(command: Sequence[str], folder: Path | None = None) -> CompletedProcess[str]:
     """Runs a tool; raises ToolError with what it says when it fails or hangs."""
-    try:
-        told = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, errors="replace", check=False, timeout=LONGEST_RUN,
-            stdin=subprocess.DEVNULL,
-        )
-    except subprocess.TimeoutExpired as error:
-        raise ToolError(f"{command[0]} did not end within {LONGEST_RUN:g} s") from error
+    told = processes.run(command, LONGEST_RUN, folder)
     if told.returncode:
         said = (told.stderr + told.stdout).strip()[:2000]
         raise ToolError(f"{command[0]} failed ({told.returncode}): {said}\n  {' '.join(command)}")

@@ -6,8 +6,6 @@ import ctypes
 import math
 import os
 import shutil
-import signal
-import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,10 +14,14 @@ from typing import Any
 from symgen.emit.locals import array_arguments
 from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar, Status
+from symgen.processes import ToolError, ended, run, start, stop
 
 # -O1 takes half the time of -O2; the bits are the same at every level (tests/verify/test_levels.py).
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared")
-LONGEST_COMPILATION = 600.0
+# Seconds: a megabyte of source takes two on a fast machine; beyond that a compiler hangs.
+LONGEST_ANSWER = 20.0
+LONGEST_COMPILATION, LONGEST_FOR_A_MEGABYTE = 60.0, 120.0
+REMEDY = "name a working C compiler of this machine in CC"
 C_TYPES: dict[Scalar, Any] = {"float64": ctypes.c_double, "float32": ctypes.c_float}
 
 
@@ -49,8 +51,8 @@ class Outcome:
         return self.status == Status.OK and all(map(math.isfinite, self.entries))
 
 
-class CompilationError(Exception):
-    """The compiler refused generated C; the text is its own."""
+class CompilationError(ToolError):
+    """The compiler refused generated C (the text is its own), hangs, or made nothing that runs here."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,11 +64,15 @@ class Compiler:
 
 
 def find_compiler() -> Compiler | None:
-    """The compiler in CC, else cc, else gcc; None when there is none."""
+    """The compiler in CC, else cc, else gcc; None when there is none. Raises CompilationError when it hangs."""
     for command in (os.environ.get("CC", "").split(), ["cc"], ["gcc"]):
         if command and shutil.which(command[0]):
-            told = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False)
-            return Compiler(tuple(command), (told.stdout.splitlines() or ["unknown"])[0])
+            try:
+                told = run([*command, "--version"], LONGEST_ANSWER)
+            except ToolError as error:
+                raise CompilationError(f"{error}; {REMEDY}") from error
+            lines = told.stdout.splitlines() if told.returncode == 0 else []
+            return Compiler(tuple(command), (lines or ["unknown"])[0])
     return None
 
 
@@ -74,37 +80,48 @@ class Compilation:
     """A compiler at work in the background; `library` waits for it."""
 
     def __init__(self, compiler: Compiler, source: CSource, folder: Path) -> None:
-        (folder / f"{source.stem}.h").write_text(source.header, encoding="utf-8")
-        paths = [folder / f"{source.stem}.c"]
-        paths[0].write_text(source.source, encoding="utf-8")
-        for name, text in source.companions:
+        texts = {f"{source.stem}.h": source.header, f"{source.stem}.c": source.source, **dict(source.companions)}
+        for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
-            paths += [folder / name] if name.endswith(".c") else []
+        paths = [str(folder / name) for name in texts if name.endswith(".c")]
+        self._limit = LONGEST_COMPILATION + LONGEST_FOR_A_MEGABYTE * sum(map(len, texts.values())) / 1e6
+        self._tool = compiler.command[0]
         self._target = folder / f"{source.stem}.so"
-        command = [*compiler.command, *FLAGS, "-o", str(self._target), *map(str, paths), "-lm"]
         self._log = folder / f"{source.stem}.log"
         with self._log.open("wb") as log:
-            # in a group of its own: a driver that is killed alone leaves the compiler proper at work
-            self._process = subprocess.Popen(command, stdout=log, stderr=log, process_group=0)
+            command = [*compiler.command, *FLAGS, "-o", str(self._target), *paths, "-lm"]
+            self._process = start(command, output=log, complaints=log)
 
     def library(self) -> ctypes.CDLL:
-        """The loaded library; raises CompilationError with the compiler's message."""
-        if self._process.wait(LONGEST_COMPILATION) != 0:
-            raise CompilationError(self._log.read_text(encoding="utf-8", errors="replace"))
-        return ctypes.CDLL(str(self._target))
+        """The loaded library; raises CompilationError with the compiler's message, or with a remedy."""
+        try:
+            code = ended(self._process, self._limit)
+        except ToolError as error:
+            raise CompilationError(f"{error}; {REMEDY}") from error
+        said = self._log.read_text(encoding="utf-8", errors="replace").strip()
+        if code != 0:
+            raise CompilationError(said or f"{self._tool} ended with {code} and no word; {REMEDY}")
+        if not self._target.is_file():
+            raise CompilationError(f"{self._tool} ended with 0 and made no file; {REMEDY}")
+        try:
+            return ctypes.CDLL(str(self._target))
+        except OSError as error:
+            raise CompilationError(f"{self._tool} made no library that loads here ({error}); {REMEDY}") from error
 
     def cancel(self) -> None:
         """Stop a compiler that still runs."""
-        if self._process.poll() is None:
-            os.killpg(self._process.pid, signal.SIGKILL)
-            self._process.wait()
+        stop(self._process)
 
 
 class CFunction:
     """One kernel of a library: arrays, then the parameter struct, then the result."""
 
     def __init__(self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar) -> None:
-        self._function = library[f"{model}_{kernel.name}{SUFFIX[scalar]}"]
+        name = f"{model}_{kernel.name}{SUFFIX[scalar]}"
+        try:
+            self._function = library[name]
+        except AttributeError as error:
+            raise CompilationError(f"the compiler made a library without {name}; {REMEDY}") from error
         self._function.restype = ctypes.c_int
         self._scalar = C_TYPES[scalar]
         self._arguments = tuple(argument.name for argument in array_arguments(kernel))

@@ -10,11 +10,15 @@ import pytest
 from symgen.diagnostics import SymgenBug
 from symgen.write import compare, write_files
 
+FILES_MADE = ".symgen-files"
 FILES = {"c/m.h": "header\n", "c/m.c": "source\n", "python/m.py": "python\n", "derivation.json": "{}\n"}
 
 
 def tree(folder: Path) -> dict[str, str]:
-    return {p.relative_to(folder).as_posix(): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()}
+    """The files but the list of them; nothing else of symgen's is left."""
+    found = {p.relative_to(folder).as_posix(): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()}
+    assert {path for path in found if path.startswith(".")} <= {FILES_MADE}
+    return {path: text for path, text in found.items() if path != FILES_MADE}
 
 
 def test_writes_and_returns_the_paths(tmp_path: Path) -> None:

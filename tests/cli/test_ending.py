@@ -1,0 +1,166 @@
+"""Signals end a run with all that it started, and what is said of the output is true; so do odd compilers."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from symgen.cli import main
+from symgen.processes import ToolError, run
+from symgen.verify import compile as compiling
+
+MODEL = """model: {name}
+coordinates: {{x: {{unit: m}}, phi: {{unit: rad}}}}
+parameters: {{M: {{value: 3, unit: kg}}, L: {{value: 0.7, unit: m}}}}
+kinetic_energy: M*(x_dot**2 + L*x_dot*phi_dot*cos(phi) + L**2*phi_dot**2)
+inputs:
+  push: {{acts_on: {{x: 1}}}}
+  turn: {{acts_on: {{phi: 1}}}}
+"""
+# The driver starts the compiler proper, which hangs where the model's name is in its arguments.
+HANGING = """#!/bin/sh
+case "$*" in
+  *--version*) echo odd 1.0 ;;
+  *{name}*) echo $$ >> "{marks}"; sh -c 'echo $$ >> "{marks}"; exec sleep 300'; exit 1 ;;
+  *) exec cc "$@" ;;
+esac
+"""
+
+
+def odd_compiler(folder: Path, text: str) -> Path:
+    path = folder / "oddcc"
+    path.write_text(text)
+    path.chmod(0o755)
+    return path
+
+
+def runs(process: int) -> bool:
+    for _ in range(100):
+        try:
+            with open(f"/proc/{process}/stat") as stat:
+                if stat.read().rpartition(")")[2].split()[0] == "Z":
+                    return False
+        except FileNotFoundError:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+def model(folder: Path, name: str) -> Path:
+    path = folder / f"{name}.yaml"
+    path.write_text(MODEL.format(name=name))
+    return path
+
+
+ENDINGS = {
+    signal.SIGINT: (130, "interrupted"),
+    signal.SIGTERM: (143, "terminated"),
+    signal.SIGHUP: (129, "ended with its terminal"),
+}
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
+@pytest.mark.parametrize("number", ENDINGS)
+@pytest.mark.parametrize("first", [True, False], ids=["nothing written", "one model written"])
+def test_a_signal_ends_compilers_and_says_what_was_written(tmp_path: Path, number: signal.Signals, first: bool) -> None:
+    marks, temporary = tmp_path / "marks", tmp_path / "tmp"
+    temporary.mkdir()
+    compiler = odd_compiler(tmp_path, HANGING.format(name="hanging", marks=marks))
+    models = [*([] if first else [str(model(tmp_path, "quick"))]), str(model(tmp_path, "hanging"))]
+    command = [sys.executable, "-m", "symgen", *models, "--only", "c", "--quiet", "--out", str(tmp_path / "out")]
+    environment = {**os.environ, "CC": str(compiler), "TMPDIR": str(temporary)}
+    started = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    assert started.stderr is not None
+    with started.stderr:
+        # one driver and one compiler for each of two scalar types
+        while not marks.exists() or len(marks.read_text().split()) < 4:
+            assert started.poll() is None, started.stderr.read()
+            time.sleep(0.02)
+        started.send_signal(number)
+        started.send_signal(number)  # a second one must not break off the cleaning up
+        told = started.stderr.read()
+        code, word = ENDINGS[number]
+        assert started.wait(30) == code
+    assert not any(map(runs, map(int, marks.read_text().split())))
+    assert not list(temporary.iterdir())
+    assert "Traceback" not in told
+    if first:
+        assert told.endswith(f"{word}; earlier output is unchanged\n")
+        assert not (tmp_path / "out").exists()
+    else:
+        folder = tmp_path / "out/quick"
+        assert told.endswith(f"{word}; new files are in {folder}, each complete; all else is unchanged\n")
+        assert (folder / "c/quick.c").exists()
+        assert not (tmp_path / "out/hanging").exists()
+
+
+def test_a_hangup_that_is_ignored_stays_ignored(tmp_path: Path) -> None:
+    script = (
+        "import os, signal, sys\nfrom symgen.signals import signals_end_the_run\n"
+        "signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
+        "with signals_end_the_run():\n    os.kill(os.getpid(), signal.SIGHUP)\n    print('still here')\n"
+    )
+    assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout == "still here\n"
+
+
+ODD = {
+    "does not answer": ("sleep 60\n", "did not end within 1 s", 2),
+    "hangs": ('case "$*" in *--version*) echo odd ;; *) sleep 60 ;; esac\n', "did not end within", 1),
+    "fails without a word": ('case "$*" in *--version*) echo odd ;; *) exit 3 ;; esac\n', "ended with 3", 1),
+    "dies": ('case "$*" in *--version*) echo odd ;; *) kill -SEGV $$ ;; esac\n', "ended with -11", 1),
+    "makes nothing": ("echo odd\n", "made no file", 1),
+    "makes no library": (
+        'case "$*" in *--version*) echo odd; exit ;; esac\n'
+        'while [ "$1" != -o ]; do shift; done\necho odd > "$2"\n', "made no library that loads here", 1
+    ),
+    "makes another library": (
+        'case "$*" in *--version*) echo odd; exit ;; esac\n'
+        'while [ "$1" != -o ]; do shift; done\necho "int other;" | cc -shared -xc - -o "$2"\n', "a library without", 2
+    ),
+}
+
+
+@pytest.mark.parametrize("case", ODD)
+def test_an_odd_compiler_is_an_error_with_a_remedy(
+    case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body, expected, code = ODD[case]
+    monkeypatch.setenv("CC", str(odd_compiler(tmp_path, f"#!/bin/sh\n{body}")))
+    monkeypatch.setattr(compiling, "LONGEST_ANSWER", 1.0)
+    monkeypatch.setattr(compiling, "LONGEST_COMPILATION", 1.0)
+    out = tmp_path / "out"
+    assert main([str(model(tmp_path, "cart")), "--only", "c", "--out", str(out), "--quiet"]) == code
+    told = capsys.readouterr().err
+    assert expected in told
+    assert compiling.REMEDY in told
+    assert "internal error" not in told
+    assert not (out / "cart").exists()
+
+
+def test_bytes_that_are_no_text_are_printed_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    compiler = odd_compiler(tmp_path, "#!/bin/sh\nprintf '\\377\\376 odd\\n'\nexit 1\n")
+    monkeypatch.setenv("CC", str(compiler))
+    assert main([str(model(tmp_path, "cart")), "--only", "c", "--out", str(tmp_path / "out"), "--quiet"]) == 1
+    assert "\ufffd\ufffd odd" in capsys.readouterr().err
+
+
+def test_a_tool_that_leaves_its_output_open_in_the_background_holds_nobody(tmp_path: Path) -> None:
+    began = time.monotonic()
+    told = run(["sh", "-c", "echo done; sleep 20 &"], 10.0, tmp_path)
+    assert (told.returncode, told.stdout) == (0, "done\n")
+    assert time.monotonic() - began < 10
+
+
+def test_a_tool_that_is_missing_or_late_is_a_tool_error(tmp_path: Path) -> None:
+    with pytest.raises(ToolError, match="no-such-tool cannot be started"):
+        run(["no-such-tool"], 1.0)
+    with pytest.raises(ToolError, match=r"sleep did not end within 0\.2 s"):
+        run(["sleep", "20"], 0.2, tmp_path)

@@ -1,0 +1,234 @@
+"""Folders of a model beside their user, beside other runs, and after runs that were killed."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from symgen.folders.journal import STAGING
+from symgen.folders.lock import LOCK, LockedError, folder_lock
+from symgen.folders.manifest import FILES
+from symgen.write import ForeignFileError, compare, recover_folders, write_files
+
+OLD = {f"c/part{k}.c": f"old {k}\n" for k in range(3)} | {"c/gone.c": "old\n", "derivation.json": "{}\n"}
+NEW = {f"c/part{k}.c": f"new {k}\n" for k in range(3)} | {"python/added.py": "new\n", "derivation.json": "[]\n"}
+
+
+def tree(folder: Path) -> dict[str, str]:
+    paths = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.name != FILES)
+    return {path.relative_to(folder).as_posix(): path.read_text() for path in paths}
+
+
+def silent(_message: str) -> None:
+    return
+
+
+def test_what_symgen_did_not_make_stays_and_is_told(tmp_path: Path) -> None:
+    write_files(tmp_path, OLD)
+    mine = {"c/main.c": "mine\n", "c/build/out.txt": "mine\n", "notes.txt": "mine\n"}
+    for path, text in mine.items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(text)
+    told: list[str] = []
+    write_files(tmp_path, NEW, told.append)
+    assert tree(tmp_path) == dict(sorted((NEW | mine).items()))
+    assert told == [
+        f"{tmp_path}: notice: not made by symgen, or changed since, and left as they are: c/main.c, c/build/out.txt"
+    ]
+    assert compare(tmp_path, NEW) == ()
+
+
+def test_a_file_that_was_changed_since_is_not_removed(tmp_path: Path) -> None:
+    write_files(tmp_path, OLD)
+    (tmp_path / "c/gone.c").write_text("now mine\n")
+    told: list[str] = []
+    write_files(tmp_path, NEW, told.append)
+    assert (tmp_path / "c/gone.c").read_text() == "now mine\n"
+    assert "c/gone.c" in told[0]
+
+
+def test_a_file_of_the_user_is_not_replaced(tmp_path: Path) -> None:
+    write_files(tmp_path, OLD)
+    (tmp_path / "python").mkdir()
+    (tmp_path / "python/added.py").write_text("mine\n")
+    before = tree(tmp_path)
+    with pytest.raises(ForeignFileError, match=r"--out.*") as caught:
+        write_files(tmp_path, NEW)
+    assert caught.value.filename == str(tmp_path / "python/added.py")
+    assert tree(tmp_path) == before
+
+
+def test_folders_of_earlier_versions_are_taken_over_and_lose_nothing(tmp_path: Path) -> None:
+    """They have no list of files; a folder without a derivation is none of symgen's."""
+    for path, text in OLD.items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(text)
+    (tmp_path / "derivation.json").rename(tmp_path / "aside")
+    with pytest.raises(ForeignFileError):
+        write_files(tmp_path, NEW)
+    (tmp_path / "aside").rename(tmp_path / "derivation.json")
+    (tmp_path / ".staging-ab12").mkdir()
+    (tmp_path / ".staging-ab12/new-3").write_text("left behind")
+    told: list[str] = []
+    write_files(tmp_path, NEW, told.append)
+    assert tree(tmp_path) == dict(sorted((NEW | {"c/gone.c": "old\n"}).items()))
+    assert "c/gone.c" in told[0]
+
+
+def test_the_list_is_one_that_sha256sum_checks(tmp_path: Path) -> None:
+    write_files(tmp_path, OLD)
+    rows = [line.split("  ") for line in (tmp_path / FILES).read_text().splitlines() if not line.startswith("#")]
+    assert {path: checksum for checksum, path in rows} == {
+        path: hashlib.sha256(text.encode()).hexdigest() for path, text in OLD.items()
+    }
+
+
+def test_parts_that_are_not_written_stay_on_the_list(tmp_path: Path) -> None:
+    write_files(tmp_path, OLD)
+    write_files(tmp_path, {"python/added.py": "new\n"})
+    write_files(tmp_path, {"c/part0.c": "new\n"})
+    assert list(tree(tmp_path)) == ["c/part0.c", "derivation.json", "python/added.py"]
+
+
+def test_models_that_differ_in_capitals_do_not_share_a_folder(tmp_path: Path) -> None:
+    """As on a disk that knows no capitals, where both names lead to one folder."""
+    write_files(tmp_path / "rob", OLD)
+    (tmp_path / "rob").rename(tmp_path / "Rob")
+    with pytest.raises(ForeignFileError, match="the model rob"):
+        write_files(tmp_path / "Rob", NEW)
+    assert tree(tmp_path / "Rob") == dict(sorted(OLD.items()))
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from symgen import write
+from symgen.folders import journal
+sys.path.insert(0, sys.argv[3])
+from test_folders import NEW
+calls, limit = 0, int(sys.argv[2])
+def dying(name):
+    own = getattr(os, name)
+    def call(*args, **kwargs):
+        global calls
+        calls += 1
+        if calls == limit:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return own(*args, **kwargs)
+    setattr(os, name, call)
+for name in ("replace", "rename", "link", "unlink", "mkdir", "rmdir"):
+    dying(name)
+write.write_files(Path(sys.argv[1]), NEW)
+print(calls)
+"""
+
+
+def killed(folder: Path, limit: int) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", KILLED, str(folder), str(limit), str(Path(__file__).parent)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_a_run_killed_anywhere_leaves_what_the_next_start_mends(tmp_path: Path) -> None:
+    """The folder then holds all earlier files or all new ones, and those of the user, and nothing else."""
+    write_files(tmp_path / "whole", OLD)
+    steps = int(killed(tmp_path / "whole", 10**9).stdout)
+    assert steps > 15
+    ways = set()
+    for limit in range(1, steps + 1):
+        folder = tmp_path / str(limit) / "m"
+        write_files(folder, OLD)
+        (folder / "c/main.c").write_text("mine\n")
+        assert killed(folder, limit).returncode == -signal.SIGKILL
+        told: list[str] = []
+        recover_folders(folder.parent, told.append)
+        found = tree(folder)
+        assert found.pop("c/main.c") == "mine\n"
+        found.pop(LOCK, None)  # empty; free again
+        assert found in (dict(sorted(OLD.items())), dict(sorted(NEW.items())))
+        assert not (folder / STAGING).exists()
+        ways.add((found == dict(sorted(NEW.items())), bool(told)))
+        write_files(folder, NEW, silent)
+        assert tree(folder) == dict(sorted((NEW | {"c/main.c": "mine\n"}).items()))
+    assert ways == {(False, False), (True, True), (True, False)}
+
+
+def test_a_check_sees_the_mended_folder(tmp_path: Path) -> None:
+    for limit in range(9, 18):
+        folder = tmp_path / str(limit)
+        write_files(folder, OLD)
+        killed(folder, limit)
+        differences = {compare(folder, files, silent) for files in (OLD, NEW)}
+        assert () in differences
+
+
+RACING = """
+import sys
+from pathlib import Path
+from symgen.write import write_files
+name = sys.argv[2]
+for round in range(8):
+    write_files(Path(sys.argv[1]), {f"c/{k}.c": f"{name} {round}\\n" for k in range(30)} | {f"c/{name}.h": "own\\n"})
+"""
+
+
+def test_runs_into_one_folder_leave_the_files_of_one(tmp_path: Path) -> None:
+    folder = tmp_path / "m"
+    runs = [subprocess.Popen([sys.executable, "-c", RACING, str(folder), name]) for name in ("one", "two", "three")]
+    assert [run.wait(120) for run in runs] == [0, 0, 0]
+    found = tree(folder)
+    assert len({text for path, text in found.items() if not path.endswith(".h")}) == 1
+    assert len(found) == 31
+    assert not (folder / LOCK).exists()
+
+
+HOLDING = """
+import sys, time
+from pathlib import Path
+from symgen.folders.lock import folder_lock
+with folder_lock(Path(sys.argv[1]), print):
+    print("held", flush=True)
+    time.sleep(60)
+"""
+
+
+def test_a_lock_is_waited_for_told_and_free_after_death(tmp_path: Path) -> None:
+    holder = subprocess.Popen([sys.executable, "-c", HOLDING, str(tmp_path)], stdout=subprocess.PIPE, text=True)
+    assert holder.stdout is not None
+    with holder.stdout:
+        assert holder.stdout.readline() == "held\n"
+        told: list[str] = []
+        with pytest.raises(LockedError, match=f"process {holder.pid}"), folder_lock(tmp_path, told.append, 1.0):
+            pytest.fail("locked twice")
+        assert told == [f"{tmp_path}: waiting for another run of symgen (process {holder.pid}) that writes here"]
+        holder.kill()
+        holder.wait()
+    write_files(tmp_path, NEW)
+    assert tree(tmp_path) == dict(sorted(NEW.items()))
+
+
+def test_a_journal_moves_nothing_from_or_to_elsewhere(tmp_path: Path) -> None:
+    folder, outside = tmp_path / "m", tmp_path / "secret"
+    outside.write_text("theirs\n")
+    for moves, removals in (({"new-0": "../secret"}, []), ({"../../secret": "c/a.c"}, []), ({}, ["../secret"])):
+        (folder / STAGING).mkdir(parents=True)
+        (folder / STAGING / "new-0").write_text("mine\n")
+        (folder / STAGING / "journal.forward").write_text(repr({"moves": moves, "removals": removals}).replace("'", '"'))
+        recover_folders(tmp_path)
+        assert outside.read_text() == "theirs\n"
+        assert not (folder / STAGING).exists()
+
+
+@pytest.mark.skipif(os.geteuid() == 0 if hasattr(os, "geteuid") else True, reason="root may write anywhere")
+def test_a_folder_that_cannot_be_written_can_be_compared(tmp_path: Path) -> None:
+    write_files(tmp_path, OLD)
+    tmp_path.chmod(0o555)
+    try:
+        assert compare(tmp_path, OLD) == ()
+    finally:
+        tmp_path.chmod(0o755)
