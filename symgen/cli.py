@@ -94,7 +94,9 @@ def _ended(ending: KeyboardInterrupt | EndedError) -> int:
     if isinstance(ending, EndedError):
         word, code = ending.meaning, ending.number
     folders = ", ".join(map(str, changed_folders()))
-    told = f"new files are in {folders}, each complete; all else is unchanged" if folders else "earlier output is unchanged"
+    told = "earlier output is unchanged"
+    if folders:
+        told = f"new files are in {folders}, each complete; all else is unchanged"
     with suppress(OSError):  # the terminal may be gone
         print(f"\n{word}; {told}", file=sys.stderr, flush=True)
     return code

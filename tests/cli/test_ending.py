@@ -100,7 +100,7 @@ def test_a_signal_ends_compilers_and_says_what_was_written(tmp_path: Path, numbe
         assert not (tmp_path / "out/hanging").exists()
 
 
-def test_a_hangup_that_is_ignored_stays_ignored(tmp_path: Path) -> None:
+def test_a_hangup_that_is_ignored_stays_ignored() -> None:
     script = (
         "import os, signal, sys\nfrom symgen.signals import signals_end_the_run\n"
         "signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"

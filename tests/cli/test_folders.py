@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import signal
 import subprocess
@@ -218,7 +219,8 @@ def test_a_journal_moves_nothing_from_or_to_elsewhere(tmp_path: Path) -> None:
     for moves, removals in (({"new-0": "../secret"}, []), ({"../../secret": "c/a.c"}, []), ({}, ["../secret"])):
         (folder / STAGING).mkdir(parents=True)
         (folder / STAGING / "new-0").write_text("mine\n")
-        (folder / STAGING / "journal.forward").write_text(repr({"moves": moves, "removals": removals}).replace("'", '"'))
+        journal = json.dumps({"moves": moves, "removals": removals})
+        (folder / STAGING / "journal.forward").write_text(journal)
         recover_folders(tmp_path)
         assert outside.read_text() == "theirs\n"
         assert not (folder / STAGING).exists()
