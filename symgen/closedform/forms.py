@@ -11,7 +11,7 @@ from symgen.closedform.display import latex_name
 from symgen.closedform.exact import Exact
 from symgen.closedform.limits import TooLargeError
 from symgen.closedform.mechanics import Mechanics, make_translator
-from symgen.closedform.points import generic_points
+from symgen.closedform.points import DIGITS, generic_points
 from symgen.closedform.quotient import Matrix
 from symgen.closedform.singular import SingularSet, derive_singular_sets
 from symgen.closedform.spelling import Speller
@@ -76,14 +76,18 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
 
     `straight_line_operations` are the operation counts of the generated kernels: a closed form that is estimated at
     more than ten times that is given in named intermediates or not at all.  Raises ArithmeticError for a model that
-    divides by something identically zero, TooLargeError when already B or M is too long to write out.
+    divides by something identically zero, TooLargeError when already B or M is too long to write out, or where no
+    configuration was found at which ranks are seen.
     """
     asked = not {"all", "point_position", "point_jacobian"}.isdisjoint(model.outputs)
     model, places, velocities = points_written(model) if asked else (energy_form(model), (), ())
     of_points = map(Name, (*places, *velocities))
     translator = make_translator(model, (*published_expressions(model), *of_points))
     mechanics = Mechanics(model, translator)
-    points = generic_points(model, mechanics, 3) or generic_points(model, mechanics, 3, on_constraints=False)
+    points = generic_points(model, mechanics, 3)
+    if not points:
+        # ranks are those on V: off it, rows that depend on each other are independent
+        raise TooLargeError(f"no configuration was found that satisfies the constraints to {DIGITS} digits")
     structure = derive_structure(model, mechanics, points)
     exact = Exact(model, mechanics, structure)
     speller = Speller(exact.ring, dynamic_names(model))

@@ -21,6 +21,8 @@ from symgen.model.model import Model
 
 DIGITS = 40
 RANK_THRESHOLD = mpf(10) ** -18
+MOST_STEPS = 60
+LEAST_DAMPING = 1e-25
 
 
 def number(value: Fraction) -> mpf:
@@ -175,28 +177,57 @@ def generic_points(model: Model, mechanics: Mechanics, count: int, on_constraint
 
 
 def _onto_constraints(model: Model, mechanics: Mechanics, values: dict[str, mpf]) -> Point | None:
-    """Gauss-Newton steps from `values` onto V; None when they do not converge."""
+    """Levenberg-Marquardt steps from `values` onto V; None when they do not converge.
+
+    The damping falls with the residual: off V rows that depend on each other on it are independent, if barely.
+    """
     names = [c.name for c in model.coordinates]
-    for _ in range(60):
-        point = Point(mechanics, values)
-        if not mechanics.residual:
+    point = Point(mechanics, values)
+    if not mechanics.residual:
+        return point
+    residual = point.flint_matrix(mechanics.residual)
+    size, damping = _largest(residual), 1e-3
+    for _ in range(MOST_STEPS):
+        if size < 10.0**-DIGITS:
             return point
-        residual = point.flint_matrix(mechanics.residual)
-        if max(abs(value) for (value,) in residual) < flint.arb(10) ** -DIGITS:
-            return point
-        with _working_precision():
-            jacobian = flint.arb_mat(point.flint_matrix(mechanics.jacobian[: len(residual)]))
-            gram = jacobian * jacobian.transpose()
-            scale = max(gram[i, i] for i in range(len(residual)))
-            for i in range(len(residual)):
-                # dependent constraints: any solution of the consistent system does
-                gram[i, i] += scale * flint.arb(10) ** -30
-            step = jacobian.transpose() * gram.solve(flint.arb_mat(residual))
+        step = _step(point, mechanics, residual, damping)
+        if step is None:
+            damping *= 10
+            continue
+        trial = dict(values)
         for j, name in enumerate(names):
-            values[name] -= _as_mpf(step[j, 0])
-            if abs(values[name]) > 1e6:
+            trial[name] -= _as_mpf(step[j, 0])
+            if abs(trial[name]) > 1e6:
                 return None
+        there = Point(mechanics, trial)
+        fresh = there.flint_matrix(mechanics.residual)
+        smaller = _largest(fresh)
+        if smaller < size:
+            damping = max(damping * min(0.03, smaller / size), LEAST_DAMPING)
+            values, point, residual, size = trial, there, fresh, smaller
+        elif damping < 1e6:
+            damping *= 10
+        else:
+            return None
     return None
+
+
+def _step(point: Point, mechanics: Mechanics, residual: list[list[flint.arb]], damping: float) -> flint.arb_mat | None:
+    """J' (J J' + shift)^-1 g; None where rounding leaves the matrix singular, so that more damping is due."""
+    with _working_precision():
+        jacobian = flint.arb_mat(point.flint_matrix(mechanics.jacobian[: len(residual)]))
+        gram = (jacobian * jacobian.transpose()).mid()
+        shift = damping * max(gram[i, i] for i in range(len(residual)))
+        for i in range(len(residual)):
+            gram[i, i] += shift
+        try:
+            return jacobian.transpose() * gram.solve(flint.arb_mat(residual))
+        except ZeroDivisionError:
+            return None
+
+
+def _largest(residual: list[list[flint.arb]]) -> float:
+    return max(abs(float(value)) for (value,) in residual)
 
 
 def rank(matrix: Sequence[Sequence[mpf]]) -> int:

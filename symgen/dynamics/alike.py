@@ -128,6 +128,6 @@ class _Named(Mechanics):
         if body.name == self._but or sum(x.constant is not None for x in given) > MOST_KNOWN:
             return None
         # no name of a model has a blank
-        found = tuple(self.graph.symbol(f"{name} of {body.name}") for name in _RESULTS)
+        found = tuple(self.graph.stand_in(f"{name} of {body.name}") for name in _RESULTS)
         self.named[body.name] = given, found
         return Wrench((found[3], found[4], found[5]), (found[0], found[1], found[2]))

@@ -141,7 +141,7 @@ def with_leaves(mechanics: Mechanics, owners: Sequence[str]) -> tuple[dict[str, 
     graph, model = mechanics.graph, mechanics.model
     names, leaves = dict(mechanics.names), dict[str, Vector3]()
     for owner in owners:
-        x, y, z = (graph.symbol(f"{owner}.{axis} held") for axis in "xyz")
+        x, y, z = (graph.stand_in(f"{owner}.{axis} held") for axis in "xyz")
         leaves[owner] = (x, y, z)
         names |= {f"{owner}.{axis}": leaf for axis, leaf in zip("xyz", (x, y, z), strict=True)}
     apart = without_components(model.definitions)

@@ -43,9 +43,10 @@ class Mechanics:
         self.graph: Graph = graph
         self.change = change
         mark = "" if change is None else " absolute"
-        self.q: Vector = tuple(graph.symbol(c.name + mark) for c in model.coordinates)
-        self.qd: Vector = tuple(graph.symbol(c.rate + mark) for c in model.coordinates)
-        self.qdd: Vector = tuple(graph.symbol(c.acceleration + mark) for c in model.coordinates)
+        symbol = graph.symbol if change is None else graph.stand_in
+        self.q: Vector = tuple(symbol(c.name + mark) for c in model.coordinates)
+        self.qd: Vector = tuple(symbol(c.rate + mark) for c in model.coordinates)
+        self.qdd: Vector = tuple(symbol(c.acceleration + mark) for c in model.coordinates)
         self.parameters: Vector = tuple(graph.symbol(p.name) for p in model.parameters)
         self.u: Vector = tuple(graph.symbol(i.name) for i in model.inputs)
         q, qd = (self.q, self.qd) if change is None else (change.relative(self.q), change.relative(self.qd))
@@ -283,7 +284,7 @@ class Mechanics:
     def constraint_acceleration_bias(self, velocity: Vector) -> Vector:
         """B_dot v along v: differentiating B v is cheaper than forming B_dot."""
         graph = self.graph
-        frozen = tuple(graph.symbol(f"{c.name}_frozen rate") for c in self.model.coordinates)
+        frozen = tuple(graph.stand_in(f"{c.name}_frozen rate") for c in self.model.coordinates)
         products = matvec(graph, self.constraint_jacobian, frozen)
         rates = derivative_along(graph, products, dict(zip(self.q, velocity, strict=True)))
         return tuple(substitute(graph, rates, dict(zip(frozen, velocity, strict=True))))

@@ -77,7 +77,7 @@ class _Sharing:
             often.discard(best)
             if len(places[best]) < 2:
                 continue
-            whole = self._graph.symbol(f"shared part {self._ops} {len(found)}")
+            whole = self._graph.stand_in(f"shared part {self._ops} {len(found)}")
             found[whole] = best
             for node in sorted(places.pop(best), key=lambda node: node.serial):
                 for pair in _pairs(self._terms[node]):

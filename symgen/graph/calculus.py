@@ -28,6 +28,10 @@ def partials(graph: Graph, node: Scalar) -> tuple[Scalar, ...]:
             return (args[1], args[0])
         case "div":
             return (1 / args[1], -(node / args[1]))
+        case "ratio_or_zero":
+            # a constant 0 where b is 0, like the ratio itself
+            inverse = graph.function("ratio_or_zero", (graph.one, args[1]))
+            return (inverse, -(node * inverse))
         case "sqrt":
             return (Fraction(1, 2) / node,)
         case "abs":

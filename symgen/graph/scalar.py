@@ -25,7 +25,7 @@ PI = Fraction(314159265358979323846264338327950288419716939937510582097494459230
 class Scalar:
     """One node; compared by identity because equal nodes are the same object within a graph."""
 
-    __slots__ = ("args", "constant", "graph", "is_one", "is_zero", "op", "payload", "serial", "size", "value")
+    __slots__ = ("args", "constant", "graph", "is_one", "is_zero", "op", "payload", "serial", "size", "stands", "value")
 
     def __init__(self, graph: Graph, serial: int, op: str, args: tuple[Scalar, ...], payload: object) -> None:
         self.graph = graph
@@ -40,11 +40,14 @@ class Scalar:
             assert isinstance(payload, Fraction)
             self.constant = payload
             self.is_zero, self.is_one = payload == 0, payload == 1
-        # operations of the expression written out, and its value in the field of fingerprints
+        # operations of the expression written out, its stand-ins as bits, and its value in the field of fingerprints
         size = 0 if op == "neg" or not args else 1
+        stands = 0
         for argument in args:
             size += argument.size
+            stands |= argument.stands
         self.size: int = size
+        self.stands: int = stands
         self.value = 0
 
     def __add__(self, other: Number) -> Scalar:
@@ -91,6 +94,7 @@ class Graph:
         self.nodes: list[Scalar] = []
         self.products = Products(self)
         self._by_value: dict[int, Scalar] = {}
+        self._stand_ins = 0
         self._angles: dict[int, tuple[int, int]] = {}
         # by arguments of sines and cosines: whether the sign is pulled out, and the angle that is left
         self._turns: dict[Scalar, tuple[bool, Scalar]] = {}
@@ -109,9 +113,16 @@ class Graph:
         if node is None:
             node = self._new(key, op, args, payload)
             same = self._by_value.get(node.value)
-            if same is not None and same.size <= node.size:
+            # stand-ins that cancel in an equal function must not come in: they would outlast their replacement
+            foreign = ~node.stands
+            if same is not None and same.size <= node.size and not same.stands & foreign:
                 node = same
-            elif op != "neg" and (opposite := self._by_value.get(-node.value % PRIME)) and opposite.size < node.size:
+            elif (
+                op != "neg"
+                and (opposite := self._by_value.get(-node.value % PRIME))
+                and opposite.size < node.size
+                and not opposite.stands & foreign
+            ):
                 node = self.neg(opposite)
             else:
                 self._by_value[node.value] = node
@@ -159,6 +170,14 @@ class Graph:
     def symbol(self, name: str) -> Scalar:
         """A named input."""
         return self._node("symbol", (), name)
+
+    def stand_in(self, name: str) -> Scalar:
+        """A symbol that something else replaces later; nothing that is made without it ever holds it."""
+        node = self.symbol(name)
+        if not node.stands:
+            self._stand_ins += 1
+            node.stands = 1 << self._stand_ins
+        return node
 
     def raw(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
         """The operation as it stands, past the constructor rules."""

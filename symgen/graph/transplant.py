@@ -23,7 +23,10 @@ def transplanted(
         args = tuple(map(image.__getitem__, node.args))
         if node.op == "symbol":
             name = str(node.payload)
-            image[node] = symbols[name] if name in symbols else graph.symbol(name)
+            if name in symbols:
+                image[node] = symbols[name]
+            else:
+                image[node] = graph.stand_in(name) if node.stands else graph.symbol(name)
         elif node.constant is not None:
             image[node] = graph.const(node.constant)
         elif node.op in ("sin", "cos"):

@@ -8,7 +8,6 @@ ZeroDivisionError.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
 from math import hypot
 from typing import Any
 
@@ -66,26 +65,29 @@ def right_pseudoinverse(matrix: Any, rank: int) -> Any:
     """B+ (n x r) of B (r x n) of the given generic rank.
 
     For rank < r the Cauchy-Binet mean over the row subsets I of that size (theory.md 3.1): B+ = sum_I w_I [B_I+],
-    w_I = det(B_I B_I') / sum.  It is smooth near the manifold, and the Moore-Penrose inverse on it.
+    w_I = det(B_I B_I') / sum.  It is smooth near the manifold, and the Moore-Penrose inverse on it.  With e_k the sum
+    of the principal minors of size k of A = B B', it is B' times the gradient of e_rank by A, divided by e_rank.
     """
     r, n = matrix.nrows(), matrix.ncols()
     if rank == 0:
         return arb_mat(n, r)
+    gram = matrix * matrix.transpose()
     if rank == r:
-        return solve(matrix * matrix.transpose(), matrix).transpose()
-    total = arb(0)
-    entries = [[arb(0)] * r for _ in range(n)]
-    for subset in combinations(range(r), rank):
-        part = rows_of(matrix, subset)
-        gram = part * part.transpose()
-        weight = determinant(gram)
-        if weight.contains(0):
-            continue  # det(A) A^-1 is the adjugate, and B_I' adj(B_I B_I') = 0 where B_I loses rank
-        total += weight
-        for i, row in enumerate((solve(gram, part).transpose() * weight).tolist()):
-            for j, entry in zip(subset, row, strict=True):
-                entries[i][j] += entry
-    return arb_mat(n, r, [entry / total for row in entries for entry in row])
+        return solve(gram, matrix).transpose()
+    minors = sums_of_minors(gram)
+    gradient = identity(r)
+    for size in range(1, rank):
+        gradient = identity(r) * minors[size] - gram * gradient
+    total = minors[rank]
+    if total.contains(0):
+        raise ZeroDivisionError("the matrix may be of lower rank")
+    return matrix.transpose() * gradient * (1 / total)
+
+
+def sums_of_minors(gram: Any) -> list[Any]:
+    """The sums of the principal minors of each size from 0 on, as coefficients of the characteristic polynomial."""
+    coefficients = list(gram.charpoly())[::-1]
+    return [-value if size % 2 else value for size, value in enumerate(coefficients)]
 
 
 def pseudoinverse(matrix: Any, rank: int) -> Any:
@@ -123,8 +125,8 @@ RANK_NOISE = -100
 RANK_SIGNAL = -60
 
 
-def numerical_rank(matrix: Any) -> int | None:
-    """Rank of a matrix known to more than 150 bits: pivots above 2^-60 of a row's size count, below 2^-100 do not.
+def numerical_rank(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SIGNAL) -> int | None:
+    """Rank of a matrix by its pivots: above 2^signal of a row's size they count, below 2^noise they do not.
 
     None when a pivot falls between (the point is too close to a singularity to tell).
     """
@@ -134,14 +136,14 @@ def numerical_rank(matrix: Any) -> int | None:
     rows = [
         [entry / size for entry in row]
         for row, size in zip(rows, sizes, strict=True)
-        if size > largest * 2.0**RANK_NOISE
+        if size > largest * 2.0**noise
     ]
     rank = 0
     while rows:
         size, i, j = max((float(abs(entry).mid()), i, j) for i, row in enumerate(rows) for j, entry in enumerate(row))
-        if size < 2.0**RANK_NOISE:
+        if size < 2.0**noise:
             break
-        if size < 2.0**RANK_SIGNAL:
+        if size < 2.0**signal:
             return None
         pivot = rows.pop(i)
         rows = [[arb((x - row[j] / pivot[j] * y).mid()) for x, y in zip(row, pivot, strict=True)] for row in rows]

@@ -9,6 +9,7 @@ from typing import Any
 
 from symgen.verify.reference_linear import (
     RANK_NOISE,
+    RANK_SIGNAL,
     column,
     columns_of,
     identity,
@@ -27,21 +28,39 @@ RANK_STARTS = 24
 RANK_POINTS = 6
 MOST_STEPS = 60
 MOST_SLOW_STEPS = 6
+MOST_DAMPING = 1e6
+# What rounded lengths leave open of a closed loop, relative to the rows' lengths; thresholds for ranks there.
+ROUNDED = 1e-13
+ROUNDED_NOISE, ROUNDED_SIGNAL = -36, -20
 
 
 @dataclass(frozen=True)
 class Ranks:
-    """Generic ranks: of B, of its geometric rows, and of F'M (the degree of actuation)."""
+    """Generic ranks: of B, of its geometric rows, and of F'M (the degree of actuation).
+
+    `rounded` says that loops close up to rounding only: an overconstrained linkage whose lengths are rounded numbers.
+    """
 
     constraints: int
     geometric: int
     actuation: int
+    rounded: bool = False
 
 
 def onto_manifold(
-    system: System, start: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any], tolerance: float = 1e-30
+    system: System,
+    start: Sequence[Any],
+    parameters: Sequence[Any],
+    literals: Sequence[Any],
+    tolerance: float = 1e-30,
+    rounded: bool = False,
 ) -> list[Any] | None:
-    """A point with |g| <= `tolerance` near `start`, by Levenberg-Marquardt; None when it does not converge."""
+    """A point with |g| <= `tolerance` near `start`, by Levenberg-Marquardt; None when it does not converge.
+
+    Steps are numbers, not bounds: only where they end is |g| looked at.  Rows may depend on each other: the damping
+    falls with |g|, so that the step has least norm and convergence stays superlinear where dg/dq keeps its rank on V.
+    Where loops are `rounded`, what rounding leaves of |g| is near enough.
+    """
     q = column(start)
     if system.r_geometric == 0:
         return list(q.entries())
@@ -51,49 +70,64 @@ def onto_manifold(
     slow = 0
     for _ in range(MOST_STEPS):
         if size <= tolerance:
-            return [entry.mid() for entry in q.entries()]
-        gram = jacobian * jacobian.transpose()
-        shift = damping * max(float(gram.trace().mid()) / system.r_geometric, 1e-30)
-        step = jacobian.transpose() * solve(gram + identity(system.r_geometric) * shift, residual)
+            break
+        step = _step(residual.mid(), jacobian.mid(), damping)
+        if step is None:
+            damping *= 10
+            continue
         trial = (q - step).mid()
         residual_trial, jacobian_trial = system.geometry(trial.entries(), parameters, literals)
         size_trial = norm(residual_trial)
-        slow = slow + 1 if size_trial > 0.9 * size else 0
-        if slow > MOST_SLOW_STEPS:
-            return None
+        slow = slow + 1 if not size_trial <= 0.9 * size else 0
+        if slow > MOST_SLOW_STEPS or damping > MOST_DAMPING:
+            break
         if size_trial < size:
             q, residual, jacobian = trial, residual_trial, jacobian_trial
             damping = max(damping * min(0.03, size_trial / size), 1e-25)
             size = size_trial
-        elif damping < 1e6:
-            damping *= 10
         else:
-            return None
-    return None
+            damping *= 10
+    near = ROUNDED * norm(jacobian) * max(1.0, norm(q)) if rounded else 0.0
+    return [entry.mid() for entry in q.entries()] if size <= max(tolerance, near) else None
+
+
+def _step(residual: Any, jacobian: Any, damping: float) -> Any:
+    """J' (J J' + shift)^-1 g (n x 1); None where rounding leaves the matrix singular, so that more damping is due."""
+    gram = (jacobian * jacobian.transpose()).mid()
+    shift = damping * max(float(gram.trace()) / gram.nrows(), 1e-30)
+    try:
+        return jacobian.transpose() * solve(gram + identity(gram.nrows()) * shift, residual)
+    except ZeroDivisionError:
+        return None
 
 
 def generic_ranks(system: System) -> Ranks | None:
     """The largest ranks over random points of V at the default parameters; None when no point of V is found.
 
-    Points are exact to about 170 bits, so that a rank shows as a gap of 40 binary orders at least.
+    Points are exact to about 170 bits, so that a rank shows as a gap of 40 binary orders at least; those that close up
+    to rounding only show it as a gap of 16.
     """
     with precision(RANK_BITS):
-        parameters = default_parameters(system.model)
-        literals = literal_values(system.literals)
-        generator = random.Random("ranks")
-        found: list[Ranks] = []
-        for start in starts(system, generator, RANK_STARTS):
-            q = onto_manifold(system, start, parameters, literals, tolerance=2.0**-170)
-            ranks = None if q is None else _ranks_at(system, q, parameters, literals)
-            if ranks is not None:
-                found.append(ranks)
-            if len(found) == RANK_POINTS:
-                break
+        return _found_ranks(system, rounded=False) or _found_ranks(system, rounded=True)
+
+
+def _found_ranks(system: System, rounded: bool) -> Ranks | None:
+    parameters = default_parameters(system.model)
+    literals = literal_values(system.literals)
+    generator = random.Random("ranks")
+    found: list[Ranks] = []
+    for start in starts(system, generator, RANK_STARTS):
+        q = onto_manifold(system, start, parameters, literals, 2.0**-170, rounded)
+        ranks = None if q is None else _ranks_at(system, q, parameters, literals, rounded)
+        if ranks is not None:
+            found.append(ranks)
+        if len(found) == RANK_POINTS:
+            break
     if not found:
         return None
     constraints = max(ranks.constraints for ranks in found)
     regular = [ranks for ranks in found if ranks.constraints == constraints]
-    return Ranks(constraints, max(r.geometric for r in regular), max(r.actuation for r in regular))
+    return Ranks(constraints, max(r.geometric for r in regular), max(r.actuation for r in regular), rounded)
 
 
 def starts(system: System, generator: random.Random, count: int) -> list[list[float]]:
@@ -108,18 +142,24 @@ def starts(system: System, generator: random.Random, count: int) -> list[list[fl
     return points
 
 
-def _ranks_at(system: System, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> Ranks | None:
+def _ranks_at(
+    system: System, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any], rounded: bool
+) -> Ranks | None:
     """Ranks at one point of V; the degree of actuation is rank [B; M'] minus rank B."""
+    noise, signal = (ROUNDED_NOISE, ROUNDED_SIGNAL) if rounded else (RANK_NOISE, RANK_SIGNAL)
     at = system.configuration(q, parameters, literals)
-    constraints = numerical_rank(at.constraints)
-    geometric = numerical_rank(rows_of(at.constraints, range(system.r_geometric)))
+    constraints = numerical_rank(at.constraints, noise, signal)
+    geometric = numerical_rank(rows_of(at.constraints, range(system.r_geometric)), noise, signal)
     if constraints is None or geometric is None:
         return None
-    inverse = right_pseudoinverse(at.constraints, constraints)
+    try:
+        inverse = right_pseudoinverse(at.constraints, constraints)
+    except ZeroDivisionError:
+        return None
     projected = at.control - inverse * (at.constraints * at.control)
     # an input that only loads the constraints leaves rounding alone, which is no direction of motion
-    moving = [j for j in range(system.m) if _size(projected, j) > _size(at.control, j) * 2.0**RANK_NOISE]
-    actuation = numerical_rank(columns_of(projected, moving)) if moving else 0
+    moving = [j for j in range(system.m) if _size(projected, j) > _size(at.control, j) * 2.0**noise]
+    actuation = numerical_rank(columns_of(projected, moving), noise, signal) if moving else 0
     return None if actuation is None else Ranks(constraints, geometric, actuation)
 
 

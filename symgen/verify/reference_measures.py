@@ -9,7 +9,7 @@ from typing import Any
 from flint import arb, arb_mat
 
 from symgen.verify.reference_evaluation import Evaluation
-from symgen.verify.reference_linear import columns_of, determinant, rows_of
+from symgen.verify.reference_linear import columns_of, determinant, rows_of, sums_of_minors
 
 MOST_DETERMINANTS = 10
 
@@ -20,23 +20,14 @@ def constraint_measure(e: Evaluation) -> Any:
     if r == 0:
         return arb(1)
     rows = []
-    vanishing = set()
-    for index, row in enumerate(e.at.constraints.tolist()):
+    for row in e.at.constraints.tolist():
         size = sum((x * x for x in row), arb(0)).sqrt()
-        if size.contains(0):
-            vanishing.add(index)
-            rows.append(row)
-        else:
+        if not size.contains(0):
             rows.append([x / size for x in row])
-    subsets = [s for s in combinations(range(r), rank) if not vanishing.intersection(s)]
-    if not subsets:
+    if len(rows) < rank:
         return arb(0)
-    unit = arb_mat(r, e.system.n, [x for row in rows for x in row])
-    total = arb(0)
-    for subset in subsets:
-        part = rows_of(unit, subset) if rank < r else unit
-        total += determinant(part * part.transpose())
-    return total / len(subsets)
+    unit = arb_mat(len(rows), e.system.n, [x for row in rows for x in row])
+    return sum_of_minors(unit * unit.transpose(), rank) / comb(len(rows), rank)
 
 
 def actuation_measure(e: Evaluation) -> Any:
@@ -49,8 +40,7 @@ def actuation_measure(e: Evaluation) -> Any:
 def sum_of_minors(gram: Any, size: int) -> Any:
     """The sum of the principal minors of a size; many of them as a coefficient of the characteristic polynomial."""
     if comb(gram.nrows(), size) > MOST_DETERMINANTS:
-        coefficient = gram.charpoly()[gram.nrows() - size]
-        return -coefficient if size % 2 else coefficient
+        return sums_of_minors(gram)[size]
     total = arb(0)
     for subset in combinations(range(gram.nrows()), size):
         total += determinant(rows_of(columns_of(gram, subset), subset))

@@ -15,7 +15,7 @@ from symgen.verify.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference_manifold import onto_manifold, starts
 from symgen.verify.reference_quantities import NEED_GRADIENTS
 from symgen.verify.reference_system import ParameterValues, default_parameters
-from symgen.verify.reference_tape import ball, precision
+from symgen.verify.reference_tape import precision
 
 FEWEST_STATES = 8
 USUAL_STATES = 64
@@ -105,18 +105,19 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
     points = starts(system, generator, 6 * count + 60)
     literals = reference.literals()
     varied = ParameterValues(reference.model, [p.name for p in reference.model.parameters if p.range is not None])
-    usual = _parameters(varied, generator, vary=False)
+    usual = [float(x) for x in _parameters(varied, generator, vary=False)]
     typical = _row_lengths(reference, points[:TYPICAL_POINTS], usual)
     least = _least_measures(reference, points[:TYPICAL_POINTS], usual)
     last: list[Any] | None = None
     kept = {True: 0, False: 0}
     for index, point in enumerate(points):
-        parameters = _parameters(varied, generator, vary=index > 0)
+        exact = _parameters(varied, generator, vary=index > 0)
+        parameters = [float(x) for x in exact]
         start = point
         if last is not None and index % 4 and system.r_geometric:
             start = _step(reference, last, generator)
-        # balls: functions of a parameter alone know nothing of floats
-        q = onto_manifold(system, start, [ball(x) for x in parameters], literals)
+        # lengths that others follow from are rounded afterwards: a linkage may close for their exact values alone
+        q = onto_manifold(system, start, exact, literals, rounded=reference.ranks.rounded)
         if q is None:
             continue
         in_range = _in_ranges(reference, q)
@@ -169,14 +170,14 @@ def _at_rest(reference: Reference, q: Sequence[float], parameters: Sequence[floa
     return State(tuple(q), (0.0,) * n, (0.0,) * n, (0.0,) * m, tuple(parameters))
 
 
-def _parameters(varied: ParameterValues, generator: random.Random, vary: bool) -> list[float]:
-    """Parameter values: those with a range drawn from it."""
+def _parameters(varied: ParameterValues, generator: random.Random, vary: bool) -> list[Any]:
+    """Parameter values as balls: those with a range drawn from it."""
     chosen = {
         parameter.name: generator.uniform(float(parameter.range[0]), float(parameter.range[1]))
         for parameter in varied.model.parameters
         if parameter.range is not None
     }
-    return [float(value) for value in (varied(chosen) if vary else default_parameters(varied.model))]
+    return varied(chosen) if vary else default_parameters(varied.model)
 
 
 def _step(reference: Reference, q: Sequence[Any], generator: random.Random) -> list[float]:

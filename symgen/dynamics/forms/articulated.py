@@ -45,7 +45,7 @@ class _Loose(Kinematics[Scalar, Scalar]):
 
     def symbols(self, name: str) -> Six:
         """Turning rates and velocity in the frame's axes."""
-        return tuple(self._graph.symbol(f"{name} {kind}") for kind in ("wx", "wy", "wz", "vx", "vy", "vz"))
+        return tuple(self._graph.stand_in(f"{name} {kind}") for kind in ("wx", "wy", "wz", "vx", "vy", "vz"))
 
     def _own_twist(self, name: str) -> Twist[Scalar]:
         a, b, c, x, y, z = self.symbols(name)
@@ -150,7 +150,7 @@ def _forces(mechanics: Mechanics) -> list[tuple[Vector, Mapping[str, Six]]]:
     """For each row of B what it does to the coordinates directly, and the wrenches it puts on frames."""
     graph, model = mechanics.graph, mechanics.model
     loose = _Loose(mechanics)
-    stand_ins = {name: graph.symbol(f"component {name}") for name in components_in(model)}
+    stand_ins = {name: graph.stand_in(f"component {name}") for name in components_in(model)}
     names = _names(mechanics, stand_ins)
     values = {symbol: mechanics.names[name] for name, symbol in stand_ins.items()}
     rates = {name: loose.component_rate(component(name)) for name in stand_ins}

@@ -1,0 +1,70 @@
+"""Whatever a kernel may contain can be evaluated, bounded, rebuilt and differentiated."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import get_args
+
+import pytest
+
+from symgen.dynamics.guards import magnitude
+from symgen.graph.calculus import derivative_along, gradient
+from symgen.graph.evaluate import Evaluator
+from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.traverse import rebuild
+from symgen.ir.kernel import OperationName
+
+POINT = {"x": 0.37, "y": 0.82}
+TWO = {"add", "sub", "mul", "div", "copysign", "ratio_or_zero", "min", "max", "atan2"}
+STEP = 1e-6
+
+
+def operations() -> list[str]:
+    return sorted({name for op in get_args(OperationName) for name in (("sin", "cos") if op == "sincos" else (op,))})
+
+
+def made(graph: Graph, op: str) -> Scalar:
+    x, y = graph.symbol("x"), graph.symbol("y")
+    if op == "pow":
+        return graph.power(x, Fraction(2, 3))
+    if op == "neg":
+        return graph.neg(x)
+    node = graph.raw(op, (x, y) if op in TWO else (x,))
+    assert node.op == op
+    return node
+
+
+def value(node: Scalar, **moved: float) -> float:
+    return Evaluator([node])({**POINT, **moved})[0]
+
+
+@pytest.mark.parametrize("op", operations())
+def test_its_derivatives_are_those_of_small_differences(op: str) -> None:
+    graph = Graph()
+    node = made(graph, op)
+    for name in ("x", "y"):
+        expected = value(node, **{name: POINT[name] + STEP}) - value(node, **{name: POINT[name] - STEP})
+        (forward,) = derivative_along(graph, [node], {graph.symbol(name): graph.one})
+        (backward,) = gradient(graph, node, [graph.symbol(name)])
+        for found in (forward, backward):
+            assert value(found) == pytest.approx(expected / (2 * STEP), rel=1e-8, abs=1e-9)
+
+
+@pytest.mark.parametrize("op", operations())
+def test_it_is_rebuilt_as_itself_and_bounded(op: str) -> None:
+    graph = Graph()
+    node = made(graph, op)
+    again = rebuild(graph, node, node.args)
+    assert value(again) == value(node)
+    assert value(magnitude(graph, [node])[0]) >= abs(value(node))
+
+
+def test_a_ratio_stands_still_where_it_is_set_to_zero() -> None:
+    graph = Graph()
+    x, y = graph.symbol("x"), graph.symbol("y")
+    ratio = graph.function("ratio_or_zero", (x, y))
+    slopes = Evaluator(gradient(graph, ratio * ratio, [x, y]))
+    assert slopes({"x": 3.0, "y": 0.0}) == [0.0, 0.0]
+    assert slopes({"x": 3.0, "y": 2.0}) == pytest.approx([1.5, -2.25])
+    assert all(map(math.isfinite, slopes({"x": 0.0, "y": 0.0})))
