@@ -202,7 +202,7 @@ def _body(sketch: Sketch, style: Style, k: int, tip: tuple[str, str, str]) -> di
     body: dict[str, Any] = {"mass": sketch.parameter(f"m_{k}", dice.mass(dice.chance(0.04)))}
     if dice.chance(0.85):
         body["com"] = [f"{part}/2" if part != "0" else "0" for part in tip]
-    if style.sparse and dice.chance(0.3):
+    if style.sparse and "com" in body and dice.chance(0.3):
         return body
     if style.plane:
         body["inertia"] = {f"{style.plane * 2}": sketch.parameter(f"J_{k}", dice.number(0.001, 0.3, 2))}

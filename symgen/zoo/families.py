@@ -8,12 +8,36 @@ from symgen.zoo.describe import Description
 from symgen.zoo.dice import Dice
 from symgen.zoo.draw_bodies import planar_bodies, spatial_bodies, tree_bodies
 from symgen.zoo.draw_energy import planar_energies
+from symgen.zoo.draw_linkages import (
+    bennett,
+    bricard,
+    common_pin,
+    double_four_bar,
+    legged_platform,
+    parallelogram_bodies,
+    parallelogram_energies,
+    sarrus,
+)
+from symgen.zoo.draw_mobile import cable_robot, car_with_trailers, disc, geared, wheeled_bodies
 
 FAMILIES: dict[str, tuple[float, Callable[[Dice], Description]]] = {
-    "planar_energies": (3, planar_energies),
-    "tree_bodies": (2, tree_bodies),
-    "planar_bodies": (2, planar_bodies),
-    "spatial_bodies": (2, spatial_bodies),
+    "planar_energies": (6, planar_energies),
+    "tree_bodies": (4, tree_bodies),
+    "planar_bodies": (4, planar_bodies),
+    "spatial_bodies": (4, spatial_bodies),
+    "parallelogram_energies": (1, parallelogram_energies),
+    "parallelogram_bodies": (1, parallelogram_bodies),
+    "common_pin": (0.5, common_pin),
+    "double_four_bar": (1, double_four_bar),
+    "bennett": (0.5, bennett),
+    "bricard": (0.5, bricard),
+    "sarrus": (0.5, sarrus),
+    "legged_platform": (1, legged_platform),
+    "car_with_trailers": (1.5, car_with_trailers),
+    "wheeled_bodies": (1, wheeled_bodies),
+    "disc": (0.5, disc),
+    "cable_robot": (1, cable_robot),
+    "geared": (1, geared),
 }
 
 

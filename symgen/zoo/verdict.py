@@ -12,7 +12,13 @@ VERIFIED, NOTICED, REFUSED, FAILED = "verified", "verified with a notice", "refu
 PLACED = re.compile(r"^[^\n]*?\.yaml:\d+:\d+: (?P<message>[^\n]+)\n.*?^  remedy: (?P<remedy>[^\n]+)", re.M | re.S)
 NUMBERS = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
 # every draw has a configuration that satisfies its rows, so these cannot be true
-UNTRUE = ("no configuration was found", "cannot be satisfied", "regular configurations", "cannot be closed")
+UNTRUE = (
+    "no configuration was found",
+    "cannot be satisfied",
+    "regular configurations",
+    "cannot be closed",
+    "does not depend on the configuration: it demands",
+)
 
 
 @dataclass(frozen=True)
