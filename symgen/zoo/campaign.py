@@ -6,14 +6,15 @@ import json
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from symgen.zoo.describe import Description
 from symgen.zoo.families import draw
 from symgen.zoo.run import run_command
-from symgen.zoo.verdict import VERIFIED, Verdict, verdict_of
+from symgen.zoo.verdict import FAILED, REFUSED, VERIFIED, Verdict, verdict_of, without_numbers
+from symgen.zoo.witness import check
 
 Tell = Callable[[str], None]
 
@@ -42,8 +43,19 @@ def judge(description: Description, model: Path) -> tuple[Verdict, float, float]
     """Writes the model file, runs the command beside it and looks at the numbers; verdict, CPU seconds, megabytes."""
     model.parent.mkdir(parents=True, exist_ok=True)
     model.write_text(description.text, encoding="utf-8")
-    run = run_command(model, model.with_suffix(""))
-    return verdict_of(run), run.cpu, run.megabytes
+    folder = model.with_suffix("")
+    run = run_command(model, folder)
+    verdict = verdict_of(run)
+    if not verdict.failed and verdict.ending != REFUSED:
+        checked = check(
+            description.text, folder / str(description.blocks["model"]), description.start, description.text
+        )
+        for finding in checked.findings[:1]:
+            verdict = Verdict(FAILED, finding.kind, without_numbers(finding.text))
+            (folder / "stderr").write_text("\n".join(each.text for each in checked.findings) + "\n" + run.err)
+        if not checked.states:
+            verdict = replace(verdict, signature="no state to compare")
+    return verdict, run.cpu, run.megabytes
 
 
 def campaign(

@@ -122,6 +122,11 @@ def grown(sketch: Sketch, style: Style, coordinates: int, first: str) -> list[Pa
         if parts and not dice.chance(0.1 if not first else 0):
             parent = len(parts) - 1 if not dice.chance(style.branching) else dice.whole(0, len(parts) - 1)
         parts.append(_part(sketch, style, parts, parent, kind))
+    # a massless end moves without effort, which is refused, and rightly; massless parts between bodies are usual
+    carriers = {part.parent for part in parts}
+    for k, part in enumerate(parts):
+        if k not in carriers and part.frame not in sketch.block("bodies") and not dice.chance(0.1):
+            sketch.block("bodies")[part.frame] = _body(sketch, style, k + 1, part.tip)
     return parts
 
 

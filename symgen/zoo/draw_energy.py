@@ -78,7 +78,7 @@ def _tree(sketch: Sketch, count: int) -> list[Link]:
             for axis, place, wave in zip("xy", base, ("cos", "sin"), strict=True)
         )
         links.append(Link(coordinate, parent, slides, angle, turning, base, (tip[0], tip[1]), length))
-        weightless = massless and dice.chance(0.4)
+        weightless = massless and k < count and dice.chance(0.4)
         if weightless:
             continue
         mass = sketch.parameter(f"m_{k}", dice.mass(extreme))

@@ -175,9 +175,9 @@ class System:
         """All constraints: those of the file, joints, loops and wheels; rows that vanish identically stand for none."""
         given = self.blocks.get("constraints") or {}
         found = [Row(name, True, self.read(text)) for name, text in (given.get("geometric") or {}).items()]
-        found += self._norms()
         for name, entry in (self.blocks.get("loops") or {}).items():
             found += self._loop(name, entry)
+        found += self._norms()
         wheels = [row for name, entry in (self.blocks.get("rolling") or {}).items() for row in self._wheel(name, entry)]
         found += [row for row in wheels if row.geometric]
         found += [Row(name, False, self.read(text)) for name, text in (given.get("nonholonomic") or {}).items()]

@@ -233,9 +233,7 @@ class Program:
             (node.index, node.op, tuple(arg.index for arg in node.args), node.payload) for node in tape.reached(outputs)
         ]
         self._outputs = [node.index for node in outputs]
-        self.literals = tuple(
-            dict.fromkeys(payload for _, op, _, payload in self._steps if op == "number" and payload is not None)
-        )
+        self.literals = tuple(dict.fromkeys(p for _, _, _, p in self._steps if isinstance(p, Fraction)))
 
     def run(self, values: Mapping[str, Any], field: Any, literals: Mapping[Fraction, Any] | None = None) -> list[Any]:
         """Values of the outputs; `literals` replaces some of the numbers."""

@@ -1,0 +1,132 @@
+"""Linear algebra of the witness in any arithmetic: bases by pivoted Gram-Schmidt, solutions of least norm."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+Vector = list[Any]
+Matrix = list[Vector]
+
+
+def inner(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    """a . b."""
+    return sum((x * y for x, y in zip(a, b, strict=True)), 0)
+
+
+def times(a: Sequence[Sequence[Any]], x: Sequence[Any]) -> Vector:
+    """a x."""
+    return [inner(row, x) for row in a]
+
+
+def transposed(a: Sequence[Sequence[Any]], columns: int) -> Matrix:
+    """The transpose; `columns` for a matrix without rows."""
+    return [[row[k] for row in a] for k in range(columns)]
+
+
+def size(a: Sequence[Any]) -> float:
+    """The Euclidean norm as a float."""
+    return float(inner(a, a)) ** 0.5 if a else 0.0
+
+
+def basis(vectors: Sequence[Sequence[Any]], rank: int) -> tuple[Matrix, list[float]]:
+    """Orthonormal vectors that span the `rank` leading ones, and the lengths that were left when each was taken.
+
+    The vectors are scaled to length 1 first, so that their units do not matter; the longest remainder is taken.
+    """
+    lengths = [size(vector) for vector in vectors]
+    left = [
+        [x / length for x in vector] for vector, length in zip(vectors, map(_ball_like, lengths), strict=True) if length
+    ]
+    taken: Matrix = []
+    pivots: list[float] = []
+    while len(taken) < rank and left:
+        sizes = [size(vector) for vector in left]
+        best = max(range(len(left)), key=sizes.__getitem__)
+        if sizes[best] == 0:
+            break
+        pivots.append(sizes[best])
+        chosen = left.pop(best)
+        length = inner(chosen, chosen) ** _HALF
+        direction = [x / length for x in chosen]
+        taken.append(direction)
+        # twice, so that what is left is orthogonal to the last digit
+        for _ in range(2):
+            left = [_without(vector, direction) for vector in left]
+    return taken, pivots
+
+
+_HALF = 0.5
+
+
+def _ball_like(value: float) -> float:
+    return value
+
+
+def _without(vector: Vector, direction: Vector) -> Vector:
+    share = inner(vector, direction)
+    return [x - share * d for x, d in zip(vector, direction, strict=True)]
+
+
+def complement(taken: Matrix, n: int, one: Any) -> Matrix:
+    """Orthonormal vectors that complete `taken` to a basis of n dimensions."""
+    units = [[one if i == k else one * 0 for i in range(n)] for k in range(n)]
+    for _ in range(2):
+        for direction in taken:
+            units = [_without(unit, direction) for unit in units]
+    found: Matrix = []
+    while len(found) < n - len(taken):
+        sizes = [size(unit) for unit in units]
+        best = max(range(len(units)), key=sizes.__getitem__)
+        chosen = units.pop(best)
+        for direction in (*taken, *found):
+            chosen = _without(chosen, direction)
+        length = inner(chosen, chosen) ** _HALF
+        found.append([x / length for x in chosen])
+        units = [_without(unit, found[-1]) for unit in units]
+    return found
+
+
+def solve(a: Sequence[Sequence[Any]], b: Sequence[Any]) -> Vector:
+    """The solution of a regular square system, by elimination with complete choice of rows."""
+    n = len(a)
+    rows = [[*row, right] for row, right in zip(a, b, strict=True)]
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(float(rows[i][k])))
+        rows[k], rows[best] = rows[best], rows[k]
+        for i in range(k + 1, n):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
+    x: Vector = [0] * n
+    for k in reversed(range(n)):
+        x[k] = (rows[k][n] - inner(rows[k][k + 1 : n], x[k + 1 :])) / rows[k][k]
+    return x
+
+
+def determinant(a: Sequence[Sequence[Any]]) -> Any:
+    """The determinant, by elimination."""
+    rows = [list(row) for row in a]
+    n, value = len(rows), 1
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(float(rows[i][k])))
+        if float(rows[best][k]) == 0:
+            return 0
+        if best != k:
+            rows[k], rows[best] = rows[best], rows[k]
+            value = -value
+        value = value * rows[k][k]
+        for i in range(k + 1, n):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
+    return value
+
+
+def least(a: Sequence[Sequence[Any]], b: Sequence[Any], columns: int, rank: int) -> tuple[Vector, list[float]]:
+    """Of all x with the least |a x - b| the smallest, a being of this rank; and what `basis` says of its columns."""
+    if not rank or not columns:
+        return [0] * columns, []
+    span, pivots = basis(transposed(a, columns), rank)
+    inside = [[inner(direction, column) for column in transposed(a, columns)] for direction in span]
+    gram = [[inner(x, y) for y in inside] for x in inside]
+    weights = solve(gram, times(span, b))
+    return [inner(weights, column) for column in transposed(inside, columns)], pivots

@@ -1,0 +1,172 @@
+"""States at which numbers are compared: walked to from the drawn configuration, so on the branch that was drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from symgen.zoo.dice import Dice
+from symgen.zoo.fields import Floats
+from symgen.zoo.kkt import Evaluator, Numbers, Ranks
+from symgen.zoo.reader import System
+
+STEPS = 30
+CLOSED = 1e-12
+SAME = 1e-8
+# how far rows, inputs and masses are apart at states that are compared, unless the model has none of the kind
+REGULAR = 1e-3
+FURTHEST = 40.0
+
+
+@dataclass(frozen=True)
+class State:
+    """q, rates, accelerations, inputs and parameters as floats."""
+
+    q: tuple[float, ...]
+    qd: tuple[float, ...]
+    qdd: tuple[float, ...]
+    u: tuple[float, ...]
+    parameters: tuple[float, ...]
+
+
+class Walker:
+    """Finds states of a system near a configuration."""
+
+    def __init__(self, system: System, evaluate: Evaluator, start: Mapping[str, float], dice: Dice) -> None:
+        self._system, self._evaluate, self._dice = system, evaluate, dice
+        self._start = np.array([start.get(name, 0.0) for name in system.coordinates])
+        self._floats = Floats()
+        self._ranges = system.blocks.get("ranges") or {}
+
+    def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[State], Ranks]:
+        """So many regular states, fewer where they are hard to find; and the generic ranks that were met."""
+        points = self._points(parameters, 3 * count + 6)
+        ranks = Ranks(
+            max((self._rank(self._numbers(q, parameters)) for q in points), default=0),
+            max((self._reached(self._numbers(q, parameters)) for q in points), default=0),
+        )
+        found = []
+        for q in points:
+            at = self._numbers(q, parameters)
+            if self._rank(at, REGULAR) == ranks.constraints and self._reached(at, REGULAR) == ranks.actuation:
+                found.append(self._state(q, at, parameters))
+            if len(found) == count:
+                break
+        return found, ranks
+
+    def _points(self, parameters: Mapping[str, float], count: int) -> list[Any]:
+        """Configurations on V: the start, then steps along V, back to the start where a walk leaves its ranges."""
+        here = self._closed(self._start, parameters)
+        if here is None:
+            return []
+        first = here
+        points = []
+        for _ in range(count):
+            free = self._free(here, parameters)
+            step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
+            there = self._closed(here + 0.6 * step, parameters)
+            if there is not None and np.abs(there).max() < FURTHEST and self._inside(there):
+                points.append(there)
+                here = there
+            else:
+                here = first
+        return points
+
+    def _inside(self, q: Any) -> bool:
+        for name, value in zip(self._system.coordinates, q, strict=True):
+            if name in self._ranges:
+                lower, upper = (self._number(text) for text in self._ranges[name])
+                if not lower <= value <= upper:
+                    return False
+        return True
+
+    def _number(self, text: str) -> float:
+        return float(self._system.tape.evaluate([self._system.read(text)], {}, self._floats)[0])
+
+    def _numbers(self, q: Any, parameters: Mapping[str, float], qd: Any = None) -> Numbers:
+        rates = qd if qd is not None else [0.0] * len(q)
+        values = {**parameters, **dict(zip(self._system.coordinates, map(float, q), strict=True))}
+        values |= dict(zip(self._system.rate_names, map(float, rates), strict=True))
+        return self._evaluate(values, self._floats)
+
+    def _closed(self, q: Any, parameters: Mapping[str, float]) -> Any:
+        """The nearest configuration that satisfies the geometric rows, to the last digits; None where there is none."""
+        geometric = sum(row.geometric for row in self._system.rows)
+        if not geometric:
+            return q
+        best, stalled = math.inf, 0
+        for _ in range(STEPS):
+            try:
+                at = self._numbers(q, parameters)
+            except (ValueError, OverflowError, ZeroDivisionError):
+                return None
+            rows: Any = np.array(at.rows[:geometric])
+            residual = np.array(at.residual)
+            lengths = np.linalg.norm(rows, axis=1)
+            lengths[lengths == 0] = 1
+            gap = float(np.abs(residual / lengths).max())
+            if gap >= best:
+                stalled += 1
+            best = min(best, gap)
+            if stalled >= 3 or gap == 0:
+                break
+            q = q - np.linalg.pinv(rows / lengths[:, None], rcond=SAME) @ (residual / lengths)
+        return q if best < CLOSED else None
+
+    def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
+        at = self._numbers(q, parameters)
+        return _null_space(at)
+
+    @staticmethod
+    def _rank(at: Numbers, threshold: float = SAME) -> int:
+        return _rank_of(_normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), threshold)
+
+    @staticmethod
+    def _reached(at: Numbers, threshold: float = SAME) -> int:
+        control = np.array(at.control, dtype=float).reshape(at.n, -1)
+        if not control.size:
+            return 0
+        lengths = np.linalg.norm(control, axis=0)
+        lengths[lengths == 0] = 1
+        return _rank_of((_null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
+
+    def _state(self, q: Any, at: Numbers, parameters: Mapping[str, float]) -> State:
+        free = _null_space(at)
+        spread = [self._dice.uniform(-1.5, 1.5) for _ in range(free.shape[1])]
+        qd = free @ np.array(spread)
+        moving = self._numbers(q, parameters, qd)
+        qdd = free @ np.array([self._dice.uniform(-4, 4) for _ in range(free.shape[1])])
+        if moving.drift:
+            qdd = qdd - np.linalg.pinv(np.array(moving.rows), rcond=SAME) @ np.array(moving.drift)
+        u = [self._dice.uniform(-8, 8) for _ in self._system.inputs]
+        return State(*(tuple(map(float, part)) for part in (q, qd, qdd, u, parameters.values())))
+
+
+def _normalized(rows: Any) -> Any:
+    lengths = np.linalg.norm(rows, axis=1)
+    lengths[lengths == 0] = 1
+    return rows / lengths[:, None]
+
+
+def _null_space(at: Numbers) -> Any:
+    rows: Any = _normalized(np.array(at.rows, dtype=float).reshape(-1, at.n))
+    if not rows.size:
+        return np.eye(at.n)
+    values, directions = np.linalg.svd(rows)[1:]
+    return directions[int((values > SAME * values.max()).sum()) :].T
+
+
+def _rank_of(rows: Any, threshold: float, absolute: bool = False) -> int:
+    if not rows.size:
+        return 0
+    values = np.linalg.svd(rows, compute_uv=False)
+    return int((values > threshold * (1.0 if absolute else values.max())).sum())
+
+
+def rounded(values: Sequence[float], scalar: str) -> tuple[float, ...]:
+    """Rounded to float32 where that is asked for."""
+    return tuple(float(np.float32(value)) for value in values) if scalar == "float32" else tuple(values)

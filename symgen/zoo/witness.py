@@ -1,0 +1,237 @@
+"""The numbers of what was generated against those of the zoo, at states on the branch that was drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from symgen.zoo.dice import Dice
+from symgen.zoo.expressions import NotReadError
+from symgen.zoo.fields import Balls, Floats, precision
+from symgen.zoo.generated import Answer, Target, targets
+from symgen.zoo.kkt import Evaluator, Ranks, Split, internal_force, inverse_dynamics, motion, split
+from symgen.zoo.mechanics import equations
+from symgen.zoo.reader import System
+from symgen.zoo.states import State, Walker, rounded
+from symgen.zoo.tape import Program
+
+STATES = 20
+PERTURBATIONS = 8
+ALLOWED = 16.0
+EPS = {"float64": 2.0**-53, "float32": 2.0**-24}
+# a status is a failure where rows, inputs and masses are further apart than this
+CERTAIN = {"float64": 1e-4, "float32": 2e-2}
+LARGEST = {"float64": 1e280, "float32": 1e30}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A number that is wrong, or a status that is not honest."""
+
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What was compared: how many states, the largest error in units of what is allowed, and what is wrong."""
+
+    states: int
+    largest: float
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """A quantity at a state, and how well the state determines it, 0 to 1."""
+
+    value: list[Any]
+    clear: float
+
+
+class Witness:
+    """A model file read by the zoo alone."""
+
+    def __init__(self, text: str, start: Mapping[str, float] | None = None, seed: object = 0) -> None:
+        blocks: Mapping[str, Any] = yaml.load(text, Loader=yaml.BaseLoader)
+        self._system = System(blocks)
+        self._equations = equations(self._system)
+        self._evaluate = Evaluator(Program(self._system.tape, self._equations.flat), self._equations)
+        self._seed = seed
+        given = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
+        self._start = {**given, **(start or {})}
+        self._balls = Balls()
+
+    def check(self, folder: Path, count: int = STATES) -> Checked:
+        """Everything generated in a folder; nothing is compared where no state is found."""
+        blocks = self._system.blocks
+        defaults = self._defaults()
+        walker = Walker(self._system, self._evaluate, self._start, Dice("states", self._seed))
+        found, ranks = walker.states(defaults, count)
+        findings: list[Finding] = []
+        largest = 0.0
+        for target in targets(folder, blocks["model"]):
+            for state in found:
+                for quantity in target.quantities:
+                    error, finding = self._compared(target, quantity, state, ranks)
+                    largest = max(largest, error)
+                    if finding is not None:
+                        findings.append(finding)
+                        break
+                if findings and findings[-1].text.startswith(target.name):
+                    break
+        return Checked(len(found), largest, tuple(findings))
+
+    def _defaults(self) -> dict[str, float]:
+        values: dict[str, float] = {}
+        with precision():
+            exact: dict[str, Any] = {}
+            for name, node in self._system.parameters.items():
+                exact[name] = self._system.tape.evaluate([node], exact, self._balls)[0]
+                values[name] = float(exact[name].mid())
+        for name, value in self._allocation().items():
+            values[name] = value
+        return values
+
+    def _allocation(self) -> dict[str, float]:
+        """Weights and preloads as members of the parameters, in the order of the documentation."""
+        block = self._system.blocks.get("allocation") or {}
+        found = {f"weight_{name}": self._float(text) for name, text in (block.get("weights") or {}).items()}
+        preload = block.get("preload")
+        if isinstance(preload, str):
+            found["preload"] = self._float(preload)
+        elif preload is not None:
+            found |= {f"preload_{name}": self._float(text) for name, text in preload.items()}
+        return found
+
+    def _float(self, text: str) -> float:
+        return float(self._system.tape.evaluate([self._system.read(text)], {}, Floats())[0])
+
+    def _compared(self, target: Target, quantity: str, state: State, ranks: Ranks) -> tuple[float, Finding | None]:
+        """The error of one result in units of what is allowed, and what is wrong with it."""
+        scalar = target.scalar
+        given = State(*(rounded(part, scalar) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
+        with precision():
+            truth = self._truth(quantity, given, ranks)
+            if truth is None:
+                return 0.0, None
+            answer = target.call(quantity, given, len(truth.value))
+            where = f"{target.name}, {quantity}"
+            exact = [float(x.mid()) for x in truth.value]
+            if answer.status:
+                certain = truth.clear > CERTAIN[scalar] and all(abs(x) < LARGEST[scalar] for x in exact)
+                told = f"{where}: status {answer.status} at a regular state ({truth.clear:.1e})"
+                return 0.0, Finding("witness: status", told) if certain else None
+            units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
+        if units <= 1:
+            return units, None
+        relative = _norm([a - b for a, b in zip(answer.value, exact, strict=True)]) / (_norm(exact) or 1.0)
+        told = (
+            f"{where}: {ALLOWED * units:.3g} units at a state, {ALLOWED:g} are allowed (relative error {relative:.1e})"
+        )
+        return units, Finding("witness: number", told)
+
+    def _units(self, answer: Answer, truth: Truth, quantity: str, state: State, ranks: Ranks, eps: float) -> float:
+        """The error over what is allowed; what rounding the inputs does is worked out only where it is needed."""
+        if not all(map(math.isfinite, answer.value)) or len(answer.value) != len(truth.value):
+            return math.inf
+        error = _distance(answer.value, truth.value)
+        size = _norm([float(x.mid()) for x in truth.value])
+        moved = 0.0
+        dice = Dice("perturbations", self._seed)
+        for _ in range(PERTURBATIONS + 1):
+            if error <= ALLOWED * (moved + eps * size):
+                break
+            other = self._truth(quantity, state, ranks, (dice, eps))
+            if other is not None:
+                moved = max(moved, _distance(other.value, truth.value))
+        allowed = ALLOWED * (moved + eps * size)
+        return error / allowed if allowed else (math.inf if error else 0.0)
+
+    def _truth(
+        self, quantity: str, state: State, ranks: Ranks, moved: tuple[Dice, float] | None = None
+    ) -> Truth | None:
+        """The quantity in balls; where `moved` is given, of a state that is one rounding away."""
+        number = self._balls.number
+
+        def ball(value: float) -> Any:
+            exact = Fraction(value)
+            return number(exact + _sign(moved[0]) * Fraction(moved[1]) * exact) if moved else number(exact)
+
+        names = (*self._system.coordinates, *self._system.rate_names)
+        values = {name: ball(x) for name, x in zip(names, (*state.q, *state.qd), strict=True)}
+        parameters = [ball(x) for x in state.parameters]
+        values |= dict(zip((*self._system.parameters, *self._allocation()), parameters, strict=True))
+        literals: dict[Fraction, Any] | None = None
+        if moved:
+            literals = {
+                literal: number(literal + _sign(moved[0]) * Fraction(moved[1]) * literal)
+                for literal in self._evaluate.program.literals
+                if literal.denominator != 1
+            }
+        at = self._evaluate(values, self._balls, literals)
+        one = number(Fraction(1))
+        parts = split(at, ranks.constraints, one)
+        if quantity == "inverse_dynamics":
+            return self._inputs(at, parts, [ball(x) for x in state.qdd], ranks, values)
+        u = [ball(x) for x in state.u]
+        accelerations, multipliers, pivots = motion(at, parts, u)
+        if not accelerations:
+            return None
+        clear = min((*parts.pivots, *pivots[-1:]), default=1.0)
+        if quantity == "forward_dynamics":
+            return Truth(accelerations, clear)
+        return Truth(multipliers, clear) if self._rows_are_known() else None
+
+    def _inputs(
+        self, at: Any, parts: Split, accelerations: list[Any], ranks: Ranks, values: Mapping[str, Any]
+    ) -> Truth | None:
+        """u, as the model's allocation says."""
+        one = self._balls.number(Fraction(1))
+        inputs = self._system.inputs
+        block = self._system.blocks.get("allocation") or {}
+        if "limits" in block or isinstance(block.get("preload"), Mapping):
+            return None
+        weights = [values.get(f"weight_{name}", one) for name in inputs]
+        weighted = "weights" in block
+        u, pivots = inverse_dynamics(at, parts, accelerations, ranks.actuation, weights if weighted else None)
+        if "preload" in block:
+            along = internal_force(at, weights)
+            u = [x + values["preload"] * z for x, z in zip(u, along, strict=True)]
+        return Truth(u, min((*parts.pivots, *pivots), default=1.0))
+
+    def _rows_are_known(self) -> bool:
+        """Rows of wheels stand in axes of symgen's choice: the text does not define their multipliers."""
+        return not self._system.blocks.get("rolling")
+
+
+def _sign(dice: Dice) -> int:
+    return 1 if dice.chance(0.5) else -1
+
+
+def _norm(values: Sequence[float]) -> float:
+    return math.sqrt(math.fsum(x * x for x in values))
+
+
+def _distance(values: Sequence[Any], exact: Sequence[Any]) -> float:
+    return _norm([float((x - y).mid()) for x, y in zip(exact, values, strict=True)])
+
+
+def check(text: str, folder: Path, start: Mapping[str, float], seed: object) -> Checked:
+    """What the witness says of the files in a folder; a part of the language that it does not read is no failure."""
+    try:
+        return Witness(text, start, seed).check(folder)
+    except NotReadError:
+        return Checked(0, 0.0, ())
+
+
+def findings_by_kind(checked: Checked) -> Iterator[tuple[str, str]]:
+    """Kind and text of what is wrong."""
+    for finding in checked.findings:
+        yield finding.kind, finding.text
