@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.assembly import Assembly
 from symgen.model.body_checks import check_bodies
+from symgen.model.branches import branches
 from symgen.model.expression import Expression
 from symgen.model.feasibility import check_motion
 from symgen.model.mechanics import Mechanics
@@ -41,14 +44,14 @@ NEEDS_INPUTS = frozenset(
 )
 
 
-def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expression | None, whole: bool) -> None:
-    """Adds to `scope` what is wrong with the model's mechanics.
+def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expression | None, whole: bool) -> Model:
+    """Adds to `scope` what is wrong with the model's mechanics; the model with its assembly where nothing is.
 
     `kinetic` is None where the kinetic energy could not be read.  `whole` says that the mechanical part of the file is
     free of mistakes, so that the mechanism as a whole can be judged too.
     """
     if not model.coordinates:
-        return
+        return model
     mechanics = Mechanics(
         model.coordinates,
         model.parameters,
@@ -74,7 +77,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     for force in model.forces:
         _add(scope, check_domain(mechanics, force.velocity, f"the direction of `{force.name}`"))
     if len(scope.mistakes) > before:
-        return
+        return model
     if kinetic is not None and not (model.mechanism.has_mass and exact_value(kinetic) == 0):
         _add(scope, check_kinetic_energy(mechanics, kinetic))
     for row in model.constraints:
@@ -82,10 +85,13 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         _add(scope, check(mechanics, row))
     massive = model.mechanism.has_mass and (kinetic is not None or tree.get("kinetic_energy") is None)
     if whole and (massive or kinetic is not None) and len(scope.mistakes) == before:
-        start = {name: float(value) for name, value in model.configuration}
-        _add(scope, check_motion(mechanics, start, model.independent_velocities, _block_spans(tree)))
-        if model.allocation is not None and len(scope.mistakes) == before:
-            _add(scope, check_redundancy(mechanics, start, model.inputs, model.allocation))
+        found = branches(mechanics, model.inputs, {name: float(value) for name, value in model.configuration})
+        _add(scope, check_motion(mechanics, found, model.independent_velocities, _block_spans(tree)))
+        if isinstance(found, Assembly) and len(scope.mistakes) == before:
+            if model.allocation is not None:
+                _add(scope, check_redundancy(mechanics, found, model.inputs, model.allocation))
+            return replace(model, assembly=found)
+    return model
 
 
 def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:
@@ -117,7 +123,7 @@ def _add(scope: Scope, found: Iterable[Mistake | Notice]) -> None:
 
 
 def _block_spans(tree: MappingNode) -> dict[str, Span | None]:
-    keys = ("constraints", "kinetic_energy", "independent_velocities", "coordinates")
+    keys = ("constraints", "kinetic_energy", "independent_velocities", "coordinates", "configuration")
     spans = {key: key_span(tree, key) for key in keys}
     spans["kinetic_energy"] = spans["kinetic_energy"] or key_span(tree, "bodies")
     constraints = member(tree, "constraints")

@@ -5,73 +5,87 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.assembly import Assembly, Place
+from symgen.model.branches import Open
 from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
 from symgen.model.names import counted
 
-# Configurations that are looked at, and how many are enough where ranks are equal and masses are those of bodies.
+# Configurations at which masses are looked at, and how many say that a coordinate is held.
 SAMPLES, ENOUGH = 5, 3
 
 # Components of a motion this small are none.
 HELD = 1e-7
 
-# A configuration whose rank depends on which of these is taken for zero is too close to a singularity to tell.
-THRESHOLDS = (1e-9, 1e-5)
+MOST_SHOWN = 6
 
 
 def check_motion(
     mechanics: Mechanics,
-    start: dict[str, float],
+    found: Assembly | Open | None,
     independent: tuple[str, ...],
     spans: dict[str, Span | None],
 ) -> Iterator[Mistake | Notice]:
     """What is wrong with the mechanism as a whole; `spans` has the places of the blocks to point at."""
-    points: list[list[float]] = []
-    jacobians: list[Rows] = []
-    ranks: list[list[int]] = []
-    for q in mechanics.admissible(start, SAMPLES):
-        try:
-            jacobians.append(mechanics.jacobian(q))
-        except (ArithmeticError, ValueError):
-            continue
-        points.append(q)
-        ranks.append([rank(jacobians[-1], threshold) for threshold in THRESHOLDS])
-        alike = len({value for both in ranks for value in both}) == 1
-        if len(ranks) >= ENOUGH and alike and mechanics.mass_is_sure:
-            break
-    if not points:
-        yield _no_configuration(mechanics, start, spans["geometric"])
+    if not isinstance(found, Assembly):
+        yield _no_configuration(mechanics, found, spans["geometric"])
         return
-    n = len(mechanics.coordinates)
-    sure = [low if low == high else -1 for low, high in ranks]
-    generic = max(sure)
-    if generic < 0:
-        sure = [high for _, high in ranks]
-        generic = max(sure)
-    if generic == n:
-        against = f"{counted(n, 'coordinate')} under {counted(generic, 'independent constraint')}"
+    n, rank = len(mechanics.coordinates), found.ranks.constraints
+    if rank == n:
+        against = f"{counted(n, 'coordinate')} under {counted(rank, 'independent constraint')}"
         yield Mistake(
             f"the mechanism cannot move: {against} (δ = 0)",
             "remove a constraint, or add the coordinate that is still free",
             spans["constraints"],
         )
         return
-    regular = [(q, b) for q, b, its in zip(points, jacobians, sure, strict=True) if its == generic]
+    regular = [(list(place.q), mechanics.jacobian(place.q)) for place in found.places[:SAMPLES]]
     yield from _check_masses(mechanics, regular, spans["kinetic_energy"])
-    yield from _held(mechanics, regular, spans["constraints"])
+    elsewhere = [(list(place.q), mechanics.jacobian(place.q)) for place in found.others]
+    yield from _held(mechanics, [*regular, *elsewhere], spans["constraints"])
+    yield from _other_branches(mechanics, found, spans["configuration"])
     if independent:
-        yield from _check_independent(mechanics, regular, independent, n - generic, spans["independent_velocities"])
+        yield from _check_independent(mechanics, regular, independent, n - rank, spans["independent_velocities"])
 
 
-def _no_configuration(mechanics: Mechanics, start: dict[str, float], span: Span | None) -> Mistake:
+def _no_configuration(mechanics: Mechanics, found: Open | None, span: Span | None) -> Mistake:
     """The mistake at the row that stays open widest."""
     message = "no configuration was found that satisfies all geometric constraints"
     remedy = "check signs and lengths, or give a start near the assembled mechanism under `configuration`"
-    worst = mechanics.widest_open(start)
-    if worst is None:
+    if found is None:
         return Mistake(message, remedy, span)
-    row, value = worst
-    return Mistake(f"{message}; `{row.name}` stays at {value:.3g} in the nearest one", remedy, row.span or span)
+    row = mechanics.geometric[found.row]
+    return Mistake(f"{message}; `{row.name}` stays at {found.value:.3g} in the nearest one", remedy, row.span or span)
+
+
+def _other_branches(mechanics: Mechanics, found: Assembly, span: Span | None) -> Iterator[Notice]:
+    """That the start is singular, and that there are branches on which kernels give a status."""
+    n, meant = len(mechanics.coordinates), found.ranks
+    if found.start is not None:
+        why = "the start is a singular configuration" if span is not None else "the middles of the ranges are singular"
+        yield Notice(
+            f"{why} ({_shown(mechanics, found.start)}): ranks are taken from configurations around it; "
+            "a regular one under `configuration` says which branch is meant",
+            span,
+        )
+    for place in found.others:
+        ranks = place.ranks
+        if ranks.constraints == meant.constraints:
+            spans = f"the inputs span {ranks.actuation} of {n - ranks.constraints} directions, here {meant.actuation}"
+        else:
+            spans = f"the constraints have rank {ranks.constraints}, here {meant.constraints}"
+        yield Notice(
+            f"another branch of configurations ({_shown(mechanics, place)}): {spans}; there the functions that "
+            "need this rank return a status",
+            span,
+        )
+
+
+def _shown(mechanics: Mechanics, place: Place) -> str:
+    """The first coordinates of a configuration."""
+    pairs = zip(mechanics.coordinates, place.q, strict=True)
+    shown = [f"{c.name} = {value:.3g}" for c, value in pairs][:MOST_SHOWN]
+    return ", ".join(shown) + (", ..." if len(place.q) > MOST_SHOWN else "")
 
 
 def _check_masses(

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import itertools
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from symgen.model.algebra import Expansion, Polynomial
-from symgen.model.dense import Rows, solve_definite
+from symgen.model.dense import Rows
 from symgen.model.expression import Expression
 from symgen.model.float_kinematics import FloatKinematics
 from symgen.model.gradient import Gradients
 from symgen.model.mechanism import NO_MECHANISM, Mechanism, component
-from symgen.model.model import ConstraintRow, Coordinate, Definition, Parameter
+from symgen.model.model import ConstraintRow, Coordinate, Definition, Input, Parameter
+from symgen.model.sparse import Row
 from symgen.model.walk import evaluate, exact_value
 
 SEED = 20140211
-STARTS = 40
-STEPS = 80
 POINTS = 2
 ATTEMPTS = 30
 RESIDUAL = 1e-11
-NEARBY = 8
 
 
 class Mechanics:
@@ -37,6 +34,7 @@ class Mechanics:
         mechanism: Mechanism = NO_MECHANISM,
     ) -> None:
         self.coordinates, self.constraints = coordinates, constraints
+        self.geometric = tuple(row for row in constraints if row.kind == "geometric")
         self.mechanism = mechanism
         self._kinetic = kinetic_energy
         self._definitions = {definition.name: definition.value for definition in definitions}
@@ -46,7 +44,7 @@ class Mechanics:
         self._expanded: dict[int, tuple[Expression, list[Polynomial]]] = {}
         self.defaults = default_values(parameters)
 
-    def expansion(self, q: list[float], parameters: dict[str, float]) -> Expansion:
+    def expansion(self, q: Sequence[float], parameters: dict[str, float]) -> Expansion:
         """Polynomials in the rates at a configuration."""
         values = {**parameters, **self._named(q)}
         kinematics = self._kinematics(values)
@@ -99,7 +97,7 @@ class Mechanics:
         """Whether T is that of bodies alone, whose masses and inertias are checked one by one."""
         return self.mechanism.has_mass and exact_value(self._kinetic) == 0
 
-    def mass_matrix(self, q: list[float]) -> Rows:
+    def mass_matrix(self, q: Sequence[float]) -> Rows:
         """G, n x n."""
         n = len(self.coordinates)
         matrix = self._kinematics({**self.defaults, **self._named(q)}).mass_matrix(n)
@@ -111,65 +109,44 @@ class Mechanics:
                 matrix[j][i] += value
         return matrix
 
-    def geometric(self, q: list[float]) -> tuple[list[float], Rows]:
-        """g and its Jacobian, r_g and r_g x n."""
+    def residuals(self, q: Sequence[float], numbers: Sequence[int]) -> tuple[list[float], list[Row]]:
+        """Values and gradients of the geometric rows with these numbers."""
         values = {**self.defaults, **self._named(q)}
         gradients = Gradients(values, self._index, self._definitions, self._kinematics(values).place)
-        residual: list[float] = []
-        jacobian: Rows = []
-        for row in self.constraints:
-            if row.kind == "geometric":
-                value, gradient = gradients.of(row.expression)
-                residual.append(value)
-                jacobian.append([gradient.get(index, 0.0) for index in range(len(self.coordinates))])
-        return residual, jacobian
+        found = [gradients.of(self.geometric[i].expression) for i in numbers]
+        return [value for value, _ in found], [gradient for _, gradient in found]
 
-    def jacobian(self, q: list[float]) -> Rows:
-        """B, r x n."""
-        rows = self.geometric(q)[1]
+    def rows(self, q: Sequence[float]) -> list[Row]:
+        """B, r rows."""
+        rows = self.residuals(q, range(len(self.geometric)))[1]
+        if len(rows) == len(self.constraints):
+            return rows
         expansion = self.expansion(q, self.defaults)
         for row in self.constraints:
             if row.kind == "nonholonomic":
-                polynomial = expansion.of(row.expression)
-                rows.append([polynomial.get((c.rate,), (0.0, 0.0))[0] for c in self.coordinates])
+                rows.append(self._coefficients(expansion.of(row.expression)))
         return rows
 
-    def admissible(self, start: dict[str, float], count: int) -> Iterator[list[float]]:
-        """Up to `count` configurations on the geometric constraints: from `start`, then around it or at random."""
-        anchor: list[float] | None = None
-        guesses = self._guesses(start)
-        around = random.Random(SEED + 2)
-        for attempt in range(STARTS):
-            # Near a known point Newton is quick; without one, or now and then, the whole range is tried.
-            if anchor is not None and attempt % 4:
-                guess = [
-                    a + around.uniform(-0.15, 0.15) * float(c.range[1] - c.range[0])
-                    for a, c in zip(anchor, self.coordinates, strict=True)
-                ]
+    def columns(self, q: Sequence[float], inputs: Sequence[Input]) -> list[Row]:
+        """The columns of M, as rows."""
+        expansion = self.expansion(q, self.defaults)
+        columns = []
+        for item in inputs:
+            if item.velocity is not None:
+                columns.append(self._coefficients(expansion.of(item.velocity)))
             else:
-                guess = next(guesses)
-            found = self._project(guess)
-            if found is not None:
-                anchor = anchor or found
-                yield found
-                count -= 1
-                if count == 0:
-                    return
+                values = ((self._index[c], expansion.of(value).get((), (0.0, 0.0))[0]) for c, value in item.acts_on)
+                columns.append(dict(values))
+        return columns
 
-    def widest_open(self, start: dict[str, float]) -> tuple[ConstraintRow, float] | None:
-        """Where nothing closes the mechanism: the worst geometric row at the nearest configuration found, and its
-        value; None where no row has a value."""
-        nearest: tuple[float, list[float]] | None = None
-        for guess in itertools.islice(self._guesses(start), NEARBY):
-            found = self._settle(guess)
-            if found is not None and (nearest is None or found[0] < nearest[0]):
-                nearest = found
-        if nearest is None:
-            return None
-        rows = [row for row in self.constraints if row.kind == "geometric"]
-        values = self.geometric(nearest[1])[0]
-        worst = max(range(len(rows)), key=lambda index: abs(values[index]))
-        return rows[worst], values[worst]
+    def _coefficients(self, polynomial: Polynomial) -> Row:
+        """Of the rates, in an expression that is linear in them."""
+        found = ((i, polynomial.get((c.rate,))) for i, c in enumerate(self.coordinates))
+        return {i: pair[0] for i, pair in found if pair is not None}
+
+    def jacobian(self, q: Sequence[float]) -> Rows:
+        """B, r x n."""
+        return [[row.get(j, 0.0) for j in range(len(self.coordinates))] for row in self.rows(q)]
 
     def anywhere(self, count: int) -> Iterator[tuple[list[float], dict[str, float]]]:
         """Random configurations with random parameters, for what must hold whatever their values."""
@@ -182,67 +159,8 @@ class Mechanics:
         # frames use definitions, definitions may use points: those that frames use are evaluated without components
         return FloatKinematics(self.mechanism, Gradients(values, self._index, self._definitions))
 
-    def _named(self, q: list[float]) -> dict[str, float]:
+    def _named(self, q: Sequence[float]) -> dict[str, float]:
         return {coordinate.name: value for coordinate, value in zip(self.coordinates, q, strict=True)}
-
-    def _guesses(self, start: dict[str, float]) -> Iterator[list[float]]:
-        """The start, completed with the middles of the ranges, then random configurations."""
-        generator = random.Random(SEED)
-        yield [start.get(c.name, float(sum(c.range)) / 2) for c in self.coordinates]
-        while True:
-            yield [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
-
-    def _project(self, q: list[float]) -> list[float] | None:
-        """The configuration with g = 0 that Levenberg and Marquardt's method reaches from q."""
-        found = self._settle(q)
-        return found[1] if found is not None and found[0] == 0 else None
-
-    def _settle(self, q: list[float]) -> tuple[float, list[float]] | None:
-        """Where that method stops: |g|^2, 0 where g vanishes, and the configuration; None outside of g's domain."""
-        n = len(q)
-        damping = 1e-3
-        try:
-            residual, jacobian = self.geometric(q)
-        except (ArithmeticError, ValueError):
-            return None
-        for _ in range(STEPS):
-            if _vanishes(residual, jacobian, q):
-                return 0.0, q
-            step = _damped_step(jacobian, residual, damping, n)
-            if step is None:
-                break
-            trial = [a + b for a, b in zip(q, step, strict=True)]
-            try:
-                trial_residual, trial_jacobian = self.geometric(trial)
-            except (ArithmeticError, ValueError):
-                damping *= 10
-                continue
-            if sum(g * g for g in trial_residual) < sum(g * g for g in residual):
-                q, residual, jacobian = trial, trial_residual, trial_jacobian
-                damping = max(damping / 30, 1e-14)
-            else:
-                damping *= 10
-                if damping > 1e12:
-                    break
-        return sum(g * g for g in residual), q
-
-
-def _damped_step(jacobian: Rows, residual: list[float], damping: float, n: int) -> list[float] | None:
-    """-(J'J + mu)^-1 J'g, which is -J'(JJ' + mu)^-1 g: the smaller of the two systems is solved."""
-    scale = max((sum(row[i] * row[i] for row in jacobian) for i in range(n)), default=0.0) or 1.0
-    if len(jacobian) >= n:
-        normal = [[sum(row[i] * row[j] for row in jacobian) for j in range(n)] for i in range(n)]
-        slope = [-sum(row[i] * g for row, g in zip(jacobian, residual, strict=True)) for i in range(n)]
-        for i in range(n):
-            normal[i][i] += damping * scale
-        return solve_definite(normal, slope)
-    gram = [[sum(a * b for a, b in zip(row, other, strict=True)) for other in jacobian] for row in jacobian]
-    for i, row in enumerate(gram):
-        row[i] += damping * scale
-    weights = solve_definite(gram, residual)
-    if weights is None:
-        return None
-    return [-sum(w * row[i] for w, row in zip(weights, jacobian, strict=True)) for i in range(n)]
 
 
 def default_values(parameters: tuple[Parameter, ...]) -> dict[str, float]:
@@ -260,12 +178,3 @@ def _drawn(parameter: Parameter, default: float, generator: random.Random) -> fl
     if parameter.range is not None:
         return generator.uniform(float(parameter.range[0]), float(parameter.range[1]))
     return default * generator.uniform(0.7, 1.3) if default else generator.uniform(-0.1, 0.1)
-
-
-def _vanishes(residual: list[float], jacobian: Rows, q: list[float]) -> bool:
-    """Whether each g is zero relative to what its terms can be expected to be."""
-    for value, row in zip(residual, jacobian, strict=True):
-        size = sum(abs(a) * max(1.0, abs(b)) for a, b in zip(row, q, strict=True))
-        if abs(value) > RESIDUAL * size:
-            return False
-    return True

@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Notice, Span
+from symgen.model.assembly import Assembly
 from symgen.model.expression import Expression
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
 from symgen.records import dataclass
@@ -198,7 +199,8 @@ class Path:
 class Model:
     """A mechanical system, complete: the input of every derivation.
 
-    T and U are the energies written in the file plus those of `mechanism`.
+    T and U are the energies written in the file plus those of `mechanism`; `assembly` is what loading found out about
+    its configurations.
     """
 
     name: str
@@ -226,6 +228,7 @@ class Model:
     forces: tuple[Force, ...] = ()
     allocation: Allocation | None = None
     trig_range: Literal["normal", "wide"] = "normal"
+    assembly: Assembly | None = None
 
     @property
     def n(self) -> int:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 
 from symgen.diagnostics import Mistake, Notice
+from symgen.model.assembly import Assembly, Place
 from symgen.model.dense import Rows, rank
-from symgen.model.feasibility import SAMPLES, THRESHOLDS
+from symgen.model.feasibility import SAMPLES
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Allocation, Input
 from symgen.model.names import counted
@@ -15,7 +15,7 @@ from symgen.model.names import counted
 
 def check_redundancy(
     mechanics: Mechanics,
-    start: dict[str, float],
+    assembly: Assembly,
     inputs: tuple[Input, ...],
     allocation: Allocation,
 ) -> Iterator[Mistake | Notice]:
@@ -24,12 +24,9 @@ def check_redundancy(
     Needed are more inputs than the rank of the projected control matrix, for a preload along one direction and for
     limits exactly one more than δ, and independent constraints (else that direction has no sign of its own).
     """
-    samples = list(_samples(mechanics, start, inputs))
-    if not samples:
-        return
-    (constraints, together), _ = Counter(ranks for ranks, _ in samples).most_common(1)[0]
     n, m = len(mechanics.coordinates), len(inputs)
-    delta, degree = n - constraints, together - constraints
+    constraints, degree = assembly.ranks.constraints, assembly.ranks.actuation
+    delta = n - constraints
     if m == degree:
         share = f"{counted(m, 'input')} for δ = {delta}, determined by the motion" if m else "the model has no inputs"
         yield Mistake(
@@ -40,9 +37,10 @@ def check_redundancy(
         return
     if allocation.directed:
         yield from _check_direction(mechanics, allocation, m, delta, degree, constraints)
+    samples = [_dense(mechanics, place, inputs) for place in assembly.places[:SAMPLES]] if allocation.limits else []
     for limit in allocation.limits:
         index = [item.name for item in inputs].index(limit.input)
-        if all(rank([*b, *columns[:index], *columns[index + 1 :]]) < together for _, (b, columns) in samples):
+        if all(rank([*b, *columns[:index], *columns[index + 1 :]]) < constraints + degree for b, columns in samples):
             yield Notice(
                 f"the motion alone determines `{limit.input}`: no other input can take over what is beyond its limits",
                 allocation.span,
@@ -70,26 +68,7 @@ def _check_direction(
         yield Mistake(f"`limits` need {one}: {why}", remedy, allocation.span)
 
 
-def _samples(
-    mechanics: Mechanics, start: dict[str, float], inputs: tuple[Input, ...]
-) -> Iterator[tuple[tuple[int, int], tuple[Rows, Rows]]]:
-    """(rank B, rank [B; Mᵀ]) with B and the columns of M, where they are clear-cut."""
-    index = {c.name: i for i, c in enumerate(mechanics.coordinates)}
-    for q in mechanics.admissible(start, SAMPLES):
-        expansion = mechanics.expansion(q, mechanics.defaults)
-        try:
-            b = mechanics.jacobian(q)
-            columns = []
-            for item in inputs:
-                column = [0.0] * len(q)
-                for name, coefficient in item.acts_on:
-                    column[index[name]] = expansion.of(coefficient).get((), (0.0, 0.0))[0]
-                if item.velocity is not None:
-                    worked_on = expansion.of(item.velocity)
-                    column = [worked_on.get((c.rate,), (0.0, 0.0))[0] for c in mechanics.coordinates]
-                columns.append(column)
-        except (ArithmeticError, ValueError):
-            continue
-        low, high = ((rank(b, size), rank([*b, *columns], size)) for size in THRESHOLDS)
-        if low == high:
-            yield low, (b, columns)
+def _dense(mechanics: Mechanics, place: Place, inputs: tuple[Input, ...]) -> tuple[Rows, Rows]:
+    """B and the columns of M at a configuration."""
+    columns = mechanics.columns(place.q, inputs)
+    return mechanics.jacobian(place.q), [[column.get(j, 0.0) for j in range(len(place.q))] for column in columns]

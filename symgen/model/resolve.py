@@ -105,7 +105,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     )
     as_written = replace(model, potential_energy=potential, forces=elements)
     scope.mistakes.extend(check_units(tree, as_written, (*fits, *fits_of_friction)))
-    check_mechanics(scope, tree, model, kinetic_read, whole)
+    model = check_mechanics(scope, tree, model, kinetic_read, whole)
     notice_empty_outputs(scope, tree, model)
     _notice_unused(scope, tree)
     return model

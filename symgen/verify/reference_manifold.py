@@ -5,7 +5,10 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import frexp, inf
 from typing import Any
+
+from flint import arb_mat
 
 from symgen.verify.reference_linear import (
     RANK_NOISE,
@@ -59,12 +62,15 @@ def onto_manifold(
 
     Steps are numbers, not bounds: only where they end is |g| looked at.  Rows may depend on each other: the damping
     falls with |g|, so that the step has least norm and convergence stays superlinear where dg/dq keeps its rank on V.
-    Where loops are `rounded`, what rounding leaves of |g| is near enough.
+    Where loops are `rounded`, what rounding leaves of |g| is near enough.  Rows count in powers of 2 of what their
+    entries are at the start, so that a row in other units is the same row.
     """
     q = column(start)
     if system.r_geometric == 0:
         return list(q.entries())
     residual, jacobian = system.geometry(q.entries(), parameters, literals)
+    units = _units(jacobian)
+    residual, jacobian = units * residual, units * jacobian
     size = norm(residual)
     damping = 1e-3
     slow = 0
@@ -76,7 +82,7 @@ def onto_manifold(
             damping *= 10
             continue
         trial = (q - step).mid()
-        residual_trial, jacobian_trial = system.geometry(trial.entries(), parameters, literals)
+        residual_trial, jacobian_trial = (units * x for x in system.geometry(trial.entries(), parameters, literals))
         size_trial = norm(residual_trial)
         slow = slow + 1 if not size_trial <= 0.9 * size else 0
         if slow > MOST_SLOW_STEPS or damping > MOST_DAMPING:
@@ -101,9 +107,18 @@ def _step(residual: Any, jacobian: Any, damping: float) -> Any:
         return None
 
 
-def generic_ranks(system: System) -> Ranks | None:
-    """The largest ranks over random points of V at the default parameters; None when no point of V is found.
+def _units(jacobian: Any) -> Any:
+    """Diagonal of factors for rows."""
+    sizes = [max((abs(float(entry)) for entry in row), default=0.0) for row in jacobian.tolist()]
+    count = len(sizes)
+    units = [2.0 ** -frexp(size)[1] if 0 < size < inf else 1.0 for size in sizes]
+    return arb_mat(count, count, [units[i] if i == j else 0 for i in range(count) for j in range(count)])
 
+
+def generic_ranks(system: System) -> Ranks | None:
+    """The largest ranks over points of V at the default parameters; None when no point of V is found.
+
+    Where loading found configurations, these say which branch of V is meant, else points are random.
     Points are exact to about 170 bits, so that a rank shows as a gap of 40 binary orders at least; those that close up
     to rounding only show it as a gap of 16.
     """
@@ -116,7 +131,8 @@ def _found_ranks(system: System, rounded: bool) -> Ranks | None:
     literals = literal_values(system.literals)
     generator = random.Random("ranks")
     found: list[Ranks] = []
-    for start in starts(system, generator, RANK_STARTS):
+    known = () if system.model.assembly is None else system.model.assembly.places[:RANK_POINTS]
+    for start in (*(place.q for place in known), *(() if known else starts(system, generator, RANK_STARTS))):
         q = onto_manifold(system, start, parameters, literals, 2.0**-170, rounded)
         ranks = None if q is None else _ranks_at(system, q, parameters, literals, rounded)
         if ranks is not None:
@@ -131,8 +147,12 @@ def _found_ranks(system: System, rounded: bool) -> Ranks | None:
 
 
 def starts(system: System, generator: random.Random, count: int) -> list[list[float]]:
-    """Starting points: the model's `configuration`, then random ones in the ranges of the coordinates."""
-    given = dict(system.model.configuration)
+    """Starting points: the model's `configuration` (where loading found it singular, a regular one), then random ones
+    in the ranges of the coordinates."""
+    given: dict[str, Any] = dict(system.model.configuration)
+    known = system.model.assembly
+    if known is not None and known.start is not None:
+        given = dict(zip((c.name for c in system.model.coordinates), known.places[0].q, strict=True))
     points = []
     for index in range(count):
         draw = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in system.model.coordinates]

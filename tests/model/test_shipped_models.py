@@ -73,7 +73,8 @@ def test_configuration_is_assembled(model: Model) -> None:
         model.coordinates, model.parameters, model.definitions, model.constraints, model.kinetic_energy
     )
     start = dict(model.configuration)
-    residual, _ = mechanics.geometric([float(start[c.name]) for c in model.coordinates])
+    q = [float(start[c.name]) for c in model.coordinates]
+    residual, _ = mechanics.residuals(q, range(len(mechanics.geometric)))
     assert all(abs(value) < 1e-3 for value in residual)
 
 

@@ -1,0 +1,50 @@
+"""How a mechanism is assembled: configurations that satisfy its constraints, and the ranks found there, as data."""
+
+from __future__ import annotations
+
+from symgen.records import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Ranks:
+    """At a configuration: of B, of its geometric rows, and how many admissible directions the inputs span (26)."""
+
+    constraints: int
+    geometric: int
+    actuation: int
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A configuration on the geometric constraints and the ranks there."""
+
+    q: tuple[float, ...]
+    ranks: Ranks
+
+
+@dataclass(frozen=True, slots=True)
+class Assembly:
+    """What kernels are made for, and what else was found.
+
+    `ranks` are those of the branch that is meant; `places` have them, where the start leads first, the most regular one
+    first where that is singular.  `others` has one configuration for each other
+    combination of ranks that whole branches have.  `bound` is what no configuration exceeds: the ranks of B and of
+    [B; M^T] off the constraints, where q is free.  `start` is where the declared start leads, with its ranks, where it
+    is singular.
+    """
+
+    ranks: Ranks
+    places: tuple[Place, ...]
+    others: tuple[Place, ...] = ()
+    bound: tuple[int, int] = (0, 0)
+    start: Place | None = None
+
+    @property
+    def rank_is_identical(self) -> bool:
+        """Whether the rank of B is no greater anywhere, not only on the branches that were found."""
+        return self.bound[0] == self.ranks.constraints
+
+    @property
+    def actuation_is_identical(self) -> bool:
+        """Whether the inputs span no more directions anywhere."""
+        return self.rank_is_identical and self.bound[1] == self.ranks.constraints + self.ranks.actuation

@@ -1,0 +1,96 @@
+"""Mechanisms with several branches of configurations: u on the branch that moves, a status on those that do not."""
+
+from __future__ import annotations
+
+import math
+import resource
+from collections.abc import Sequence
+
+import pytest
+from linkages import cranks_on_one_coupler, row_of_four_bars
+
+from symgen.dynamics.genericity import genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.select import derive_quantities
+from symgen.ir.interpret import interpret
+from symgen.ir.kernel import Status
+from symgen.ir.schedule import schedule
+from symgen.model.load import load_text
+from symgen.model.model import Model
+
+
+def inverse(model: Model, q: Sequence[float]) -> tuple[Status, tuple[float, ...]]:
+    """The status and u at rest."""
+    derived = derive_quantities(model, ["inverse_dynamics"])
+    program = schedule(derived.mechanics, derived.quantities, ("float64",))["float64"]
+    numbers = [float(p.value.value) for p in model.parameters]  # type: ignore[union-attr]
+    zeros = [0.0] * model.n
+    status, u = interpret(program.kernels[0], program.sincos, {"q": q, "qd": zeros, "qdd": zeros}, numbers)
+    return status, tuple(u)
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+@pytest.mark.parametrize("scales", [("1", "1"), ("1e-6", "1e4")])
+def test_equal_bars_hold_their_weight_on_the_branch_that_moves(count: int, scales: tuple[str, str]) -> None:
+    model = load_text(row_of_four_bars(count, scales=scales), "row.yaml")
+    angle = 0.8
+    main = [angle] * (count + 1) + [0.0] * count
+    status, u = inverse(model, main)
+    # every crank counts half a bar, every coupler a whole one
+    weight = 0.9 * 9.81 * 0.4 * math.cos(angle) * ((count + 1) / 2 + count)
+    assert status == Status.OK
+    assert u == pytest.approx([weight], rel=1e-12)
+    # the driven crank lies on the ground, the others turn
+    held = [0.0] + [angle] * count + [angle] + [0.0] * (count - 1)
+    assert inverse(model, held)[0] == Status.ACTUATION_RANK
+    # all bars in line: where the branches meet
+    assert inverse(model, [0.0] * model.n)[0] != Status.OK
+
+
+def test_a_singular_start_and_a_branch_of_other_ranks_are_told() -> None:
+    said = [notice.message for notice in load_text(row_of_four_bars(1), "row.yaml").notices]
+    assert any("middles of the ranges are singular (a0 = 0, a1 = 0, b1 = 0)" in text for text in said)
+    assert any("another branch" in text and "the inputs span 0 of 1 directions, here 1" in text for text in said)
+    declared = load_text(row_of_four_bars(1, tail="configuration: {a0: 0, a1: 0, b1: 0}"), "row.yaml")
+    assert any("the start is a singular configuration" in notice.message for notice in declared.notices)
+    regular = load_text(row_of_four_bars(1, tail="configuration: {a0: 1, a1: 1, b1: 0}"), "row.yaml")
+    assert not any("singular" in notice.message for notice in regular.notices)
+
+
+@pytest.mark.parametrize("count", [3, 4, 5])
+@pytest.mark.parametrize("tail", ["", "configuration: {a0: 0.6, a1: 0.6, a2: 0.6, b: 0}"])
+def test_more_cranks_than_needed_move(count: int, tail: str) -> None:
+    model = load_text(cranks_on_one_coupler(count, tail), "cranks.yaml")
+    generic = genericity(Mechanics(model))
+    assert (generic.rank, generic.geometric_rank, generic.delta, generic.alpha) == (count, count, 1, 1)
+    status, u = inverse(model, [0.6] * count + [0.0])
+    assert status == Status.OK
+    assert u == pytest.approx([2 * 9.81 * 0.5 * math.cos(0.6)], rel=1e-12)
+
+
+def test_an_input_that_moves_nothing_on_the_declared_branch_gives_a_status_there() -> None:
+    """A torque on the coupler of a parallelogram does no work; on the crossed branch it does."""
+    text = row_of_four_bars(1, ground="0.7", tail="configuration: {a0: 0.8, a1: 0.8, b1: 0}")
+    model = load_text(text.replace("acts_on: {a0: 1}", "acts_on: {b1: 1}"), "coupler.yaml")
+    assert any("the inputs span 0 of 1 directions, here 1" in notice.message for notice in model.notices)
+    assert inverse(model, [0.8, 0.8, 0.0])[0] == Status.ACTUATION_RANK
+
+
+def test_too_few_inputs_are_still_served() -> None:
+    """Two rows of bars side by side, one of them driven: u is what the inputs can do."""
+    one = row_of_four_bars(1, ground="0.7")
+    text = one.replace("  b1: {unit: rad}", "  b1: {unit: rad}\n  s: {unit: rad}")
+    text = text.replace("kinetic_energy: ", "kinetic_energy: m*l**2/6*s_dot**2 + ")
+    model = load_text(text, "side_by_side.yaml")
+    generic = genericity(Mechanics(model))
+    assert (generic.delta, generic.alpha) == (2, 1)
+    assert inverse(model, [0.8, 0.8, 0.0, 0.3])[0] == Status.OK
+
+
+def test_a_long_row_takes_no_dense_sums() -> None:
+    before = resource.getrusage(resource.RUSAGE_SELF)
+    model = load_text(row_of_four_bars(25), "long.yaml")
+    generic = genericity(Mechanics(model))
+    after = resource.getrusage(resource.RUSAGE_SELF)
+    assert (generic.rank, generic.delta, generic.alpha) == (50, 1, 1)
+    assert after.ru_utime - before.ru_utime < 10
