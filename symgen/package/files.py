@@ -93,6 +93,6 @@ def _platformio(view: PackageView) -> str:
         "frameworks": "*",
         "platforms": "*",
         "headers": list(view.headers),
-        "build": {"srcDir": "src", "includeDir": "src", "flags": list(view.flags)},
+        "build": {"srcDir": "src", "includeDir": "src", "flags": [*view.flags, "-lm"]},
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"

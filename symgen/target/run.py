@@ -34,6 +34,8 @@ from symgen.target.driver import (
 from symgen.target.emulator import addresses, build_counter, count_calls, run_image, stage
 from symgen.target.entries import Entries, plain_entries, with_companions
 from symgen.target.footprint import Footprint, deepest_frame, footprints
+from symgen.target.package_build import CMAKE, WITHOUT_CMAKE, has_cmake, package_of
+from symgen.target.package_run import run_package
 from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
 from symgen.target.selection import (
     ALL,
@@ -215,21 +217,37 @@ def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: 
         bench = _Bench(model, Path(name), vectors, progress)
         builds = [build for build in _builds(cores) if selected(build.selection, bench.programs)]
         progress("compiling and running")
+        package = package_of(model, bench.programs) if has_cmake() else None
+        packaged = () if package is None else tuple(cores)
         done = 0
 
-        def one(build: _Build) -> tuple[list[Cell], list[KernelCost], list[str]]:
+        def told() -> None:
             nonlocal done
-            found = _measured(bench, build)
             done += 1
-            progress(f"compiling and running, {done} of {len(builds)} builds")
+            progress(f"compiling and running, {done} of {len(builds) + len(packaged)} builds")
+
+        def one(build: _Build) -> tuple[list[Cell], list[KernelCost], list[str]]:
+            found = _measured(bench, build)
+            told()
+            return found
+
+        def other(core: Core) -> tuple[list[Cell], list[str]]:
+            assert package is not None
+            found = run_package(
+                package, core, bench.folder / f"{core.name}-package", bench.states, len(vectors.regular),
+                bench.expected[PORTABLE], bench.units,
+            )
+            told()
             return found
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:
+            packages = pool.map(other, packaged)
             made = list(pool.map(one, builds))
+            made += [(cells, [], wrong) for cells, wrong in packages]
     failures = [failure for _, _, wrong in made for failure in wrong]
     if len(vectors.regular) < FEWEST:
         failures.append(f"only {len(vectors.regular)} of {FEWEST} regular states were found")
-    costs = {build: cost for build, (_, cost, _) in zip(builds, made, strict=True) if cost}
+    costs = {build: cost for build, (_, cost, _) in zip(builds, made, strict=False) if cost}
     reports = tuple(
         CoreReport(core.name, core.note, tuple(c for build, cost in costs.items() if build.core is core for c in cost))
         for core in cores
@@ -342,6 +360,8 @@ def _notes(bench: _Bench, cores: Sequence[Core]) -> tuple[str, ...]:
         found.append(
             f"not built by gcc in float64 for {', '.join(without)}, for their size: {', '.join(bench.beyond)}"
         )
+    if not has_cmake():
+        found.append(WITHOUT_CMAKE)
     if "clang" not in compilers():
         found.append("clang is not installed: builds with clang are left out")
     return tuple(found)
@@ -362,4 +382,5 @@ def _versions(cores: Sequence[Core]) -> dict[str, str]:
     named: list[str] = list(tools)
     for core in cores:
         named += [PREFIX[core.family] + "gcc", EMULATOR[core.family]]
+    named += [CMAKE] if has_cmake() else []
     return {tool: version(tool) for tool in dict.fromkeys(named)}

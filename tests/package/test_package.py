@@ -94,7 +94,7 @@ def test_manifests_hold_what_their_systems_ask_for(package: Path) -> None:
     assert all((package / "src" / header).is_file() for header in library["headers"])
     lines = (package / "library.properties").read_text().splitlines()
     given = dict(line.split("=", 1) for line in lines)
-    wanted = "name version author maintainer sentence paragraph category url architectures includes"
+    wanted = "name version author maintainer sentence paragraph category url architectures ldflags includes"
     assert list(given) == wanted.split()
     component = yaml.safe_load((package / "idf_component.yml").read_text())
     assert component["version"] == library["version"]
