@@ -134,6 +134,7 @@ def _generate(arguments: list[str]) -> int:
         forms=chosen_forms(given.forms),
         trig=given.trig,
         measured=given.out,
+        as_recorded=given.check,
     )
     finish = _check_files if given.check else _write_files
     recover_folders(given.out)
@@ -232,11 +233,20 @@ def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: C
         if result.failures:
             print(f"{path}: verification failed, nothing is written", file=sys.stderr)
             print(*(f"  {failure}" for failure in result.failures), sep="\n", file=sys.stderr)
+            _tell_left_out(path, result)
             return MODEL_WRONG
-        return finish(result)
+        code = finish(result)
+        _tell_left_out(path, result)
+        return MODEL_WRONG if result.left_out else code
 
     check_present(models)
     return max([guarded(partial(one, path)) for path in models])
+
+
+def _tell_left_out(path: Path, result: Result) -> None:
+    for one in result.left_out:
+        print(f"{path}: {one.quantity} is left out, verification rejects every way of it", file=sys.stderr)
+        print(*(f"  {way}: {why}" for way, why in one.tried), f"  remedy: {one.remedy}", sep="\n", file=sys.stderr)
 
 
 def _write_files(result: Result, out: Path, quiet: bool) -> int:

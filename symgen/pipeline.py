@@ -12,35 +12,37 @@ from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
+from symgen.draft import Draft
 from symgen.dynamics.catalogue import BY_NAME
 from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.inverse import FormChoice
 from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities, short_of_inputs
-from symgen.dynamics.structure import Structure, analyse
+from symgen.dynamics.structure import analyse
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.operations import count_operations
-from symgen.ir.kernel import Program, Scalar
+from symgen.ir.kernel import Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean
-from symgen.records import dataclass
 from symgen.results import FORMS, LargestError, Options, Result, Summary, WrongUseError
 
 if TYPE_CHECKING:
     from symgen.background import Background, Receive
+    from symgen.fallback import Fallback
     from symgen.report.facts import Facts, ReportFiles
     from symgen.report.proof import ProofFacts
     from symgen.report.targets import TargetCore
     from symgen.verify.certificate import Certificate
+    from symgen.verify.expected import Expected
 
 # Measured on a chain of 16 links: 6336 operations in 45.6 kB with the single precision of a Cortex-M4, gcc -O2.
 BYTES_AN_OPERATION = 7
@@ -49,47 +51,58 @@ LARGEST_CODE = 64_000
 Progress = Callable[[str], None]
 
 
-@dataclass(frozen=True, slots=True)
-class _Derived:
-    """A model on its way: derived, scheduled, nothing printed yet."""
-
-    model: Model
-    derivations: Derivations
-    structure: Structure
-    programs: dict[Scalar, Program]
-
-    @property
-    def program(self) -> Program:
-        """The float64 program, which Python, the counts and the report are made from."""
-        return self.programs["float64"]
-
-
 def generate(path: Path, options: Options, progress: Progress) -> Result:
     """All files of one model, verified unless told otherwise.
 
     Closed forms and report are worked out in a process of their own, while this one derives, prints and verifies.
-    Raises ModelError for mistakes in the file and WrongUseError for outputs that do not exist; verification failures
-    come back in the result.
+    What verification rejects takes the next valid way, or is left out where none passes.  Raises ModelError for
+    mistakes in the file and WrongUseError for outputs that do not exist; verification failures come back in the result.
     """
     progress("reading the model")
     model = load_model(path)
     outputs = _outputs(model, options)
-    wanted = "report" in options.parts
-    with _reporting(model, options.verify) if wanted else nullcontext() as reporting:
-        progress("deriving")
-        derived = _derive(model, outputs, options)
-        if reporting is not None:
-            reporting.send(_facts(derived))
-        files = _code(derived, options)
-        certificate = _verified(derived, files, options.states, progress) if options.verify else None
-        result = _result(derived, options, files, certificate)
-        if reporting is None or result.failures:
-            return result
-        progress("closed forms and report")
-        reporting.send(certificate)
-        reporting.send(_targets(derived.model, files, options))
-        reporting.send(_proof(derived.model, files, options))
-        report = reporting.answer()
+    draft: Draft | None = None
+    expected: Expected | None = None
+    fallback: Fallback | None = None
+    while True:
+        with _reporting(model, options.verify) if "report" in options.parts else nullcontext() as reporting:
+            if draft is None:
+                progress("deriving")
+                draft = _derive(model, outputs, options)
+            if reporting is not None:
+                reporting.send(_facts(draft))
+            files = _code(draft, options)
+            certificate, expected = _verified(draft, files, options, progress, expected)
+            if certificate is None or expected is None or not certificate.rejected:
+                return _finished(path, draft, options, files, certificate, reporting, progress)
+        # without what was rejected, again: with other ways, or in the end without these quantities
+        if fallback is None:
+            from symgen.fallback import Fallback
+
+            fallback = Fallback(options, progress)
+        draft = fallback.settle(draft, certificate.rejected, expected)
+        if not draft.program.kernels:
+            return _result(draft, options, {}, replace(certificate, left_out=draft.left_out))
+
+
+def _finished(
+    path: Path,
+    draft: Draft,
+    options: Options,
+    files: dict[str, str | bytes],
+    certificate: Certificate | None,
+    reporting: Background[ReportFiles] | None,
+    progress: Progress,
+) -> Result:
+    """The result of a draft that nothing replaces any more, with the report where one is made."""
+    result = _result(draft, options, files, certificate)
+    if reporting is None or result.failures:
+        return result
+    progress("closed forms and report")
+    reporting.send(certificate)
+    reporting.send(_targets(draft.model, files, options))
+    reporting.send(_proof(draft.model, files, options))
+    report = reporting.answer()
     if report.mistakes:
         raise ModelError(str(path), path.read_text(encoding="utf-8"), report.mistakes)
     return replace(result, files={**result.files, **report.files}, notices=(*result.notices, *report.notices))
@@ -111,21 +124,21 @@ def explain(path: Path, quantity: str | None, progress: Progress, forms: Mapping
     if quantity is not None:
         model = replace(model, outputs=(*model.outputs, quantity))
     progress("deriving")
-    derived = _derive(model, ("all",), Options(scalars=("float64",), forms=forms or {}))
+    draft = _derive(model, ("all",), Options(scalars=("float64",), forms=forms or {}))
     progress("closed forms")
     try:
-        report = gather(model, _facts(derived))
+        report = gather(model, _facts(draft))
     except TooLargeError as large:
         return f"closed forms are left out: {large}"
     text = overview(report) if quantity is None else quantity_text(report, quantity)
     told = dict.fromkeys(("inverse_dynamics", *(forms or ())) if quantity is None else (quantity,))
-    compared = ((name, _compared(derived, name)) for name in told)
+    compared = ((name, _compared(draft, name)) for name in told)
     return "\n".join([text, *(forms_text(name, choice) for name, choice in compared if choice is not None)])
 
 
-def _compared(derived: _Derived, quantity: str) -> FormChoice | None:
+def _compared(draft: Draft, quantity: str) -> FormChoice | None:
     """What is known of the forms of a quantity; of the one asked for alone, where one was asked for."""
-    derivations = derived.derivations
+    derivations = draft.derivations
     if quantity == "inverse_dynamics":
         return derivations.form
     from symgen.dynamics.by_name import forms_compared
@@ -134,7 +147,7 @@ def _compared(derived: _Derived, quantity: str) -> FormChoice | None:
     named = dict(derivations.named)
     if quantity in named or quantity not in FORMS or quantity not in taken:
         return named.get(quantity)
-    return forms_compared(derived.model, derivations.generic, quantity, taken[quantity])
+    return forms_compared(draft.model, derivations.generic, quantity, taken[quantity])
 
 
 def _outputs(model: Model, options: Options) -> tuple[str, ...]:
@@ -149,7 +162,7 @@ def _unknown_quantity(name: str) -> WrongUseError:
     return WrongUseError(f"unknown quantity {name!r}; {remedy}")
 
 
-def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> _Derived:
+def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:
     try:
         derivations = derive_quantities(model, outputs, options.forms)
     except NoSuchFormError as reason:
@@ -159,57 +172,85 @@ def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> _Derive
     programs = schedule(derivations.mechanics, derivations.quantities, scalars)
     if options.trig == "libm":
         programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
-    return _Derived(model, derivations, structure, programs)
+    draft = Draft(model, derivations, structure, programs, options.trig)
+    recorded = _recorded(model, options)
+    if recorded is None or not recorded.get("rejected"):
+        return draft
+    from symgen.fallback import as_recorded
+
+    return as_recorded(draft, recorded)
 
 
-def _code(derived: _Derived, options: Options) -> dict[str, str | bytes]:
+def _recorded(model: Model, options: Options) -> Any:
+    """derivation.json of an earlier run, where files are compared with those on disk."""
+    if not options.as_recorded or options.measured is None:
+        return None
+    try:
+        return json.loads((options.measured / model.name / "derivation.json").read_bytes())
+    except (OSError, ValueError):
+        return None
+
+
+def _code(draft: Draft, options: Options) -> dict[str, str | bytes]:
     files: dict[str, str | bytes] = {}
     sources: dict[str, str] = {}
-    programs = [derived.programs[scalar] for scalar in options.scalars]
+    programs = [draft.programs[scalar] for scalar in options.scalars]
     if {"c", "package"} & {*options.parts}:
         for program in programs:
             for emit in (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc):
-                sources |= emit(derived.model, program)
+                sources |= emit(draft.model, program)
     if "c" in options.parts:
         files |= sources
     if "package" in options.parts:
         from symgen.package.files import emit_package
 
-        files |= emit_package(derived.model, programs, sources)
+        files |= emit_package(draft.model, programs, sources)
     if "proof" in options.parts:
         from symgen.proof.files import emit_proofs
 
-        files |= emit_proofs(derived.model, programs)
+        files |= emit_proofs(draft.model, programs)
     if "python" in options.parts:
         from symgen.emit.python import emit_python
 
-        files |= emit_python(derived.model, derived.program)
-    files["derivation.json"] = derivation_json(derived.model, derived.derivations, derived.structure, derived.program)
+        files |= emit_python(draft.model, draft.program)
+    files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.program)
     return files
 
 
-def _verified(derived: _Derived, files: dict[str, str | bytes], states: int, progress: Progress) -> Certificate | None:
-    """What is wrong with the files just made; None when there is no code among them."""
-    from symgen.verify.run import generated_sources, verify
+def _verified(
+    draft: Draft,
+    files: dict[str, str | bytes],
+    options: Options,
+    progress: Progress,
+    expected: Expected | None,
+) -> tuple[Certificate | None, Expected | None]:
+    """What is wrong with the files just made, and what is expected at the states; None without code or verification."""
+    if not options.verify:
+        return None, None
+    from symgen.verify.run import generated_sources, verify_expecting
 
-    c_sources, python_source = generated_sources(derived.model, files)
+    c_sources, python_source = generated_sources(draft.model, files)
     if not c_sources and python_source is None:
-        return None
-    return verify(derived.model, derived.program.kernels, c_sources, python_source, states, progress)
+        return None, None
+    kernels = draft.program.kernels
+    found = verify_expecting(draft.model, kernels, c_sources, python_source, options.states, progress, expected)
+    return replace(found[0], left_out=draft.left_out), found[1]
 
 
-def _facts(derived: _Derived) -> Facts:
+def _facts(draft: Draft) -> Facts:
     from symgen.report.facts import Facts
 
-    operations = {kernel.name: count_operations(kernel.statements) for kernel in derived.program.kernels}
-    decisions = tuple((decision.what, decision.why) for decision in derived.structure.decisions)
-    return Facts(operations, (*decisions, *derived.derivations.absent, *_failing_forms(derived)))
+    operations = {kernel.name: count_operations(kernel.statements) for kernel in draft.program.kernels}
+    decisions = tuple((decision.what, decision.why) for decision in draft.structure.decisions)
+    derivations = draft.derivations
+    rejected = ((f"form {r.way} of {r.quantity}", f"verification rejects it: {r.why}") for r in derivations.rejected)
+    return Facts(operations, (*decisions, *derivations.absent, *rejected, *_failing_forms(draft)))
 
 
-def _failing_forms(derived: _Derived) -> tuple[tuple[str, str], ...]:
+def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
     """Where what is generated is not valid if a form was asked for, and which forms are left to be asked for and where
     they fail."""
-    derivations = derived.derivations
+    derivations = draft.derivations
     form, inverse = derivations.form, derivations.inverse
     told = list(_forms(derivations, ()))
     if form is not None and inverse is not None and form.verdict.admitted:
@@ -269,32 +310,33 @@ def _report(model: Model, receive: Receive, measured: bool) -> ReportFiles:
 
 
 def _result(
-    derived: _Derived, options: Options, files: dict[str, str | bytes], certificate: Certificate | None
+    draft: Draft, options: Options, files: dict[str, str | bytes], certificate: Certificate | None
 ) -> Result:
     if certificate is not None:
         files = {**files, "certificate.json": json.dumps(certificate.to_json(), indent=2, ensure_ascii=False) + "\n"}
     return Result(
-        model=derived.model,
+        model=draft.model,
         files=files,
-        summary=_summary(derived, certificate),
-        notices=(*derived.model.notices, *_notices(derived, options, certificate)),
+        summary=_summary(draft, certificate),
+        notices=(*draft.model.notices, *_notices(draft, options, certificate)),
         certificate=None if certificate is None else certificate.to_json(),
         failures=() if certificate is None else certificate.failures,
+        left_out=draft.left_out,
     )
 
 
-def _summary(derived: _Derived, certificate: Certificate | None) -> Summary:
-    generic, form = derived.derivations.generic, derived.derivations.form
+def _summary(draft: Draft, certificate: Certificate | None) -> Summary:
+    generic, form = draft.derivations.generic, draft.derivations.form
     summary = Summary(
         n=generic.n,
         r=generic.r,
         delta=generic.delta,
         m=generic.m,
         skipped=(
-            *((decision.what, decision.why) for decision in derived.structure.decisions),
-            *_forms(derived.derivations, () if form is None else form.failed),
+            *((decision.what, decision.why) for decision in draft.structure.decisions),
+            *_forms(draft.derivations, () if form is None else form.failed),
         ),
-        operations=tuple((k.name, count_operations(k.statements).total) for k in derived.program.kernels),
+        operations=tuple((k.name, count_operations(k.statements).total) for k in draft.program.kernels),
     )
     if certificate is None:
         return summary
@@ -305,9 +347,9 @@ def _summary(derived: _Derived, certificate: Certificate | None) -> Summary:
     return replace(summary, errors=errors)
 
 
-def _size(derived: _Derived, options: Options) -> tuple[Notice, ...]:
+def _size(draft: Draft, options: Options) -> tuple[Notice, ...]:
     """How much machine code the C takes, where small targets do not hold it; code is written out, never looped."""
-    counts = {kernel.name: count_operations(kernel.statements).total for kernel in derived.program.kernels}
+    counts = {kernel.name: count_operations(kernel.statements).total for kernel in draft.program.kernels}
     size = BYTES_AN_OPERATION * sum(counts.values())
     if size <= LARGEST_CODE or "c" not in options.parts:
         return ()
@@ -320,18 +362,30 @@ def _size(derived: _Derived, options: Options) -> tuple[Notice, ...]:
     )
 
 
-def _notices(derived: _Derived, options: Options, certificate: Certificate | None) -> tuple[Notice, ...]:
+def _notices(draft: Draft, options: Options, certificate: Certificate | None) -> tuple[Notice, ...]:
     """Quantities asked for by name that this model does not have, and what could not be verified."""
-    asked = options.outputs or derived.model.outputs
-    absent = [Notice(f"{n} is not generated: {why}") for n, why in derived.derivations.absent if n in asked]
-    kernels = {kernel.name for kernel in derived.program.kernels}
+    asked = options.outputs or draft.model.outputs
+    left_out = {one.quantity for one in draft.left_out}
+    told = [(n, why) for n, why in draft.derivations.absent if n in asked and n not in left_out]
+    absent = [Notice(f"{n} is not generated: {why}") for n, why in told]
+    kernels = {kernel.name for kernel in draft.program.kernels}
     idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
     unverified = () if certificate is None else certificate.notes
-    return (*absent, *_short(derived), *_size(derived, options), *idle, *map(Notice, unverified))
+    return (*absent, *_replaced(draft), *_short(draft), *_size(draft, options), *idle, *map(Notice, unverified))
 
 
-def _short(derived: _Derived) -> tuple[Notice, ...]:
+def _replaced(draft: Draft) -> tuple[Notice, ...]:
+    """The quantities that take another way than the cheapest, because verification rejected that."""
+    found = []
+    for choice in draft.derivations.choices:
+        tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
+        if tried:
+            found.append(Notice(f"{choice.quantity} takes {choice.way}: verification rejects {', '.join(tried)}"))
+    return tuple(found)
+
+
+def _short(draft: Draft) -> tuple[Notice, ...]:
     """That u cannot produce every motion."""
-    generic = derived.derivations.generic
-    asked = any(kernel.name == "inverse_dynamics" for kernel in derived.program.kernels)
+    generic = draft.derivations.generic
+    asked = any(kernel.name == "inverse_dynamics" for kernel in draft.program.kernels)
     return (Notice(f"inverse_dynamics: {short_of_inputs(generic)}"),) if asked and not generic.full_actuation else ()

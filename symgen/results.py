@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from symgen.diagnostics import Notice
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.records import dataclass
+
+if TYPE_CHECKING:
+    from symgen.verify.certificate import LeftOut
 
 Part: TypeAlias = Literal["c", "python", "report", "package", "proof"]
 PARTS: tuple[Part, ...] = ("c", "python", "report", "package", "proof")
@@ -38,6 +41,7 @@ class Options:
 
     `measured` is where an earlier run may have left measurements (`<model>/target.json`), for the PDF.
     `trig` says whose sine and cosine the code calls: its own, with the same bits everywhere, or the library's.
+    `as_recorded` takes over what the earlier run's verification rejected, so that its files can be compared with.
     """
 
     outputs: tuple[str, ...] | None = None
@@ -47,6 +51,7 @@ class Options:
     trig: Trig = "portable"
     states: int = DEFAULT_STATES
     measured: Path | None = None
+    as_recorded: bool = False
     forms: Mapping[str, str] = field(default_factory=dict)  # by quantity, of FORMS; without one the cheapest valid
 
 
@@ -80,7 +85,8 @@ class Summary:
 class Result:
     """All files of one model in memory (paths relative to its folder), and what to tell the user.
 
-    `failures` are verification failures: with any, nothing is written and the exit code is 1.
+    `failures` are verification failures: with any, nothing is written and the exit code is 1.  `left_out` are
+    quantities that verification rejects in every way: the rest is written, the exit code is 1.
     """
 
     model: Model
@@ -89,3 +95,4 @@ class Result:
     notices: tuple[Notice, ...] = ()
     certificate: Mapping[str, Any] | None = None
     failures: tuple[str, ...] = field(default=())
+    left_out: tuple[LeftOut, ...] = ()

@@ -53,6 +53,15 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
+class Rejection:
+    """A way that verification rejected, and why; for a quantity without a kernel there is no other."""
+
+    quantity: str
+    way: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class Derivations:
     """The derived quantities of a model and how they were chosen."""
 
@@ -64,6 +73,7 @@ class Derivations:
     form: FormChoice | None = None  # of the inverse dynamics, where they are among the quantities
     named: tuple[tuple[str, FormChoice], ...] = ()  # of other quantities, where a form was asked for by name
     inverse: InverseDynamics | None = None  # the forms of u that were looked at
+    rejected: tuple[Rejection, ...] = ()  # by verification
 
 
 class NoSuchFormError(Exception):
@@ -205,10 +215,15 @@ def derive_quantities(
         quantities.append(candidates[best])
         form = BY_FRAMES if best == ARTICULATED else _form_along(along.get(best), name)
         choices.append(Choice(name, best, tuple(costs.items()), form))
-    grouped = tuple(_with_groups(mechanics, _remarked(derived, generic)) for derived in quantities)
+    grouped = tuple(finished(mechanics, generic, derived) for derived in quantities)
     if forms.get("inverse_dynamics", "auto") == "auto":
         grouped = tuple(_with_alike_bodies(model, derived) for derived in grouped)
     return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named), inverse)
+
+
+def finished(mechanics: Mechanics, generic: Genericity, derived: Derived) -> Derived:
+    """A quantity on the graph of `mechanics` as it is scheduled: numbers grouped, told what its reader must know."""
+    return _with_groups(mechanics, _remarked(derived, generic))
 
 
 def _with_alike_bodies(model: Model, derived: Derived) -> Derived:

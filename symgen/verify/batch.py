@@ -11,6 +11,7 @@ from symgen.emit.locals import array_arguments
 from symgen.emit.quantities import BATCHED
 from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
+from symgen.verify.certificate import Fault
 from symgen.verify.compile import C_TYPES, CFunction, Outcome, c_array
 from symgen.verify.reference import State
 from symgen.verify.states import Sample
@@ -59,14 +60,14 @@ def run_batch(
     scalar: Scalar,
     samples: Sequence[Sample],
     alone: Mapping[str, Sequence[Outcome]],
-) -> tuple[dict[str, list[Outcome]], list[str]]:
-    """Outcomes of every batch kernel at every state, and sentences where they are not those of one state `alone`.
+) -> tuple[dict[str, list[Outcome]], list[Fault]]:
+    """Outcomes of every batch kernel at every state, and faults where they are not those of one state `alone`.
 
     A batch has one set of parameters, so it is run for the parameters of each state.
     """
     states = [sample.state for sample in samples]
     outcomes: dict[str, list[Outcome]] = {}
-    failures = []
+    faults = []
     for kernel in kernels:
         if kernel.name not in BATCHED:
             continue
@@ -74,14 +75,14 @@ def run_batch(
         single = CFunction(library, model, kernel, scalar)
         rows = [batch(c_array(scalar, state.parameters)) for state in states]
         outcomes[kernel.name] = [row[k] for k, row in enumerate(rows)]
-        where = f"C {scalar} batch, {kernel.name}"
+        place = kernel.name, f"C {scalar} batch"
         for k, (one, many) in enumerate(zip(alone[kernel.name], outcomes[kernel.name], strict=True)):
             if one.valid and one != many:
-                failures.append(f"{where}: state {k} alone and in a batch differ")
+                faults.append(Fault(f"state {k} alone and in a batch differ", *place))
                 break
         parameters = c_array(scalar, states[0].parameters)
         for value, many in zip(HARD, rows[0][len(states) :], strict=True):
             arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in array_arguments(kernel)}
             if single(arrays, parameters).status != many.status:
-                failures.append(f"{where}: other status than alone where every input is {value}")
-    return outcomes, failures
+                faults.append(Fault(f"other status than alone where every input is {value}", *place))
+    return outcomes, faults

@@ -26,12 +26,16 @@ class ErrorRecord:
 
 @dataclass(frozen=True, slots=True)
 class InvariantRecord:
-    """A law checked on generated results; `largest` is the defect over what the tolerances allow (at most 1)."""
+    """A law checked on generated results; `largest` is the defect over what the tolerances allow (at most 1).
+
+    `quantity` is the one that the law judges.
+    """
 
     name: str
     target: str
     states: int
     largest: float
+    quantity: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,10 +48,35 @@ class ConditionRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing that is wrong: what, with which quantity on which target; both are empty where all of it is."""
+
+    what: str
+    quantity: str = ""
+    target: str = ""
+
+    @property
+    def text(self) -> str:
+        """The fault as a sentence."""
+        place = ", ".join(part for part in (self.target, self.quantity) if part)
+        return f"{place}: {self.what}" if place else self.what
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A quantity that is not written, because verification rejects every way of it: each with the reason; a remedy."""
+
+    quantity: str
+    tried: tuple[tuple[str, str], ...]
+    remedy: str
+
+
+@dataclass(frozen=True, slots=True)
 class Certificate:
     """The result of verifying one model's files.
 
-    `failures` name what is wrong (empty: verified); `notes` what could not be verified and why.
+    `faults` name what is wrong (empty: verified); `notes` what could not be verified and why; `left_out` what was
+    asked for and is not among the files.
     """
 
     model: str
@@ -58,13 +87,26 @@ class Certificate:
     conditions: tuple[ConditionRecord, ...]
     versions: tuple[tuple[str, str], ...]
     hashes: tuple[tuple[str, str], ...]
-    failures: tuple[str, ...]
+    faults: tuple[Fault, ...]
     notes: tuple[str, ...]
+    left_out: tuple[LeftOut, ...] = ()
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """The faults as sentences."""
+        return tuple(fault.text for fault in self.faults)
 
     @property
     def passed(self) -> bool:
-        """Whether everything that was checked holds."""
-        return not self.failures
+        """Whether everything that was asked for is there and everything that was checked holds."""
+        return not self.faults and not self.left_out
+
+    @property
+    def rejected(self) -> dict[str, Fault]:
+        """The first fault of each quantity that has one; empty where something is wrong with all of it."""
+        if not all(fault.quantity for fault in self.faults):
+            return {}
+        return {fault.quantity: fault for fault in reversed(self.faults)}
 
     @property
     def targets(self) -> tuple[str, ...]:
@@ -81,6 +123,10 @@ class Certificate:
             "model": self.model,
             "passed": self.passed,
             "failures": list(self.failures),
+            "left_out": [
+                {"quantity": one.quantity, "tried": [{"way": w, "why": y} for w, y in one.tried], "remedy": one.remedy}
+                for one in self.left_out
+            ],
             "notes": list(self.notes),
             "tolerance": _tolerance(),
             "states": self.states,

@@ -7,7 +7,7 @@ from statistics import median
 from typing import TypeAlias
 
 from symgen.ir.kernel import Status
-from symgen.verify.certificate import ErrorRecord, InvariantRecord
+from symgen.verify.certificate import ErrorRecord, Fault, InvariantRecord
 from symgen.verify.compile import Outcome
 from symgen.verify.invariants import defects
 from symgen.verify.reference import Reference
@@ -43,22 +43,25 @@ def compare(quantity: str, target: str, expected: Sequence[Expectation], outcome
     )
 
 
-def failures_of(record: ErrorRecord, outcomes: Sequence[Outcome], samples: Sequence[Sample]) -> Iterator[str]:
-    """Sentences that say what is wrong with one quantity of one target, if anything."""
-    where = f"{record.target}, {record.quantity}"
+def faults_of(record: ErrorRecord, outcomes: Sequence[Outcome], samples: Sequence[Sample]) -> Iterator[Fault]:
+    """What is wrong with one quantity of one target, if anything."""
     if record.refused:
         index = next(i for i, outcome in enumerate(outcomes) if not outcome.valid)
         first, second = samples[index].measures
         status = outcomes[index].status
         what = "a result that is not finite" if status == Status.OK else f"status {status}"
-        yield (
-            f"{where}: {what} at {record.refused} of {record.states} regular states, first at state {index} "
-            f"(singularity measures {first:.3g}, {second:.3g})"
+        yield Fault(
+            f"{what} at {record.refused} of {record.states} regular states, first at state {index} "
+            f"(singularity measures {first:.3g}, {second:.3g})",
+            record.quantity,
+            record.target,
         )
     elif not record.largest <= FACTOR:
-        yield (
-            f"{where}: error {record.largest:.3g} times d + eps |y*| at state {record.worst_state}, "
-            f"{FACTOR:g} is allowed (relative error {record.largest_relative:.3g})"
+        yield Fault(
+            f"error {record.largest:.3g} times d + eps |y*| at state {record.worst_state}, "
+            f"{FACTOR:g} is allowed (relative error {record.largest_relative:.3g})",
+            record.quantity,
+            record.target,
         )
 
 
@@ -70,9 +73,9 @@ def check_laws(
     results: Results,
 ) -> list[InvariantRecord]:
     """The laws the results of a target can be tested on, over all states where every result is valid."""
-    found: dict[str, list[float]] = {}
+    found: dict[tuple[str, str], list[float]] = {}
     for index, sample in enumerate(samples):
         entries = {name: outcomes[index].entries for name, outcomes in results.items() if outcomes[index].valid}
-        for name, share in defects(reference, sample, expected[index], entries):
-            found.setdefault(name, []).append(share)
-    return [InvariantRecord(name, target, len(shares), max(shares)) for name, shares in found.items()]
+        for name, quantity, share in defects(reference, sample, expected[index], entries):
+            found.setdefault((name, quantity), []).append(share)
+    return [InvariantRecord(name, target, len(shares), max(shares), of) for (name, of), shares in found.items()]

@@ -28,8 +28,8 @@ def defects(
     sample: Sample,
     expected: Mapping[str, Expectation],
     results: Mapping[str, tuple[float, ...]],
-) -> Iterator[tuple[str, float]]:
-    """Each law the results can be tested on at one state, with its defect over its bound."""
+) -> Iterator[tuple[str, str, float]]:
+    """Each law the results can be tested on at one state, the quantity it judges, and its defect over its bound."""
     with precision(BITS):
         exact = {name: expectation.value for name, expectation in expected.items()}
         given = {
@@ -38,25 +38,26 @@ def defects(
         room = {name: FACTOR * expectation.unit for name, expectation in expected.items()}
         evaluation = reference.evaluation(sample.state)
         for needed, (name, defect, bound) in _laws(evaluation, sample.admissible):
-            if needed <= given.keys():
+            if all(quantity in given for quantity in needed):
                 allowed = bound(exact, room) + 2 * norm(defect(exact))
                 found = norm(defect(given))
-                yield name, found / allowed if allowed else float(found > 0)
+                yield name, needed[0], found / allowed if allowed else float(found > 0)
 
 
-def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[set[str], Law]]:
+def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[tuple[str, ...], Law]]:
+    """The quantities a law is about, the one it judges first, and the law."""
     n, b = "nullspace_projector", "constraint_jacobian"
-    yield {n}, ("N N = N", lambda y: y[n] * y[n] - y[n], lambda _, e: 3 * e[n] + e[n] ** 2)
-    yield {n}, ("N' = N", lambda y: y[n].transpose() - y[n], lambda _, e: 2 * e[n])
+    yield (n,), ("N N = N", lambda y: y[n] * y[n] - y[n], lambda _, e: 3 * e[n] + e[n] ** 2)
+    yield (n,), ("N' = N", lambda y: y[n].transpose() - y[n], lambda _, e: 2 * e[n])
     yield (
-        {n, b},
+        (n, b),
         ("B N = 0", lambda y: y[b] * y[n], lambda y, e: norm(y[b]) * e[n] + (norm(y[n]) + e[n]) * e[b]),
     )
     yield from _penrose()
     c = "projected_coriolis_matrix"
     rate = cache(partial(_projected_mass_rate, evaluation))
     yield (
-        {c},
+        (c,),
         ("d/dt G~ - 2 C~ is skew", lambda y: rate() - y[c] - y[c].transpose(), lambda _, e: 2 * e[c]),
     )
     if admissible:
@@ -64,12 +65,12 @@ def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[set[str], 
         weight = evaluation.at.mass * evaluation.rate
         rest = _power_without_accelerations(evaluation)
         yield (
-            {q},
+            (q,),
             ("power balance", lambda y: weight.transpose() * y[q] + rest, lambda _, e: norm(weight) * e[q]),
         )
 
 
-def _penrose() -> Iterator[tuple[set[str], Law]]:
+def _penrose() -> Iterator[tuple[tuple[str, ...], Law]]:
     """The four conditions on A = M~ and X = M~+."""
     a, x = "projected_control_matrix", "projected_control_pseudoinverse"
 
@@ -82,10 +83,10 @@ def _penrose() -> Iterator[tuple[set[str], Law]]:
     def second(y: Values, e: Mapping[str, float]) -> float:
         return (norm(y[x]) + e[x]) * product_bound(y, e) + 2 * e[x]
 
-    yield {a, x}, ("A X A = A (A = M~, X = M~+)", lambda y: y[a] * y[x] * y[a] - y[a], first)
-    yield {a, x}, ("X A X = X", lambda y: y[x] * y[a] * y[x] - y[x], second)
-    yield {a, x}, ("(A X)' = A X", lambda y: _skew(y[a] * y[x]), product_bound)
-    yield {a, x}, ("(X A)' = X A", lambda y: _skew(y[x] * y[a]), product_bound)
+    yield (x, a), ("A X A = A (A = M~, X = M~+)", lambda y: y[a] * y[x] * y[a] - y[a], first)
+    yield (x, a), ("X A X = X", lambda y: y[x] * y[a] * y[x] - y[x], second)
+    yield (x, a), ("(A X)' = A X", lambda y: _skew(y[a] * y[x]), product_bound)
+    yield (x, a), ("(X A)' = X A", lambda y: _skew(y[x] * y[a]), product_bound)
 
 
 def _skew(matrix: Any) -> Any:

@@ -12,6 +12,7 @@ from symgen.emit.locals import array_arguments
 from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.batch import HARD
+from symgen.verify.certificate import Fault
 from symgen.verify.compile import C_TYPES, CFunction, Outcome, c_array
 from symgen.verify.states import Sample
 
@@ -46,18 +47,18 @@ def run_prepared(
     samples: Sequence[Sample],
     alone: Mapping[str, Sequence[Outcome]],
     header: str,
-) -> tuple[dict[str, list[Outcome]], list[str]]:
-    """Outcomes of the prepared kernels that the header names, and sentences where plain ones give something else."""
+) -> tuple[dict[str, list[Outcome]], list[Fault]]:
+    """Outcomes of the prepared kernels that the header names, and faults where plain ones give something else."""
     (size,) = (int(text) for text in re.findall(r"value\[(\d+)\];", header))
     named = re.findall(rf"\b{model}_(\w+)_prepared{SUFFIX[scalar]}\(", header)
     outcomes: dict[str, list[Outcome]] = {}
-    failures = []
+    faults = []
     for kernel in kernels:
         if kernel.name not in named:
             continue
         prepared = PreparedFunction(library, model, kernel, scalar, size)
         plain = CFunction(library, model, kernel, scalar)
-        where = f"C {scalar} prepared, {kernel.name}"
+        place = kernel.name, f"C {scalar} prepared"
         outcomes[kernel.name] = [
             prepared(
                 {a.name: c_array(scalar, getattr(sample.state, a.name)) for a in array_arguments(kernel)},
@@ -67,11 +68,11 @@ def run_prepared(
         ]
         for k, (one, other) in enumerate(zip(alone[kernel.name], outcomes[kernel.name], strict=True)):
             if one.valid and one != other:
-                failures.append(f"{where}: at state {k} the plain kernel gives something else")
+                faults.append(Fault(f"at state {k} the plain kernel gives something else", *place))
                 break
         parameters = c_array(scalar, samples[0].state.parameters)
         for value in HARD:
             arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in array_arguments(kernel)}
             if plain(arrays, parameters).status != prepared(arrays, parameters).status:
-                failures.append(f"{where}: other status than the plain kernel's where every input is {value}")
-    return outcomes, failures
+                faults.append(Fault(f"other status than the plain kernel's where every input is {value}", *place))
+    return outcomes, faults

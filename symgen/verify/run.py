@@ -5,11 +5,10 @@ from __future__ import annotations
 import hashlib
 import platform
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeAlias
 
 import flint
 
@@ -19,8 +18,8 @@ from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.naming import file_stem
 from symgen.verify.batch import run_batch
-from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, InvariantRecord
-from symgen.verify.comparison import Results, check_laws, compare, failures_of
+from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, Fault, InvariantRecord
+from symgen.verify.comparison import Results, check_laws, compare, faults_of
 from symgen.verify.compile import (
     CFunction,
     Compilation,
@@ -32,21 +31,13 @@ from symgen.verify.compile import (
     find_compiler,
 )
 from symgen.verify.conditions import condition_numbers
+from symgen.verify.expected import Expected, Progress
 from symgen.verify.given_trig import run_given_trig
 from symgen.verify.prepared import run_prepared
 from symgen.verify.python_module import PythonModule
-from symgen.verify.reference import Reference, ReferenceValueError
-from symgen.verify.states import (
-    USUAL_STATES,
-    Sample,
-    VerificationError,
-    affordable_states,
-    rounded,
-    sample_states,
-)
-from symgen.verify.tolerance import Expectation, expectations
+from symgen.verify.reference import ReferenceValueError
+from symgen.verify.states import USUAL_STATES, Sample, VerificationError
 
-Progress: TypeAlias = Callable[[str], None]
 LONGEST_EXCERPT = 2000
 NO_COMPILER = "no C compiler was found, the C is not verified: install gcc or clang, or name one in CC"
 
@@ -59,11 +50,24 @@ def verify(
     states: int = USUAL_STATES,
     progress: Progress = lambda _: None,
 ) -> Certificate:
-    """Run what was generated and compare it with the reference; what goes wrong is a failure of the certificate.
+    """The certificate alone; see `verify_expecting`."""
+    return verify_expecting(model, kernels, c_sources, python_source, states, progress)[0]
+
+
+def verify_expecting(
+    model: Model,
+    kernels: Sequence[Kernel],
+    c_sources: Mapping[Scalar, CSource],
+    python_source: str | None,
+    states: int,
+    progress: Progress,
+    expected: Expected | None = None,
+) -> tuple[Certificate, Expected | None]:
+    """Run what was generated and compare it with the reference; what goes wrong is a fault of the certificate.
 
     `kernels` name the emitted quantities with their arguments and shapes (those of one program serve for all targets).
-    Up to 64 `states` become fewer (8 at least) where a count of operations predicts more than 20 s; more are taken as
-    asked.  Fewer than 8 admissible states found is a failure, no C compiler a note.
+    Fewer than 8 admissible states found is a fault, no C compiler a note.  What is `expected` at the states is handed
+    back, None where there are no states; a further verification of these quantities, or of some, takes it as it is.
     """
     compiler = find_compiler() if c_sources else None
     blank = Certificate(
@@ -75,50 +79,49 @@ def verify(
         conditions=(),
         versions=_versions(compiler),
         hashes=tuple(_hashes(model, c_sources, python_source)),
-        failures=(),
+        faults=(),
         notes=(NO_COMPILER,) if c_sources and compiler is None else (),
     )
     try:
         with _compilations(compiler, c_sources) as compilations:
-            return _verified(blank, model, kernels, c_sources, compilations, python_source, states, progress)
+            if expected is None:
+                progress("verifying: looking for states")
+                expected = Expected(model, [kernel.name for kernel in kernels], states, progress)
+            return _verified(blank, expected, kernels, c_sources, compilations, python_source, progress), expected
     except (VerificationError, ReferenceValueError) as fault:
-        return replace(blank, failures=(str(fault),))
+        return replace(blank, faults=(Fault(str(fault)),)), None
 
 
 def _verified(
     blank: Certificate,
-    model: Model,
+    expected: Expected,
     kernels: Sequence[Kernel],
     c_sources: Mapping[Scalar, CSource],
     compilations: Mapping[Scalar, Compilation],
     python_source: str | None,
-    states: int,
     progress: Progress,
 ) -> Certificate:
     """The certificate with everything that was found; compilers work while the reference does."""
     names = tuple(kernel.name for kernel in kernels)
-    progress("verifying: looking for states")
-    reference = Reference(model)
-    count = states if states > USUAL_STATES else affordable_states(reference, names, states)
-    doubles = sample_states(reference, names, count)
-    samples: dict[Scalar, tuple[Sample, ...]] = {scalar: _rounded(doubles, scalar) for scalar in compilations}
-    if python_source is not None:
-        samples["float64"] = doubles
-    expected = _expected(reference, names, samples, progress)
+    reference = expected.reference
+    model, doubles = reference.model, expected.samples("float64")
+    scalars: dict[Scalar, None] = dict.fromkeys((*compilations, *(("float64",) if python_source is not None else ())))
+    samples = {scalar: expected.samples(scalar) for scalar in scalars}
+    values = {scalar: expected.values(scalar) for scalar in scalars}
     progress("verifying: running C and Python")
-    results, failures = _run_c(model, kernels, c_sources, compilations, samples)
+    results, faults = _run_c(model, kernels, c_sources, compilations, samples)
     if python_source is not None:
-        outcomes, faults = _run_python(python_source, kernels, doubles)
+        outcomes, wrong = _run_python(python_source, kernels, doubles)
         results["Python float64"] = ("float64", outcomes)
-        failures += faults
+        faults += wrong
     errors: list[ErrorRecord] = []
     laws: list[InvariantRecord] = []
     judged: list[str] = []
     for target, (scalar, made) in results.items():
         twin = next((t for t in judged if _same(made, results[t][1]) and results[t][0] == scalar), None)
         if twin is None:
-            records = [compare(name, target, [e[name] for e in expected[scalar]], made[name]) for name in made]
-            found = check_laws(target, reference, samples[scalar], expected[scalar], made)
+            records = [compare(name, target, [e[name] for e in values[scalar]], made[name]) for name in made]
+            found = check_laws(target, reference, samples[scalar], values[scalar], made)
         else:  # the same bits: C and Python usually agree
             records = [replace(r, target=target) for r in errors if r.target == twin and r.quantity in made]
             whole = len(made) == len(names)
@@ -127,9 +130,9 @@ def _verified(
         errors += records
         laws += found
         for record in records:
-            failures += failures_of(record, made[record.quantity], samples[scalar])
-        failures += [
-            f"{target} violates {law.name}: {law.largest:.3g} times the allowed defect"
+            faults += faults_of(record, made[record.quantity], samples[scalar])
+        faults += [
+            Fault(f"violates {law.name}: {law.largest:.3g} times the allowed defect", law.quantity, target)
             for law in found
             if not law.largest <= 1
         ]
@@ -144,7 +147,7 @@ def _verified(
         errors=tuple(errors),
         invariants=tuple(laws),
         conditions=tuple(ConditionRecord(*record) for record in condition_numbers(reference, doubles)),
-        failures=tuple(failures),
+        faults=tuple(faults),
     )
 
 
@@ -191,39 +194,22 @@ def _compilations(
                 compilation.cancel()
 
 
-def _rounded(samples: Sequence[Sample], scalar: Scalar) -> tuple[Sample, ...]:
-    return tuple(rounded(sample, scalar) for sample in samples)
-
-
-def _expected(
-    reference: Reference, names: Sequence[str], samples: Mapping[Scalar, Sequence[Sample]], progress: Progress
-) -> dict[Scalar, list[dict[str, Expectation]]]:
-    """Reference values and error units, by scalar type and state."""
-    found: dict[Scalar, list[dict[str, Expectation]]] = {scalar: [] for scalar in samples}
-    for scalar, chosen in samples.items():
-        for index, sample in enumerate(chosen):
-            if index % 8 == 0:
-                progress(f"verifying: reference for {scalar}, state {index + 1} of {len(chosen)}")
-            found[scalar].append(expectations(reference, sample.state, names, scalar, f"{scalar} {index}"))
-    return found
-
-
 def _run_c(
     model: Model,
     kernels: Sequence[Kernel],
     sources: Mapping[Scalar, CSource],
     compilations: Mapping[Scalar, Compilation],
     samples: Mapping[Scalar, Sequence[Sample]],
-) -> tuple[dict[str, tuple[Scalar, Results]], list[str]]:
+) -> tuple[dict[str, tuple[Scalar, Results]], list[Fault]]:
     """Outcomes of every kernel at every state by target, and what did not compile."""
     results: dict[str, tuple[Scalar, Results]] = {}
-    failures = []
+    faults = []
     for scalar, compilation in compilations.items():
         target = f"C {scalar}"
         try:
             library = compilation.library()
         except CompilationError as refusal:
-            failures.append(f"{target} does not compile: {str(refusal)[:LONGEST_EXCERPT]}")
+            faults.append(Fault(f"{target} does not compile: {str(refusal)[:LONGEST_EXCERPT]}"))
             continue
         functions = [CFunction(library, model.name, kernel, scalar) for kernel in kernels]
         outcomes: dict[str, list[Outcome]] = {kernel.name: [] for kernel in kernels}
@@ -246,26 +232,26 @@ def _run_c(
             made = run_given_trig(library, model, kernels, scalar, samples[scalar], header)
             others["sines given"] = made, []
         for kind, (made, differing) in others.items():
-            failures += differing
+            faults += differing
             if made:
                 results[f"{target} {kind}"] = (scalar, made)
-    return results, failures
+    return results, faults
 
 
 def _run_python(
     source: str, kernels: Sequence[Kernel], samples: Sequence[Sample]
-) -> tuple[dict[str, list[Outcome]], list[str]]:
+) -> tuple[dict[str, list[Outcome]], list[Fault]]:
     """Outcomes of every kernel over all states; the first state must give the same bits alone as in the batch."""
     module = PythonModule(source)
     states = [sample.state for sample in samples]
     outcomes = {kernel.name: module.run(kernel, states) for kernel in kernels}
-    failures = [
-        f"Python float64, {kernel.name}: one state alone and the same state in a batch differ"
+    faults = [
+        Fault("one state alone and the same state in a batch differ", kernel.name, "Python float64")
         for kernel in kernels
         if module.run_single(kernel, states[0]).entries != outcomes[kernel.name][0].entries
         and outcomes[kernel.name][0].valid
     ]
-    return outcomes, failures
+    return outcomes, faults
 
 
 def _versions(compiler: Compiler | None) -> tuple[tuple[str, str], ...]:

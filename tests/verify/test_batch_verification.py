@@ -55,13 +55,13 @@ def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
             for s in states
         ]
     samples = [Sample(state, True, (1.0, 1.0)) for state in states]
-    outcomes, failures = run_batch(library, model.name, program().kernels, "float64", samples, alone)
+    outcomes, faults = run_batch(library, model.name, program().kernels, "float64", samples, alone)
     assert set(outcomes) == set(alone)
     header = dict(source.companions)[f"{NAME}_prepared.h"]
     given = library, model.name, program().kernels, "float64", samples, alone
     outcomes, differing = run_prepared(*given, header)
     assert {"forward_dynamics"} <= set(outcomes) < set(alone)
-    return failures + differing
+    return [fault.text for fault in faults + differing]
 
 
 def test_what_is_generated_passes(tool: Callable[[str], str], tmp_path: Path) -> None:

@@ -1,0 +1,96 @@
+"""A model on its way: derived and scheduled, nothing printed yet; what verification rejects is replaced here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from symgen.dynamics.alternatives import Alternative
+from symgen.dynamics.select import Derivations, Rejection
+from symgen.dynamics.structure import Structure
+from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.ir.library_trig import with_library_trig
+from symgen.ir.schedule import schedule
+from symgen.model.model import Model
+from symgen.records import dataclass
+from symgen.results import Trig
+
+if TYPE_CHECKING:
+    from symgen.verify.certificate import LeftOut
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way."""
+
+    model: Model
+    derivations: Derivations
+    structure: Structure
+    programs: Mapping[Scalar, Program]
+    trig: Trig
+    left_out: tuple[LeftOut, ...] = ()
+
+    @property
+    def program(self) -> Program:
+        """The float64 program, which Python, the counts and the report are made from."""
+        return self.programs["float64"]
+
+    def way(self, quantity: str) -> str:
+        """The way a quantity takes, and its form where that says more."""
+        choice = next(choice for choice in self.derivations.choices if choice.quantity == quantity)
+        return f"{choice.form} along {choice.way}" if choice.form not in ("", choice.way) else choice.way
+
+    def kernels(self, quantity: str) -> dict[Scalar, Kernel]:
+        """The kernels of a quantity by scalar type."""
+        found = ((scalar, kernel) for scalar, program in self.programs.items() for kernel in program.kernels)
+        return {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
+
+    def kernels_along(self, alternative: Alternative) -> dict[Scalar, Kernel]:
+        """The kernels of a quantity along another way."""
+        programs = schedule(alternative.mechanics, [alternative.derived], tuple(self.programs))
+        if self.trig == "libm":
+            programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
+        return {scalar: program.kernels[0] for scalar, program in programs.items()}
+
+    def along(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Draft:
+        """The draft with a quantity along another way, by kernels of `kernels_along`."""
+        name, derivations = alternative.choice.quantity, self.derivations
+        form, named = derivations.form, dict(derivations.named)
+        if alternative.form is not None and name == "inverse_dynamics":
+            form = alternative.form
+        elif alternative.form is not None:
+            named[name] = alternative.form
+        derivations = replace(
+            derivations,
+            quantities=tuple(alternative.derived if q.name == name else q for q in derivations.quantities),
+            choices=tuple(alternative.choice if c.quantity == name else c for c in derivations.choices),
+            form=form,
+            named=tuple(named.items()),
+        )
+        programs = {
+            scalar: replace(program, kernels=tuple(kernels[scalar] if k.name == name else k for k in program.kernels))
+            for scalar, program in self.programs.items()
+        }
+        return replace(self, derivations=derivations, programs=programs)
+
+    def without(self, quantity: str, why: str) -> Draft:
+        """The draft without a quantity."""
+        derivations = self.derivations
+        derivations = replace(
+            derivations,
+            quantities=tuple(q for q in derivations.quantities if q.name != quantity),
+            choices=tuple(c for c in derivations.choices if c.quantity != quantity),
+            absent=(*derivations.absent, (quantity, why)),
+            form=None if quantity == "inverse_dynamics" else derivations.form,
+            named=tuple(one for one in derivations.named if one[0] != quantity),
+        )
+        programs = {
+            scalar: replace(program, kernels=tuple(kernel for kernel in program.kernels if kernel.name != quantity))
+            for scalar, program in self.programs.items()
+        }
+        return replace(self, derivations=derivations, programs=programs)
+
+    def rejecting(self, rejected: tuple[Rejection, ...]) -> Draft:
+        """The draft that tells of more ways which verification rejected."""
+        return replace(self, derivations=replace(self.derivations, rejected=(*self.derivations.rejected, *rejected)))

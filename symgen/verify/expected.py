@@ -1,0 +1,53 @@
+"""What a correct kernel gives at the states of a verification: worked out once, however often kernels change."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
+
+from symgen.ir.kernel import Scalar
+from symgen.model.model import Model
+from symgen.verify.reference import Reference
+from symgen.verify.states import USUAL_STATES, Sample, affordable_states, rounded, sample_states
+from symgen.verify.tolerance import Expectation, expectations
+
+Progress: TypeAlias = Callable[[str], None]
+
+
+class Expected:
+    """States of a model, and the reference values and error units of its quantities there by scalar type.
+
+    Up to 64 `states` become fewer (8 at least) where a count of operations predicts more than 20 s; more are taken as
+    asked.  Raises VerificationError when fewer than 8 are found, ReferenceValueError when there is no configuration.
+    """
+
+    def __init__(self, model: Model, quantities: Sequence[str], states: int, progress: Progress) -> None:
+        self.reference = Reference(model)
+        self._quantities = tuple(quantities)
+        self._progress = progress
+        count = states if states > USUAL_STATES else affordable_states(self.reference, quantities, states)
+        doubles = sample_states(self.reference, quantities, count)
+        self._samples: dict[Scalar, tuple[Sample, ...]] = {"float64": doubles}
+        self._values: dict[Scalar, list[dict[str, Expectation]]] = {}
+
+    @property
+    def scalars(self) -> tuple[Scalar, ...]:
+        """The scalar types whose values were asked for."""
+        return tuple(self._values)
+
+    def samples(self, scalar: Scalar) -> tuple[Sample, ...]:
+        """The states, rounded to the scalar type."""
+        if scalar not in self._samples:
+            self._samples[scalar] = tuple(rounded(sample, scalar) for sample in self._samples["float64"])
+        return self._samples[scalar]
+
+    def values(self, scalar: Scalar) -> list[dict[str, Expectation]]:
+        """Reference values and error units of every quantity, state by state."""
+        if scalar not in self._values:
+            found, chosen = [], self.samples(scalar)
+            for index, sample in enumerate(chosen):
+                if index % 8 == 0:
+                    self._progress(f"verifying: reference for {scalar}, state {index + 1} of {len(chosen)}")
+                found.append(expectations(self.reference, sample.state, self._quantities, scalar, f"{scalar} {index}"))
+            self._values[scalar] = found
+        return self._values[scalar]

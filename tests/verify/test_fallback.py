@@ -1,0 +1,273 @@
+"""What verification rejects takes another way, or is left out alone: ways that are wrong on purpose, and real ones."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from symgen import cli
+from symgen.dynamics import by_name, derivation
+from symgen.dynamics.catalogue import Derived
+from symgen.dynamics.forms.motion import Motion
+from symgen.dynamics.guards import Guard
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.scalar import Graph, Scalar
+from symgen.ir.kernel import Status
+from symgen.pipeline import generate
+from symgen.results import Options, Result
+
+# A pin on a crank moves a slotted slider: one row, one degree of freedom.
+YOKE = """
+model: yoke
+coordinates:
+  a: {unit: rad, description: crank}
+  x: {unit: m, description: slider}
+parameters:
+  r: {value: 0.3, unit: m, range: [0.2, 0.4]}
+  J: {value: 0.02, unit: kg*m**2}
+  m: {value: 1.5, unit: kg, range: [1, 2]}
+  k: {value: 40, unit: N/m}
+kinetic_energy: J/2*a_dot**2 + m/2*x_dot**2
+potential_energy: k/2*x**2
+constraints:
+  geometric: {slot: x - r*cos(a)}
+inputs:
+  torque: {unit: N*m, acts_on: {a: 1}}
+configuration: {a: 0.8, x: 0.2}
+outputs: [mass_matrix, inverse_dynamics, forward_dynamics, multipliers]
+"""
+OFF = 1 + Fraction(1, 2**16)  # beyond the tolerance in either scalar type
+FAST = Options(parts=("c", "python"), states=8)
+
+
+@pytest.fixture
+def yoke(tmp_path: Path) -> Path:
+    path = tmp_path / "yoke.yaml"
+    path.write_text(YOKE, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(autouse=True)
+def compiler(tool: Callable[[str], str]) -> None:
+    tool("cc")
+
+
+def made(path: Path, options: Options = FAST) -> Result:
+    return generate(path, options, lambda _: None)
+
+
+def derived(result: Result) -> Any:
+    return json.loads(result.files["derivation.json"])
+
+
+def off(values: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    return tuple(value * value.graph.const(OFF) for value in values)
+
+
+def spoil_choice(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion]) -> None:
+    """λ of the form that selection takes by itself."""
+    cheapest = derivation.cheapest
+
+    def worse(motions: Any, part: Any, mechanics: Mechanics) -> Motion:
+        found = cheapest(motions, part, mechanics)
+        return spoilt(found) if part == "multipliers" else found
+
+    monkeypatch.setattr(derivation, "cheapest", worse)
+
+
+def inaccurate(motion: Motion) -> Motion:
+    return replace(motion, multipliers=off(motion.multipliers))
+
+
+def refusing(motion: Motion) -> Motion:
+    """λ with a denominator that every state takes for zero."""
+    graph: Graph = motion.multipliers[0].graph
+    tiny = graph.symbol("J") * graph.const(Fraction(1, 2**80))
+    return replace(motion, guards=(*motion.guards, Guard(Status.MASS_RANK, tiny, 1, scale=graph.symbol("m"))))
+
+
+def spoil_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """λ of every form that can be asked for by name."""
+    quantities = by_name.quantities_by
+
+    def worse(model: Any, generic: Any, name: str) -> tuple[Mechanics, tuple[Derived, ...]]:
+        mechanics, found = quantities(model, generic, name)
+        return mechanics, tuple(
+            replace(one, outputs=off(one.outputs)) if one.name == "multipliers" else one for one in found
+        )
+
+    monkeypatch.setattr(by_name, "quantities_by", worse)
+
+
+@pytest.mark.parametrize(("spoilt", "why"), [(inaccurate, "error .* is allowed"), (refusing, "status 5 at 8 of 8")])
+def test_what_is_rejected_takes_the_next_way(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion], why: str
+) -> None:
+    usual = made(yoke)
+    assert "rejected" not in derived(usual)
+    spoil_choice(monkeypatch, spoilt)
+    result = made(yoke)
+    assert result.failures == ()
+    assert result.left_out == ()
+    (rejected,) = derived(result)["rejected"]
+    assert rejected["quantity"] == "multipliers"
+    assert re.search(why, rejected["why"])
+    taken = derived(result)["kernels"]["multipliers"]["way"]
+    assert derived(result)["form_of_multipliers"]["name"] == taken
+    assert any(n.message.startswith(f"multipliers takes {taken}: verification rejects") for n in result.notices)
+    kernels, before = derived(result)["kernels"], derived(usual)["kernels"]
+    assert all(kernels[name] == before[name] for name in before if name != "multipliers")
+    assert result.certificate is not None
+    assert result.certificate["passed"]
+    largest = [e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers"]
+    assert largest
+    assert max(largest) <= 16
+
+
+def test_the_way_taken_is_the_one_that_counts_least_of_those_that_pass(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spoil_choice(monkeypatch, inaccurate)
+    taken = derived(made(yoke))["kernels"]["multipliers"]
+    others = [
+        derived(made(yoke, replace(FAST, forms={"multipliers": name})))["kernels"]["multipliers"]["counted_cost"]
+        for name in ("minor", "schur_qr", "schur_ldl", "nullspace", "kkt")
+    ]
+    assert min(cost for one in others for cost in one.values()) == min(taken["counted_cost"].values())
+
+
+def test_what_no_way_passes_is_left_out_alone(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spoil_choice(monkeypatch, inaccurate)
+    spoil_named(monkeypatch)
+    out = tmp_path / "out"
+    common = [str(yoke), "--out", str(out), "--states", "8", "--quiet"]
+    assert cli.main(common) == 1
+    told = capsys.readouterr().err
+    assert "multipliers is left out" in told
+    assert "remedy: " in told
+    folder = out / "yoke"
+    certificate = json.loads((folder / "certificate.json").read_bytes())
+    assert not certificate["passed"]
+    assert certificate["failures"] == []
+    (left_out,) = certificate["left_out"]
+    assert left_out["quantity"] == "multipliers"
+    assert len(left_out["tried"]) > 1
+    verified = {error["quantity"] for error in certificate["errors"]}
+    assert verified == {"mass_matrix", "inverse_dynamics", "forward_dynamics"}
+    derivation_json = json.loads((folder / "derivation.json").read_bytes())
+    assert set(derivation_json["kernels"]) == verified
+    assert "multipliers" in [one["quantity"] for one in derivation_json["absent"]]
+    for path in ("c/yoke.h", "c/yoke_f.c", "package/src/yoke.h", "package/README.md"):
+        text = (folder / path).read_text(encoding="utf-8")
+        assert "forward_dynamics" in text
+        assert "multipliers" not in text
+    assert "def multipliers(" not in (folder / "python/yoke.py").read_text(encoding="utf-8")
+    assert "erification rejects it" in " ".join((folder / "report/yoke.tex").read_text(encoding="utf-8").split())
+    # without verification, what is on disk is compared with what verification led to
+    assert cli.main([*common, "--check"]) == 0
+    assert cli.main(["verify", *common]) == 1
+    assert "the files on disk are not" not in capsys.readouterr().err
+
+
+def test_check_takes_over_the_way_that_verification_led_to(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    spoil_choice(monkeypatch, inaccurate)
+    common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
+    assert cli.main(common) == 0
+    assert cli.main([*common, "--check"]) == 0
+    source = tmp_path / "out/yoke/c/yoke.c"
+    source.write_text(source.read_text(encoding="utf-8").replace(" + ", " - ", 1), encoding="utf-8")
+    assert cli.main([*common, "--check"]) == 1
+
+
+def test_a_form_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spoil_named(monkeypatch)
+    result = made(yoke, replace(FAST, forms={"multipliers": "kkt"}))
+    (left_out,) = result.left_out
+    assert left_out.quantity == "multipliers"
+    assert [way for way, _ in left_out.tried] == ["kkt"]
+    assert "--form multipliers=kkt" in left_out.remedy
+    assert "forward_dynamics" in derived(result)["kernels"]
+
+
+def test_nothing_is_written_where_nothing_passes(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spoil_choice(monkeypatch, inaccurate)
+    spoil_named(monkeypatch)
+    out = tmp_path / "out"
+    arguments = [str(yoke), "--out", str(out), "--outputs", "multipliers", "--only", "c", "--states", "8", "--quiet"]
+    assert cli.main(arguments) == 1
+    told = capsys.readouterr().err
+    assert "verification failed, nothing is written" in told
+    assert "multipliers is left out" in told
+    assert not (out / "yoke").exists()
+
+
+# A drive of which only the slider weighs anything: G is nearly singular, the motion is not.
+LIGHT = """
+model: light_yoke
+coordinates: {a: {unit: rad}, b: {unit: rad}, x: {unit: m, range: [-1, 1]}}
+parameters:
+  r: {value: 0.3, unit: m}
+  l: {value: 0.7, unit: m}
+  J: {value: 3e-10, unit: kg*m**2}
+  m: {value: 2e-9, unit: kg}
+  M: {value: 5, unit: kg}
+kinetic_energy: J/2*a_dot**2 + m/2*(r**2*a_dot**2 + l*r*cos(a - b)*a_dot*b_dot + l**2/3*b_dot**2) + M/2*x_dot**2
+constraints:
+  geometric:
+    along: r*cos(a) + l*cos(b) - x
+    across: r*sin(a) + l*sin(b) - 0.1
+inputs: {torque: {unit: N*m, acts_on: {a: 1}}}
+configuration: {a: 0.6, b: -0.1, x: 0.9}
+outputs: [inverse_dynamics, forward_dynamics, multipliers]
+"""
+# A bed lifted by two scissors of hinged plates at a right angle: rows of loops depend on each other.
+LIFT = """
+model: lift
+joints:
+  s_1: {type: revolute, axis: y, at: [0.2, 0, 0], coordinate: a_1}
+  s_2: {type: revolute, parent: s_1, axis: y, at: [w, 0, 0], coordinate: a_2}
+  bed: {type: revolute, parent: s_2, axis: y, at: [w, 0, 0], coordinate: a_3}
+  f_1: {type: revolute, axis: x, at: [0, -0.15, 0], coordinate: b_1}
+  f_2: {type: revolute, parent: f_1, axis: x, at: [0, -w, 0], coordinate: b_2}
+frames:
+  f_end: {parent: f_2, translation: [0, -w, 0]}
+  f_bed: {parent: bed, translation: [-0.2, -0.15, 0]}
+parameters:
+  w: {value: 0.5, unit: m}
+gravity: [0, 0, -9.81]
+bodies:
+  s_1: {mass: 3, com: [w/2, 0, 0], inertia: {xx: 0.01, yy: 0.06, zz: 0.06}}
+  s_2: {mass: 3, com: [w/2, 0, 0], inertia: {xx: 0.01, yy: 0.06, zz: 0.06}}
+  f_1: {mass: 2, com: [0, -w/2, 0], inertia: {xx: 0.04, yy: 0.01, zz: 0.04}}
+  f_2: {mass: 2, com: [0, -w/2, 0], inertia: {xx: 0.04, yy: 0.01, zz: 0.04}}
+  bed: {mass: 25, inertia: {xx: 1, yy: 1, zz: 2}}
+loops:
+  hinge: {type: revolute, between: [f_end, f_bed], axis: x}
+inputs:
+  motor: {unit: N*m, joint: a_1}
+configuration: {a_1: -0.7, a_2: -1.7415926, a_3: 2.4415926, b_1: -0.7, b_2: -1.7415926}
+outputs: [inverse_dynamics, forward_dynamics, multipliers]
+"""
+
+
+@pytest.mark.parametrize("text", [LIGHT, LIFT], ids=["light_yoke", "lift"])
+def test_real_machines_get_every_quantity(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "machine.yaml"
+    path.write_text(text, encoding="utf-8")
+    result = made(path, Options(parts=("c", "python")))
+    assert result.failures == ()
+    assert result.left_out == ()
+    assert set(derived(result)["kernels"]) == {"inverse_dynamics", "forward_dynamics", "multipliers"}
