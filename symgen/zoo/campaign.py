@@ -10,9 +10,11 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from symgen.zoo.cases import case_of
 from symgen.zoo.describe import Description
 from symgen.zoo.families import draw
 from symgen.zoo.run import run_command
+from symgen.zoo.shrink import shrink
 from symgen.zoo.verdict import FAILED, REFUSED, VERIFIED, Verdict, verdict_of, without_numbers
 from symgen.zoo.witness import check
 
@@ -59,9 +61,9 @@ def judge(description: Description, model: Path) -> tuple[Verdict, float, float]
 
 
 def campaign(
-    seed: int, indices: Iterable[int], folder: Path, seconds: float, family: str, tell: Tell
+    seed: int, indices: Iterable[int], folder: Path, seconds: float, family: str, shrinking: int, tell: Tell
 ) -> Iterator[Record]:
-    """Draws until they or the seconds are used up."""
+    """Draws until they or the seconds are used up; failing ones are made small in `shrinking` runs at most."""
     began = time.monotonic()
     for index in indices:
         if seconds and time.monotonic() - began > seconds:
@@ -75,8 +77,26 @@ def campaign(
         )  # fmt: skip
         if not verdict.failed:
             _remove(model)
+        elif shrinking:
+            small = shrunk(description, verdict, model.with_name("small.yaml"), tell, shrinking)
+            case = case_of(small, verdict)
+            model.with_name("case.yaml").write_text(case.text, encoding="utf-8")
         tell(f"{seed}:{index} {record.family}: {record.ending} {record.kind} {record.signature} ({record.cpu} s)")
         yield record
+
+
+def shrunk(description: Description, verdict: Verdict, model: Path, tell: Tell, most: int) -> Description:
+    """The draw made small, still with the same ending."""
+
+    def fails(candidate: Description) -> bool:
+        other = judge(candidate, model)[0]
+        same = (other.kind, other.signature) == (verdict.kind, verdict.signature)
+        if same:
+            tell(f"  {len(candidate.text.splitlines())} lines, {len(candidate.start)} coordinates")
+        # what takes too long need not stop at the same step
+        return same or (verdict.kind == other.kind and verdict.kind in ("time", "memory", "no end"))
+
+    return shrink(description, fails, most)
 
 
 def _remove(model: Path) -> None:

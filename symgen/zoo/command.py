@@ -18,6 +18,7 @@ def main() -> int:
     parser.add_argument("--draws", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=0, help="no new draw after so many seconds (0: no limit)")
     parser.add_argument("--family", choices=sorted(FAMILIES), default="")
+    parser.add_argument("--shrink", type=int, default=0, metavar="RUNS", help="make failing draws small")
     parser.add_argument("--out", type=Path, default=Path("build/zoo"))
     parser.add_argument("--show", action="store_true", help="print the model file of the first draw and run nothing")
     parser.add_argument("--sum", type=Path, nargs="*", help="sum up the records of earlier chunks and run nothing")
@@ -34,7 +35,7 @@ def main() -> int:
     path.unlink(missing_ok=True)
     indices = range(given.first, given.first + given.draws)
     records = []
-    for record in campaign(given.seed, indices, given.out, given.seconds, given.family, _tell):
+    for record in campaign(given.seed, indices, given.out, given.seconds, given.family, given.shrink, _tell):
         write_record(path, record)
         records.append(record)
     print(summary(records))

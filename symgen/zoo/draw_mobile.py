@@ -135,7 +135,11 @@ def disc(dice: Dice) -> Description:
         arm, swing = sketch.name("arm"), sketch.name("swing")
         sketch.start[swing] = 0.2
         sketch.block("joints")[arm] = {"type": "revolute", "axis": "y", "parent": fork, "coordinate": swing}
-        sketch.block("bodies")[arm] = {"mass": "0.7", "com": ["0", "0", "-0.1"], "inertia": {"yy": "0.01"}}
+        sketch.block("bodies")[arm] = {
+            "mass": "0.7",
+            "com": ["0", "0", "-0.1"],
+            "inertia": dict.fromkeys(("xx", "yy", "zz"), "0.01"),
+        }
     sketch.block("rolling")[sketch.name("ground")] = {"frame": wheel, "radius": r}
     torques = [(direction, axes) for direction, axes in (("y", fork), ("z", ""), ("x", fork)) if dice.chance(0.7)]
     for k, (direction, axes) in enumerate(torques, 1):

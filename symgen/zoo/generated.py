@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import importlib.util
+import itertools
 import re
 import subprocess
 import sys
@@ -21,6 +22,8 @@ ARGUMENTS = {
 }
 MEMBER = re.compile(r"^ {4}(?:double|float) (\w+);", re.M)
 FLAGS = ("-O2", "-ffp-contract=off", "-fPIC", "-shared")
+
+_libraries = itertools.count()
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ def _given(quantity: str, state: State) -> list[tuple[float, ...]]:
 
 
 def _python(path: Path) -> Target:
-    spec = importlib.util.spec_from_file_location(f"zoo_{abs(hash(path))}", path)
+    spec = importlib.util.spec_from_file_location(f"zoo_{next(_libraries)}", path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -82,7 +85,8 @@ def _python(path: Path) -> Target:
 
 def _c(folder: Path, model: str, scalar: str, suffix: str) -> Target:
     source, header = folder / f"{model}{suffix}.c", folder / f"{model}{suffix}.h"
-    library = folder / f"zoo{suffix}.so"
+    # a name of its own each time: what is loaded once under a name is not looked at again
+    library = folder / f"zoo_{next(_libraries)}{suffix}.so"
     subprocess.run(["gcc", *FLAGS, "-o", str(library), str(source), "-lm"], check=True, capture_output=True)
     text = header.read_text(encoding="utf-8")
     struct = re.search(rf"typedef struct \{{\n(.*?)\}} {model}_params{suffix};", text, re.S)

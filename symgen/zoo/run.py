@@ -20,7 +20,6 @@ MEGABYTES = 1000
 PATIENCE = 20
 SAMPLES_A_SECOND = 4
 TICKS = os.sysconf("SC_CLK_TCK")
-PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 @dataclass(frozen=True)
@@ -122,7 +121,7 @@ class _Watch:
 
 def _taken(session: int) -> tuple[float, float]:
     """CPU seconds, those of ended children too, and megabytes in use by the processes of a session."""
-    ticks = pages = 0
+    ticks = kilobytes = 0
     for folder in Path("/proc").iterdir():
         if not folder.name.isdigit():
             continue
@@ -131,12 +130,13 @@ def _taken(session: int) -> tuple[float, float]:
             if int(fields[3]) != session:
                 continue
             ticks += sum(map(int, fields[11:15]))
-            pages += int(fields[21]) - _shared(folder)
+            kilobytes += _share(folder)
         except (OSError, ValueError, IndexError):
             continue
-    return ticks / TICKS, pages * PAGE / 1e6
+    return ticks / TICKS, kilobytes * 1024 / 1e6
 
 
-def _shared(folder: Path) -> int:
-    """Pages that come from files, such as libraries, which processes have in common."""
-    return int((folder / "statm").read_text().split()[2])
+def _share(folder: Path) -> int:
+    """Kilobytes of a process; what several have in common, such as memory before a fork, counts once in all."""
+    lines = (folder / "smaps_rollup").read_text().splitlines()
+    return next((int(line.split()[1]) for line in lines if line.startswith("Pss:")), 0)

@@ -1,0 +1,28 @@
+"""Every stored case ends as it must: found by the zoo, made small, mended since."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from symgen.zoo.cases import read_case
+from symgen.zoo.run import run_command
+from symgen.zoo.verdict import NOTICED, VERIFIED, verdict_of
+from symgen.zoo.witness import Witness
+
+CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_a_case_ends_as_it_must(path: Path, tmp_path: Path) -> None:
+    case = read_case(path)
+    model = tmp_path / "zoo.yaml"
+    model.write_text(case.model)
+    run = run_command(model, tmp_path / "out")
+    ending = verdict_of(run)
+    assert case.expected == {NOTICED: VERIFIED}.get(ending.ending, ending.ending), f"{ending}\n{run.err}"
+    if ending.ending in (VERIFIED, NOTICED):
+        checked = Witness(case.model, case.start).check(tmp_path / "out" / "zoo", count=6)
+        assert checked.findings == ()

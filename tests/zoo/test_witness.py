@@ -1,0 +1,150 @@
+"""The witness against known equations, and against kernels that were tampered with."""
+
+from __future__ import annotations
+
+import math
+import re
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+import yaml
+
+from symgen.zoo.expressions import FUNCTIONS, NotReadError, read_expression
+from symgen.zoo.fields import Balls, Floats, precision
+from symgen.zoo.mechanics import equations
+from symgen.zoo.reader import System
+from symgen.zoo.run import run_command
+from symgen.zoo.tape import Tape
+from symgen.zoo.witness import Witness
+
+SYSTEM = """
+model: cart
+coordinates: {x: {unit: m}, a: {unit: rad}}
+parameters: {m: 2, l: 0.7, k: 30}
+kinetic_energy: 3/2*x_dot**2 + m/2*((x_dot + l*cos(a)*a_dot)**2 + (l*sin(a)*a_dot)**2)
+potential_energy: k/2*x**2 - m*9.81*l*cos(a)
+constraints: {geometric: {link: x + 0.2*sin(a) - 0.1}}
+inputs: {f: {acts_on: {x: 1, a: x}}, g: {acts_on: {a: 1}}}
+outputs: [inverse_dynamics, forward_dynamics, multipliers]
+configuration: {x: 0, a: 0.5235987755982988}
+"""
+BODIES = """
+model: cart
+joints:
+  slide: {type: prismatic, axis: x, coordinate: x}
+  swing: {type: revolute, axis: z, parent: slide, coordinate: a}
+parameters: {m: 2, l: 0.7, k: 30}
+gravity: [0, -9.81, 0]
+bodies:
+  slide: {mass: 3}
+  swing: {mass: m, com: [0, -l, 0]}
+points: {tip: {frame: swing, at: [0, -0.2, 0]}}
+springs: {coil: {joint: x, stiffness: k}}
+constraints: {geometric: {link: tip.x - 0.1}}
+inputs: {f: {acts_on: {x: 1, a: x}}, g: {torque_on: swing, direction: [0, 0, 1], reaction: slide}}
+outputs: [inverse_dynamics, forward_dynamics, multipliers]
+"""
+VALUES = {"x": 0.3, "a": 0.6, "x_dot": -0.4, "a_dot": 1.1, "m": 2.0, "l": 0.7, "k": 30.0}
+
+
+def flat(text: str) -> list[float]:
+    """All entries of the equations of motion."""
+    system = System(yaml.load(text, Loader=yaml.BaseLoader))
+    return system.tape.evaluate(equations(system).flat, VALUES, Floats())
+
+
+def test_equations_of_a_cart_with_a_pendulum() -> None:
+    x, a, _, w = (VALUES[name] for name in ("x", "a", "x_dot", "a_dot"))
+    m, l_, k = VALUES["m"], VALUES["l"], VALUES["k"]
+    sine, cosine = math.sin(a), math.cos(a)
+    expected = [
+        *(3 + m, m * l_ * cosine, m * l_ * cosine, m * l_**2),
+        *(1, 0.2 * cosine),
+        *(1, 0, x, 1),
+        *(-m * l_ * sine * w**2 + k * x, m * 9.81 * l_ * sine),
+        -0.2 * sine * w**2,
+        x + 0.2 * sine - 0.1,
+    ]
+    assert flat(SYSTEM) == pytest.approx(expected, rel=1e-14)
+
+
+def test_bodies_and_energies_give_the_same_equations() -> None:
+    assert flat(BODIES) == pytest.approx(flat(SYSTEM), rel=1e-13)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_derivatives_of_every_function(name: str) -> None:
+    tape = Tape()
+    text = "atan2(z/3 + 1, z*z - 2)" if name == "atan2" else f"{name}(z/3 + 0.2*z**(3/2) - 0.1)/z"
+    node = read_expression(tape, text, tape.symbol)
+    (by_sweep,) = tape.gradient(node, ["z"])
+    along = tape.derivative(node, {"z": tape.one}, "z")
+    (second,) = tape.gradient(by_sweep, ["z"])
+    with precision():
+        balls = Balls()
+        step, place = Fraction(1, 10**30), Fraction(7, 10)
+
+        def at(shift: int) -> object:
+            return tape.evaluate([node], {"z": balls.number(place + shift * step)}, balls)[0]
+
+        width = balls.number(step)
+        slope = (at(1) - at(-1)) / (2 * width)
+        curve = (at(1) - 2 * at(0) + at(-1)) / (width * width)
+        values = tape.evaluate([by_sweep, along, second], {"z": balls.number(place)}, balls)
+        assert float((values[0] - slope).mid()) == pytest.approx(0, abs=1e-50)
+        assert float((values[1] - slope).mid()) == pytest.approx(0, abs=1e-50)
+        assert float((values[2] - curve).mid()) == pytest.approx(0, abs=1e-30)
+
+
+def test_literals_are_exact() -> None:
+    tape = Tape()
+    node = read_expression(tape, "0.1 + 2**-1*x", tape.symbol)
+    assert {each.number for each in tape.nodes} >= {Fraction(1, 10), Fraction(2)}
+    assert tape.evaluate([node], {"x": 0.0}, Floats()) == [0.1]
+
+
+@pytest.mark.parametrize(
+    "text", ["__import__('os')", "x.__class__.y", "[x]", "x if x else x", "x**y", "open(x)", "x + 'a'"]
+)
+def test_other_python_is_not_read(text: str) -> None:
+    tape = Tape()
+    with pytest.raises((NotReadError, ValueError, KeyError)):
+        read_expression(tape, text, {"x": tape.symbol("x"), "y": tape.symbol("y")}.__getitem__)
+
+
+@pytest.fixture(scope="module")
+def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the cart, verified."""
+    folder = tmp_path_factory.mktemp("cart")
+    (folder / "cart.yaml").write_text(SYSTEM)
+    run = run_command(folder / "cart.yaml", folder / "out")
+    assert run.code == 0, run.err
+    return folder / "out" / "cart"
+
+
+@pytest.mark.slow
+def test_generated_numbers_are_right(generated: Path) -> None:
+    checked = Witness(SYSTEM).check(generated)
+    assert checked.states == 20
+    assert checked.findings == ()
+    assert 0 < checked.largest < 1
+
+
+@pytest.mark.slow
+def test_a_wrong_number_and_a_false_status_are_found(generated: Path, tmp_path: Path) -> None:
+    source = (generated / "c" / "cart.c").read_text()
+    folder = tmp_path / "cart"
+    (folder / "c").mkdir(parents=True)
+    (folder / "c" / "cart.h").write_text((generated / "c" / "cart.h").read_text())
+    body = source.index("cart_inverse_dynamics(")
+    stored = re.compile(r"( u\[0\] = )([^;]+);")
+    assert stored.search(source, body)
+    for wrong, kind in (
+        (r"\1(\2)*(1 + 1e-12);", "witness: number"),
+        (r"return CART_ACTUATION_RANK;", "witness: status"),
+    ):
+        (folder / "c" / "cart.c").write_text(source[:body] + stored.sub(wrong, source[body:], count=1))
+        checked = Witness(SYSTEM).check(folder)
+        assert [finding.kind for finding in checked.findings] == [kind]
+        assert "inverse_dynamics" in checked.findings[0].text
