@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import acos, cos, pi, sqrt
 from types import MappingProxyType
 
-from symgen.diagnostics import Mistake, Span
+from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.expression import Expression
 from symgen.model.mechanism import Body, Frame, Mechanism, Quaternion, Vector3
 from symgen.model.walk import evaluate, exact_value
@@ -18,8 +18,8 @@ NO_TURNING: Mapping[str, tuple[bool, bool, bool]] = MappingProxyType({})
 
 def check_bodies(
     mechanism: Mechanism, defaults: Mapping[str, float], turning: Mapping[str, tuple[bool, bool, bool]] = NO_TURNING
-) -> Iterator[Mistake]:
-    """Masses and moments that are negative, inertias that no mass distribution has, axes without a direction.
+) -> Iterator[Mistake | Notice]:
+    """Masses that are negative, axes without a direction; inertias that no mass distribution has are notices.
 
     `turning` says about which of its own axes a frame can turn.
     """
@@ -47,32 +47,67 @@ def _check_axes(frame: Frame, defaults: Mapping[str, float]) -> Iterator[Mistake
             yield Mistake(f"an axis of the frame `{frame.name}` has length zero", remedy, _first(turn.axis, frame.span))
 
 
+def unsound_bodies(mechanism: Mechanism, defaults: Mapping[str, float]) -> tuple[Body, ...]:
+    """The bodies that would have negative energy for some velocities, if they were alone."""
+    return tuple(body for body in mechanism.bodies if _negative(body, defaults) is not None)
+
+
+def inertia_span(body: Body) -> Span | None:
+    """Where the inertia of a body stands."""
+    return _first(_entries(body), body.span)
+
+
+def _entries(body: Body) -> tuple[Expression, ...]:
+    tensor = body.inertia
+    return tensor.xx, tensor.yy, tensor.zz, tensor.xy, tensor.xz, tensor.yz
+
+
+def _moments(body: Body, defaults: Mapping[str, float]) -> tuple[float, float, float] | None:
+    """The principal moments in ascending order."""
+    values = [_value(entry, defaults) for entry in _entries(body)]
+    if any(value is None for value in values):
+        return None
+    xx, yy, zz, xy, xz, yz = (value or 0.0 for value in values)
+    return principal_moments(xx, yy, zz, xy, xz, yz)
+
+
+def _negative(body: Body, defaults: Mapping[str, float]) -> float | None:
+    """The smallest principal moment where it is negative."""
+    low, _, high = _moments(body, defaults) or (0.0, 0.0, 0.0)
+    return low if low < -RELATIVE * max(high, -low) else None
+
+
 def _check_inertia(
     body: Body, defaults: Mapping[str, float], turning: tuple[bool, bool, bool]
-) -> Iterator[Mistake]:
-    tensor = body.inertia
-    given = (tensor.xx, tensor.yy, tensor.zz, tensor.xy, tensor.xz, tensor.yz)
-    values = [_value(entry, defaults) for entry in given]
-    if any(value is None for value in values):
+) -> Iterator[Notice]:
+    """What no mass distribution has; values identified together may have it, and their sum is judged elsewhere."""
+    moments = _moments(body, defaults)
+    if moments is None:
         return
-    xx, yy, zz, xy, xz, yz = (value or 0.0 for value in values)
-    low, middle, high = principal_moments(xx, yy, zz, xy, xz, yz)
-    span = _first(given, body.span)
-    if low < -RELATIVE * high:
-        remedy = "check signs: xy, xz, yz are elements of the tensor, the negatives of CAD's products of inertia"
-        yield Mistake(f"the inertia of `{body.name}` has a negative principal moment, {low:.6g}", remedy, span)
+    low, middle, high = moments
+    if _negative(body, defaults) is not None:
+        yield Notice(
+            f"the inertia of `{body.name}` has a negative principal moment, {low:.6g}: if it was not identified "
+            "together with others, check signs: xy, xz, yz are elements of the tensor, the negatives of CAD's "
+            "products of inertia",
+            inertia_span(body),
+        )
+        return
     # one or two moments alone are how planar mechanisms are written: nothing turns about the other axes
-    missing = [able for entry, able in zip(given[:3], turning, strict=True) if exact_value(entry) == 0]
-    if low >= -RELATIVE * high and (not missing or any(missing)) and low + middle < high * (1 - RELATIVE):
+    missing = [able for entry, able in zip(_entries(body)[:3], turning, strict=True) if exact_value(entry) == 0]
+    if (not missing or any(missing)) and low + middle < high * (1 - RELATIVE):
         low, middle = (0.0 if abs(moment) <= RELATIVE * high else moment for moment in (low, middle))
-        remedy = "check units, signs of xy, xz, yz, and that the tensor is the one about the centre of mass"
+        hint = (
+            "if they were not identified together with others, check units, signs of xy, xz, yz, and that the tensor "
+            "is the one about the centre of mass"
+        )
         if missing:
-            remedy = "give all of xx, yy, zz: what is missing counts as 0, and the body turns about those axes too"
-        yield Mistake(
+            hint = "give all of xx, yy, zz: what is missing counts as 0, and the body turns about those axes too"
+        yield Notice(
             f"the inertia of `{body.name}` violates the triangle inequality: its principal moments are "
-            f"{low:.6g}, {middle:.6g}, {high:.6g}, and no mass distribution has one above the sum of the others",
-            remedy,
-            span,
+            f"{low:.6g}, {middle:.6g}, {high:.6g}, and no mass distribution has one above the sum of the others; "
+            f"{hint}",
+            inertia_span(body),
         )
 
 

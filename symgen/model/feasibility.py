@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.assembly import Assembly, Place
+from symgen.model.body_checks import inertia_span
 from symgen.model.branches import Open
 from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
@@ -13,6 +14,7 @@ from symgen.model.names import counted
 
 # Configurations at which masses are looked at, and how many say that a coordinate is held.
 SAMPLES, ENOUGH = 5, 3
+FURTHER = 40
 
 # Components of a motion this small are none.
 HELD = 1e-7
@@ -40,12 +42,23 @@ def check_motion(
         )
         return
     regular = [(list(place.q), mechanics.jacobian(place.q)) for place in found.places[:SAMPLES]]
-    yield from _check_masses(mechanics, regular, spans["kinetic_energy"])
+    yield from _check_masses(mechanics, [*regular, *_further(mechanics, found)], spans["kinetic_energy"])
     elsewhere = [(list(place.q), mechanics.jacobian(place.q)) for place in found.others]
     yield from _held(mechanics, [*regular, *elsewhere], spans["constraints"])
     yield from _other_branches(mechanics, found, spans["configuration"])
     if independent:
         yield from _check_independent(mechanics, regular, independent, n - rank, spans["independent_velocities"])
+
+
+def _further(mechanics: Mechanics, found: Assembly) -> Iterator[tuple[list[float], Rows]]:
+    """More configurations for bodies of which only the sum may have a positive energy."""
+    if not mechanics.unsound:
+        return
+    places = [list(place.q) for place in found.places[SAMPLES:]]
+    if not mechanics.geometric:
+        places += [q for q, _ in mechanics.anywhere(FURTHER)]
+    for q in places:
+        yield q, mechanics.jacobian(q)
 
 
 def _no_configuration(mechanics: Mechanics, found: Open | None, span: Span | None) -> Mistake:
@@ -90,28 +103,25 @@ def _shown(mechanics: Mechanics, place: Place) -> str:
 
 def _check_masses(
     mechanics: Mechanics, regular: list[tuple[list[float], Rows]], span: Span | None
-) -> Iterator[Mistake]:
-    definite_somewhere = False
+) -> Iterator[Mistake | Notice]:
+    """G must be positive definite along the constraints; across them it may be anything, which is told."""
+    definite_somewhere = negative_across = False
     still: set[str] = set()
     for q, jacobian in regular:
         try:
             mass = mechanics.mass_matrix(q)
         except (ArithmeticError, ValueError):
             continue
-        if not mechanics.mass_is_sure and not is_positive(mass)[0]:
-            where = ", ".join(f"{c.name} = {value:.4g}" for c, value in zip(mechanics.coordinates, q, strict=True))
-            yield Mistake(
-                f"the kinetic energy is negative for some velocities at {where}",
-                "check the signs of its terms, and masses and inertias with their default values",
-                span,
-            )
+        where = ", ".join(f"{c.name} = {value:.4g}" for c, value in zip(mechanics.coordinates, q, strict=True))
+        along, definite = is_positive(_along(mass, jacobian))
+        if not mechanics.mass_is_sure and not along:
+            yield _negative_energy(mechanics, where, span)
             return
-        if definite_somewhere:
-            continue
-        basis = null_space(jacobian, len(q))
-        images = [[sum(a * b for a, b in zip(row, vector, strict=True)) for row in mass] for vector in basis]
-        reduced = [[sum(a * b for a, b in zip(image, vector, strict=True)) for vector in basis] for image in images]
-        definite_somewhere = is_positive(reduced)[1]
+        if not mechanics.mass_is_sure and not negative_across and not is_positive(mass)[0]:
+            negative_across = True
+            negative = f"the kinetic energy is negative for some velocities at {where}"
+            yield Notice(f"{negative}; the constraints allow none of them", span)
+        definite_somewhere = definite_somewhere or definite
         if definite_somewhere and mechanics.mass_is_sure:
             break
         if not definite_somewhere:
@@ -125,6 +135,27 @@ def _check_masses(
             f"give {'it' if alone else 'one of them'} a mass or inertia in `kinetic_energy` or `bodies`",
             span,
         )
+
+
+def _along(mass: Rows, jacobian: Rows) -> Rows:
+    """W^T G W for an orthonormal basis W of the velocities that the constraints allow."""
+    basis = null_space(jacobian, len(mass))
+    images = [[sum(a * b for a, b in zip(row, vector, strict=True)) for row in mass] for vector in basis]
+    return [[sum(a * b for a, b in zip(image, vector, strict=True)) for vector in basis] for image in images]
+
+
+def _negative_energy(mechanics: Mechanics, where: str, span: Span | None) -> Mistake:
+    """The mistake at the inertia of a body that has a negative moment, or at the energy."""
+    if not mechanics.unsound:
+        remedy = "check the signs of its terms, and masses and inertias with their default values"
+        return Mistake(f"the kinetic energy is negative for some velocities at {where}", remedy, span)
+    body = mechanics.unsound[0]
+    return Mistake(
+        f"the kinetic energy is negative for some velocities at {where}: the negative principal moment of "
+        f"`{body.name}` is not made up for by other bodies",
+        "check signs: xy, xz, yz are elements of the tensor, the negatives of CAD's products of inertia",
+        inertia_span(body) or span,
+    )
 
 
 def _without_mass(mechanics: Mechanics, jacobian: Rows, mass: Rows) -> set[str]:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 
 from symgen.model.algebra import Expansion, Polynomial
+from symgen.model.body_checks import unsound_bodies
 from symgen.model.dense import Rows
 from symgen.model.expression import Expression
 from symgen.model.float_kinematics import FloatKinematics
 from symgen.model.gradient import Gradients
-from symgen.model.mechanism import NO_MECHANISM, Mechanism, component
+from symgen.model.mechanism import NO_MECHANISM, Body, Mechanism, component
 from symgen.model.model import ConstraintRow, Coordinate, Definition, Input, Parameter
 from symgen.model.sparse import Row
 from symgen.model.walk import evaluate, exact_value
@@ -94,8 +96,13 @@ class Mechanics:
 
     @property
     def mass_is_sure(self) -> bool:
-        """Whether T is that of bodies alone, whose masses and inertias are checked one by one."""
-        return self.mechanism.has_mass and exact_value(self._kinetic) == 0
+        """Whether T is that of bodies alone, each of which has none below 0."""
+        return self.mechanism.has_mass and exact_value(self._kinetic) == 0 and not self.unsound
+
+    @cached_property
+    def unsound(self) -> tuple[Body, ...]:
+        """The bodies with a negative principal moment, as identified values may have it."""
+        return unsound_bodies(self.mechanism, self.defaults)
 
     def mass_matrix(self, q: Sequence[float]) -> Rows:
         """G, n x n."""

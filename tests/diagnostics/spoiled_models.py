@@ -355,10 +355,9 @@ BODIES = {
     "body_without_frame": arm(bodies=MASSES + "  loader: {mass: 1}\n"),
     "negative_mass": arm(bodies=MASSES.replace("lower: {mass: m", "lower: {mass: m - 3")),
     "mass_that_changes": arm(bodies=MASSES.replace("lower: {mass: m", "lower: {mass: m*a")),
-    "triangle_inequality": heavy("xx: 1, yy: 1, zz: 2.5"),
-    "moments_that_are_missing_in_space": turned("[[x, 0.3], [z, a]]").replace("[[z, b]]", "[[y, b]]"),
-    "triangle_inequality_of_a_grain": heavy("xx: 1e-12, yy: 1e-12, zz: 2.5e-12"),
-    "negative_moment": heavy("xx: 1, yy: 1, zz: 1, xy: 1.5"),
+    "negative_moment": arm(
+        bodies=MASSES.replace("lower: {mass: m, com: [l/2, 0, 0], inertia: {zz: ", "lower: {mass: m, inertia: {zz: -4*")
+    ),
     "unknown_element": heavy("zy: 1"),
     "massless_motion": arm(bodies="bodies: {upper: {mass: 0}, lower: {mass: m}}\n"),
     "massless_motion_of_two": arm(

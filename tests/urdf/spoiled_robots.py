@@ -115,6 +115,6 @@ PARTS: dict[str, Case] = {
     "no_mass": changed('<mass value="2"/>', ""),
     "no_inertia_element": changed(' iyz="0" izz="0.05"', ' izz="0.05"'),
     "negative_mass": changed('value="2"', 'value="-2"'),
-    "impossible_inertia": changed('ixx="0.01"', 'ixx="0.2"'),
+    "impossible_inertia": changed('izz="0.04"', 'izz="-0.4"'),
 }
 GROUPS = {"hostile": HOSTILE, "paths": PATHS, "tree": TREE, "joints": JOINTS, "parts": PARTS}

@@ -1,6 +1,7 @@
 """Whether G is positive definite, frame by frame: what a frame's own bodies show needs no others.
 
-Articulated inertias are at least those of a frame's own bodies, because what is passed on inwards is never negative.
+Articulated inertias are at least those of a frame's own bodies, because what is passed on inwards is never negative:
+bodies with a negative moment, as identified values may have it, are left to other forms.
 So a joint is sure where its own bodies resist it, and only frames without such bodies (the middle of a universal joint)
 take in what the next frames outwards pass on.  Their pivots hold a few coordinates each and are proved or minimised one
 by one: the pivots of a long chain itself would be small numbers beside its diagonal entries, and a search in all its
@@ -19,10 +20,14 @@ from symgen.dynamics.forms.definiteness import SMALLEST, smallest
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.matrix import Matrix, dot
 from symgen.graph.scalar import Scalar
+from symgen.model.body_checks import unsound_bodies
+from symgen.model.mechanics import default_values
 
 
 def definite_by_frames(mechanics: Mechanics, factor: ArticulatedFactor) -> bool:
     """Whether every pivot of the factor is positive at every configuration, for parameters in their ranges."""
+    if unsound_bodies(mechanics.model.mechanism, default_values(mechanics.model.parameters)):
+        return False
     definite = Definite(mechanics)
     single = all(len(own) < 2 for own in factor.directions.values())
     if single and all(definite.holds(own) for own in factor.own.values()):
