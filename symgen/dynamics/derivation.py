@@ -7,14 +7,17 @@ by quantity name; `select` compares the derivations along different null spaces 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 from symgen.dynamics.allocation import InputAllocation
 from symgen.dynamics.exterior import ActuationForms
+from symgen.dynamics.forms.absolute import in_absolute_angles, motion_brought_back
 from symgen.dynamics.forms.definiteness import positive_definite
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.motions import MotionName, candidates, cheapest, few_minors, motion
+from symgen.dynamics.forms.schur import schur_qr
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.inertia import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
@@ -22,7 +25,7 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.rank_measures import rank_measures
 from symgen.dynamics.solvable import solvable
-from symgen.dynamics.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
+from symgen.dynamics.spaces import LONGEST_PRODUCT, HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
 from symgen.graph.calculus import derivative_along
 from symgen.graph.matrix import (
     Matrix,
@@ -70,6 +73,21 @@ class Derivation:
         """
         return self.mechanics.factoring.common_sums(self.admissible)
 
+    @property
+    def whole(self) -> frozenset[Scalar]:
+        """What must stay whole where results are multiplied out: common speeds, and the minors of B.
+
+        Where the rank of B drops all minors are small together, and what they are multiplied out into is not.
+        """
+        minors = self.space.forms.minors if isinstance(self.space, MinorSpace) else frozenset()
+        return self.common_speeds | minors
+
+    @property
+    def whole_for_inputs(self) -> frozenset[Scalar]:
+        """The same for u, whose sums of squared determinants vanish where inputs lose an effect."""
+        forms, _ = self._actuation
+        return self.whole | forms.minors
+
     @cached_property
     def inertia(self) -> ConstrainedInertia:
         """K = W (W^T G W)^-1 W^T, by the form that is valid wherever G is positive definite on ker B."""
@@ -93,7 +111,24 @@ class Derivation:
             if self.generic.rank == self.r and few_minors(self.generic):
                 # where the constraints carry a load, what is left of it along a motion cancels in the minors only
                 names = ("minor", *names)
-        return {name: motion(name, self.mechanics, self.space, self.inertia) for name in names}
+        return {name: self._motion(name) for name in names}
+
+    def _motion(self, name: MotionName) -> Motion:
+        """One form; `schur_qr` is worked out in absolute angles, in which G keeps the inertias of bodies apart.
+
+        It is so on a graph of its own and brought here as it stands: all it computes is rational, and beside minors
+        equal functions of these would take the place of its steps.
+        """
+        if name != "schur_qr":
+            return motion(name, self.mechanics, self.space, self.inertia)
+        own = self.mechanics
+        apart = own.apart() if own.change is not None else in_absolute_angles(own.model) or own.apart()
+        made = schur_qr(Problem(apart, ()))
+        # symbols of absolute angles stay where these are the coordinates of this derivation
+        back = apart if own.change is None else None
+        made = motion_brought_back(self.graph, back, made)
+        ranks = self.space.guards if self.r <= LONGEST_PRODUCT else ()
+        return replace(made, guards=(*ranks, *made.guards), name=name)
 
     @cached_property
     def acceleration(self) -> Motion:

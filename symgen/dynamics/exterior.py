@@ -9,7 +9,7 @@ one division, symmetric in rows, columns and inputs, hence valid wherever the ra
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import combinations
 from typing import TypeAlias
 
@@ -50,6 +50,12 @@ def wedge_all(start: Multivector, vectors: Sequence[Sequence[Scalar]]) -> Multiv
     return start
 
 
+def in_either_sign(forms: Iterable[Multivector]) -> frozenset[Scalar]:
+    """All components and what they are with the other sign, in which they stand in results as well."""
+    components = [value for form in forms for value in form.values()]
+    return frozenset((*components, *(-value for value in components)))
+
+
 def inner(graph: Graph, a: Multivector, b: Multivector) -> Scalar:
     """The inner product in which the basis multivectors are orthonormal."""
     return graph.sum(a[mask] * b[mask] for mask in sorted(a.keys() & b.keys()))
@@ -84,6 +90,11 @@ class RowForms:
         self.subsets = list(combinations(range(len(rows)), rank))
         self.forms = [wedge_all(unit(graph), [rows[k] for k in subset]) for subset in self.subsets]
         self.square = graph.sum(square(graph, form) for form in self.forms)
+
+    @property
+    def minors(self) -> frozenset[Scalar]:
+        """The r x r minors of B, all of them small where its rank drops."""
+        return in_either_sign(self.forms)
 
     def projector(self) -> Matrix:
         """N_B (21): the smaller of (e_i ^ omega, e_j ^ omega) and its complement, over |omega|^2."""
@@ -156,6 +167,13 @@ class ActuationForms:
         other = ActuationForms(self.rows, self.inputs, self.degree, self.weights)
         other.products = [[{(1 << self.rows.n) - 1: cancel(self.determinant())}]]
         return other
+
+    @property
+    def minors(self) -> frozenset[Scalar]:
+        """What the products consist of, all of it small where the inputs lose an effect; none where Delta divides."""
+        if self.single:
+            return frozenset()
+        return in_either_sign(product for family in self.products for product in family)
 
     def importance(self, subset: tuple[int, ...]) -> Scalar:
         """The factor of a subset's determinants in the sums."""

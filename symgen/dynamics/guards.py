@@ -75,7 +75,7 @@ def magnitude(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
                 bound[node] = args[0] + args[1]
             case "mul":
                 bound[node] = args[0] * args[1]
-            case "neg" | "abs" | "copysign":
+            case "neg" | "abs" | "copysign" | "rounded":
                 bound[node] = args[0]
             case "div":
                 bound[node] = args[0] / graph.function("abs", (node.args[1],))

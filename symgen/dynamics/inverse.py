@@ -224,7 +224,7 @@ class InverseDynamics:
         limit = _factoring_limit(best)
         if self._generic.rank < self._generic.r or isinstance(minor, str) or not 0 < minor.form.weight <= limit:
             return None
-        kept = frozenset[Scalar]() if isinstance(self.minor, str) else self.minor.common_speeds
+        kept = frozenset[Scalar]() if isinstance(self.minor, str) else self.minor.whole_for_inputs
         system = minor.system
         outputs = system.mechanics.factoring.shorten(minor.form.outputs, kept)
         made = form(minor.form.name, minor.form.quantity, outputs, minor.form.guards, system.given)

@@ -62,6 +62,11 @@ class Mechanics:
         self.factoring = Factoring(graph, self.parameters)
         self.definitions = {d.name: self.names[d.name] for d in model.definitions}
 
+    def apart(self) -> Mechanics:
+        """The same system on a graph of its own, where no function of it is known yet."""
+        plain = Mechanics(self.model, lumped=self.lumped)
+        return plain if self.change is None else Mechanics(self.model, plain, self.change, self.lumped)
+
     def _bodies(self) -> Bodies:
         """The bodies, and every component of points and frames that a formula uses, entered in `names`."""
         for definition in definitions_before_frames(self.model):

@@ -205,7 +205,7 @@ def derive_quantities(
             best = "minors"
         # minors of rows that depend on each other become small together: multiplied out, their squares would cancel
         if generic.rank == generic.r and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
-            chosen, kept = candidates["minors"], derivations["minors"].common_speeds
+            chosen, kept = candidates["minors"], derivations["minors"].whole
             shorter = replace(chosen, outputs=mechanics.factoring.shorten(chosen.outputs, kept))
             costs["factored"] = cost(scalars(shorter)).weight
             # multiplied out, terms that vanish have cancelled exactly: worth a few operations more

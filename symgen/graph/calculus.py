@@ -24,6 +24,8 @@ def partials(graph: Graph, node: Scalar) -> tuple[Scalar, ...]:
             return (graph.one, graph.const(-1))
         case "neg":
             return (graph.const(-1),)
+        case "rounded":
+            return (graph.one,)
         case "mul":
             return (args[1], args[0])
         case "div":

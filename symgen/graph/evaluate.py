@@ -30,6 +30,7 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "cosh": math.cosh,
     "tanh": math.tanh,
     "abs": abs,
+    "rounded": lambda x: x,
     "copysign": math.copysign,
     "add": operator.add,
     "sub": operator.sub,

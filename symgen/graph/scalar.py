@@ -337,9 +337,11 @@ class Graph:
         return self._node("pow", (base,), exponent)
 
     def function(self, name: str, args: tuple[Scalar, ...]) -> Scalar:
-        """One of the functions of the expression language, or abs, copysign, ratio_or_zero, min, max."""
+        """One of the functions of the expression language, or abs, copysign, ratio_or_zero, min, max, rounded."""
         if name in ("sin", "cos"):
             return self.trig(name, args[0])
+        if name == "rounded":
+            return self.rounded(args[0])
         first = args[0]
         if name == "sqrt":
             if (value := first.constant) is not None and value >= 0:
@@ -361,6 +363,10 @@ class Graph:
             if args[1].constant is not None:
                 return self.div(first, args[1])
         return self._node(name, args)
+
+    def rounded(self, a: Scalar) -> Scalar:
+        """The number that is computed for a, of which nothing else is known: what it lacks of a can be worked out."""
+        return a if a.constant is not None or a.op in ("symbol", "rounded") else self._node("rounded", (a,))
 
     def trig(self, name: str, argument: Scalar) -> Scalar:
         """Sine or cosine, keyed by the integer combination of leaves in its argument; its sign is pulled out."""

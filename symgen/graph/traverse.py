@@ -13,7 +13,7 @@ from symgen.records import dataclass
 
 # What counts as arithmetic, as an angle, or not at all; every other operation is a function.
 _NO_FUNCTIONS = frozenset({"add", "sub", "min", "max", "mul", "div", "ratio_or_zero", "sqrt", "sin", "cos"})
-_NO_FUNCTIONS |= {"const", "symbol", "neg", "abs", "copysign"}
+_NO_FUNCTIONS |= {"const", "symbol", "neg", "abs", "copysign", "rounded"}
 
 
 def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> Sequence[Scalar]:

@@ -165,6 +165,10 @@ class Writer:
     def _plain(self, node: Node) -> list[Statement]:
         """The node's statement, or none where the same operation on the same operands stands already."""
         operands = tuple(self.operand(argument) for argument in node.args)
+        if node.op == "rounded":
+            # no operation: what has been computed is a number
+            (self._written[node],) = operands
+            return []
         if node.op == "pow":
             assert isinstance(node.payload, Fraction)
             operands = (*operands, Literal(node.payload))

@@ -9,14 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.coordinates import absolute_angles
+from symgen.dynamics.forms.motion import Motion
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.transplant import transplanted
 from symgen.model.model import Model
+
+if TYPE_CHECKING:
+    from symgen.dynamics.catalogue import Derived
 
 
 def in_absolute_angles(model: Model) -> Mechanics | None:
@@ -31,9 +35,30 @@ def brought_back(graph: Graph, mechanics: Mechanics, derived: Derived) -> Derive
 
     Carried over as they stand: beside the nodes they were derived from, equal functions would take their place.
     """
+    assert mechanics.change is not None
+    outputs = mechanics.change.relative(derived.outputs) if derived.name == "forward_dynamics" else derived.outputs
+    symbols = _of_the_model(graph, mechanics)
+    guards = tuple(_moved(graph, guard, symbols) for guard in derived.guards)
+    return replace(derived, outputs=tuple(transplanted(graph, outputs, symbols)), guards=guards)
+
+
+def motion_brought_back(graph: Graph, mechanics: Mechanics | None, motion: Motion) -> Motion:
+    """The same for q_ddot and lambda together; in the coordinates they have where no `mechanics` are given."""
+    change = None if mechanics is None else mechanics.change
+    accelerations = motion.accelerations if change is None else change.relative(motion.accelerations)
+    symbols = {} if mechanics is None or change is None else _of_the_model(graph, mechanics)
+    return replace(
+        motion,
+        accelerations=tuple(transplanted(graph, accelerations, symbols)),
+        multipliers=tuple(transplanted(graph, motion.multipliers, symbols)),
+        guards=tuple(_moved(graph, guard, symbols) for guard in motion.guards),
+    )
+
+
+def _of_the_model(graph: Graph, mechanics: Mechanics) -> dict[str, Scalar]:
+    """The symbols of absolute angles, by name, in terms of the model's coordinates."""
     change, coordinates = mechanics.change, mechanics.model.coordinates
     assert change is not None
-    outputs = change.relative(derived.outputs) if derived.name == "forward_dynamics" else derived.outputs
     symbols: dict[str, Scalar] = {}
     for own, names in (
         (mechanics.q, [c.name for c in coordinates]),
@@ -42,8 +67,7 @@ def brought_back(graph: Graph, mechanics: Mechanics, derived: Derived) -> Derive
     ):
         given = change.absolute(tuple(map(graph.symbol, names)))
         symbols |= {str(symbol.payload): value for symbol, value in zip(own, given, strict=True)}
-    guards = tuple(_moved(graph, guard, symbols) for guard in derived.guards)
-    return replace(derived, outputs=tuple(transplanted(graph, outputs, symbols)), guards=guards)
+    return symbols
 
 
 def _moved(graph: Graph, guard: Guard, symbols: Mapping[str, Scalar]) -> Guard:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from symgen.dynamics.exterior import Multivector, unit, wedge, wedge_all
+from symgen.dynamics.exterior import Multivector, in_either_sign, unit, wedge, wedge_all
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.inertia import diagonal_sizes
@@ -41,7 +41,8 @@ class MinorMotion:
         self._weighted = self._directions()
         self._denominator = _top(self._weighted, self._omega, self._n, graph.zero)
         if expanded:
-            self._denominator, *entries = problem.multiplied_out([self._denominator, *self._weighted.values()])
+            kept = in_either_sign([self._omega])
+            self._denominator, *entries = problem.multiplied_out([self._denominator, *self._weighted.values()], kept)
             self._weighted = dict(zip(self._weighted, entries, strict=True))
         self._inverse = 1 / self._denominator
 

@@ -35,7 +35,7 @@ class Problem:
         self.guards = guards
         self.n, self.r = mechanics.n, mechanics.r
         self._mechanics = mechanics
-        self._multiplier = Multiplier(mechanics.graph, lambda _: False)
+        self._multipliers: dict[frozenset[Scalar], Multiplier] = {}
 
     @property
     def mass_matrix(self) -> Matrix:
@@ -57,12 +57,16 @@ class Problem:
         """a (r)."""
         return self._mechanics.constraint_acceleration_bias(self._mechanics.qd) if self.r else ()
 
-    def multiplied_out(self, values: list[Scalar]) -> list[Scalar]:
-        """The values with sums of parameters multiplied out too, where that is not too long.
+    def multiplied_out(self, values: list[Scalar], kept: frozenset[Scalar] = frozenset()) -> list[Scalar]:
+        """The values with sums of parameters multiplied out too, where that is not too long; sums in `kept` stay whole.
 
-        Inertias that occur in several entries of G (an angle relative to a turning body) then cancel exactly.
+        Inertias that occur in several entries of G (an angle relative to a turning body) then cancel exactly.  What
+        becomes small where a rank drops has to be kept: the square of a small difference, multiplied out, is the
+        difference of numbers that are not small.
         """
         fixed = self._mechanics.factoring.fixed
-        found = refactored(self.graph, share_angles(self.graph, values), self._multiplier, fixed)
+        if kept not in self._multipliers:
+            self._multipliers[kept] = Multiplier(self.graph, lambda node: node in kept)
+        found = refactored(self.graph, share_angles(self.graph, values), self._multipliers[kept], fixed)
         same_values("multiplying sums of parameters out", values, found)
         return found

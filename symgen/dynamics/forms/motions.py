@@ -53,17 +53,15 @@ def cheapest(
 ) -> Motion:
     """The candidate that counts least, outputs and tested denominators together, exact cancellation worth some.
 
-    `nullspace` is normwise accurate in the units that B is given in.  For q_ddot that is as good as anything where the
-    coordinates have one unit, and masses that differ a lot cost nothing; else, and for lambda, it is left for systems
-    in which G is definite along the constraints only.
+    `nullspace` is normwise accurate in the units that B is given in, and loses what masses and lengths are apart by: it
+    is left for systems in which G is definite along the constraints only.
     """
-    even = part == "accelerations" and one_unit(mechanics)
     counted = {
         name: cost((*getattr(one, part), *(guard.denominator for guard in one.guards))).weight
         for name, one in motions.items()
     }
     weights = {name: count * cost_factor(name, mechanics) for name, count in counted.items()}
-    order = sorted(motions, key=lambda name: (name == "nullspace" and not even, weights[name]))
+    order = sorted(motions, key=lambda name: (name == "nullspace", weights[name]))
     usable = (name for name in order if name != "schur_qr" or len(order) == 1 or positive_definite(mechanics))
     return motions[next(usable)]
 

@@ -1,9 +1,14 @@
 """q_ddot and lambda by elimination of the accelerations: G = L D L^T, then the constraints in the metric of G^-1.
 
 With A = L^-1 B^T the system G q_ddot + B^T lambda = f, B q_ddot = -a becomes x + A lambda = L^-1 f, A^T D^-1 x = -a
-for x = D L^T q_ddot.  `schur_qr` factorises A by reflections that are orthogonal in the metric D^-1, so that the
-squared condition number of A^T D^-1 A is never met; `schur_ldl` forms that matrix, which is shorter and loses it
-(Golub and Van Loan, Matrix Computations, 4.1 and 5.2; Bjorck, Least Squares Problems, 2.8 for weights).
+for x = D L^T q_ddot.  `schur_qr` factorises A = V R with columns of V that are orthogonal in the metric D^-1, so that
+the squared condition number of A^T D^-1 A is never met; `schur_ldl` forms that matrix, which is shorter and loses it
+(Golub and Van Loan, Matrix Computations, 4.1 and 5.2; Bjorck, Numerical Methods for Least Squares Problems, 2.4 and
+4.4).
+
+A = V R comes by the modified Gram-Schmidt process, not by reflections: where masses are far apart the rows of A are of
+very different size, and reflections mix them unless they are sorted.  Here each entry changes by a multiple of the
+entry of the column that is taken out, in its own row.
 """
 
 from __future__ import annotations
@@ -39,26 +44,69 @@ class Factor(Protocol):
 
 
 def schur_qr(problem: Problem) -> Motion:
-    """By A = Q R with reflections: valid wherever G is positive definite and B has full rank."""
-    factor = Cholesky(problem.graph, problem.mass_matrix, diagonal_sizes(problem.graph, problem.mass_matrix))
-    columns = [factor.lowered(row) for row in problem.rows]
-    return along_factor(problem, factor, columns, factor.lowered(problem.force))
+    """By A = V R, with one step of refinement: valid wherever G is positive definite and B has full rank.
+
+    Where masses are far apart the lightest ones decide, in the metric of G^-1, on what the others are lost beside; what
+    the equations still ask for is solved for once more (Higham, Accuracy and Stability of Numerical Algorithms, 12.2).
+    """
+    g = problem.mass_matrix
+    factor = Cholesky(problem.graph, g, diagonal_sizes(problem.graph, g))
+    elimination = _Elimination(problem, factor, [factor.lowered(row) for row in problem.rows])
+    solution = elimination.solve(problem.force, tuple(-a for a in problem.bias))
+    if problem.r:
+        first = _rounded(problem.graph, solution)
+        # exactly, the sum of both is the first again
+        further = _rounded(problem.graph, elimination.solve(*left_over(problem, *first)))
+        solution = _sum(first[0], further[0]), _sum(first[1], further[1])
+    return Motion(*solution, elimination.guards)
 
 
 def along_factor(problem: Problem, factor: Factor, columns: Sequence[Vector], force: Vector) -> Motion:
-    """The same for any factor of G; `columns` are those of A, `force` is L^-1 f."""
-    graph, r = problem.graph, problem.r
-    weights = tuple(1 / pivot for pivot in factor.pivots)
-    turned = WeightedReflections(graph, columns, factor.pivots, weights)
-    free = turned.apply_transposed(force)
-    # R^T D^-1 z = a, with the first r weights of D^-1
-    given = _solve_lower(graph, turned.triangle, factor.pivots, problem.bias)
-    multipliers = _solve_upper(turned.triangle, [f + z for f, z in zip(free, given, strict=False)])
-    x = turned.apply((*(-z for z in given), *free[r:]))
-    accelerations = factor.raised(tuple(entry * weight for entry, weight in zip(x, weights, strict=True)))
-    # with many rows the rank of B is measured where they are reflected anyway
-    regular = (turned.regularity(),) if r > LONGEST_PRODUCT else problem.guards
-    return Motion(accelerations, multipliers, (*regular, *factor.guards))
+    """The same without refinement for any factor of G; `columns` are those of A, `force` is L^-1 f."""
+    elimination = _Elimination(problem, factor, columns)
+    accelerations, multipliers = elimination.solve_lowered(force, tuple(-a for a in problem.bias))
+    return Motion(accelerations, multipliers, elimination.guards)
+
+
+class _Elimination:
+    """G q_ddot + B^T lambda = f, B q_ddot = c for any f and c."""
+
+    def __init__(self, problem: Problem, factor: Factor, columns: Sequence[Vector]) -> None:
+        self._factor = factor
+        self._weights = tuple(1 / pivot for pivot in factor.pivots)
+        self._orthogonal = WeightedGramSchmidt(problem.graph, columns, self._weights)
+        # with many rows the rank of B is measured where they are made orthogonal anyway
+        regular = (self._orthogonal.regularity(),) if problem.r > LONGEST_PRODUCT else problem.guards
+        self.guards = (*regular, *factor.guards)
+
+    def solve(self, f: Vector, c: Vector) -> tuple[Vector, Vector]:
+        """q_ddot and lambda."""
+        return self.solve_lowered(self._factor.lowered(f), c)
+
+    def solve_lowered(self, force: Vector, c: Vector) -> tuple[Vector, Vector]:
+        """q_ddot and lambda from L^-1 f."""
+        x, multipliers = self._orthogonal.solve(force, c)
+        return self._factor.raised(tuple(y * w for y, w in zip(x, self._weights, strict=True))), multipliers
+
+
+def left_over(problem: Problem, q_ddot: Vector, multipliers: Vector) -> tuple[Vector, Vector]:
+    """f - G q_ddot - B^T lambda and -a - B q_ddot, for numbers that have been computed."""
+    graph, rows = problem.graph, problem.rows
+    forces = tuple(
+        f - dot(graph, g, q_ddot) - graph.sum(row[i] * x for row, x in zip(rows, multipliers, strict=True))
+        for i, (f, g) in enumerate(zip(problem.force, problem.mass_matrix, strict=True))
+    )
+    rates = tuple(-a - dot(graph, row, q_ddot) for row, a in zip(rows, problem.bias, strict=True))
+    return forces, rates
+
+
+def _rounded(graph: Graph, solution: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
+    q_ddot, multipliers = solution
+    return tuple(map(graph.rounded, q_ddot)), tuple(map(graph.rounded, multipliers))
+
+
+def _sum(a: Vector, b: Vector) -> Vector:
+    return tuple(x + y for x, y in zip(a, b, strict=True))
 
 
 def schur_ldl(problem: Problem) -> Motion:
@@ -86,83 +134,63 @@ def schur_ldl(problem: Problem) -> Motion:
     return Motion(accelerations, multipliers, (*problem.guards, *factor.guards))
 
 
-class WeightedReflections:
-    """Reflections x -> x - 2 v (v, x)/(v, v) in the metric (x, y) = sum_i x_i y_i / d_i that make columns triangular.
+class WeightedGramSchmidt:
+    """A = V R by the modified Gram-Schmidt process in the metric (x, y) = sum_i x_i y_i w_i; R has a unit diagonal.
 
-    They are Householder's for the rows divided by sqrt(d_i), without the roots.
+    No roots are taken: V keeps the lengths that are left of the columns.
     """
 
-    def __init__(self, graph: Graph, columns: Sequence[Vector], d: Sequence[Scalar], weights: Sequence[Scalar]) -> None:
-        self._graph = graph
-        self._columns = columns
-        self._weights = weights
-        self._reflectors: list[tuple[int, Vector, Scalar]] = []
-        self.triangle: list[Vector] = []
-        for k, column in enumerate(columns):
-            y = self.apply_transposed(column)
-            tail = y[k:]
-            head = tail[0]
-            if all(entry.is_zero for entry in tail[1:]):
-                self.triangle.append((*y[:k], head))
-                continue
-            # the length that the first component must have: reach^2/d_k = (tail, tail)
-            squared = head * head + d[k] * graph.sum(
-                x * x * w for x, w in zip(tail[1:], weights[k + 1 :], strict=True)
-            )
-            length = graph.function("sqrt", (squared,))
-            signed = length if head.is_zero else graph.function("copysign", (length, head))
-            # (v, v)/2 = length (length + |head|) / d_k
-            factor = d[k] / (squared + length * graph.function("abs", (head,)))
-            self._reflectors.append((k, (head + signed, *tail[1:]), factor))
-            self.triangle.append((*y[:k], -signed))
+    def __init__(self, graph: Graph, columns: Sequence[Vector], weights: Sequence[Scalar]) -> None:
+        self._graph, self._columns, self._metric = graph, columns, weights
+        left = list(columns)
+        self._directions: list[Vector] = []
+        self._weighted: list[Vector] = []
+        self._squares: list[Scalar] = []
+        self._inverses: list[Scalar] = []
+        self._upper: list[list[Scalar]] = [[] for _ in columns]  # column j of R above the diagonal
+        for k, direction in enumerate(left):
+            weighted = tuple(x * w for x, w in zip(direction, weights, strict=True))
+            square = dot(graph, weighted, direction)
+            inverse = 1 / square
+            self._directions.append(direction)
+            self._weighted.append(weighted)
+            self._squares.append(square)
+            self._inverses.append(inverse)
+            for j in range(k + 1, len(left)):
+                share = dot(graph, weighted, left[j]) * inverse
+                self._upper[j].append(share)
+                left[j] = _less(left[j], share, direction)
 
     def regularity(self) -> Guard:
         """det(A^T D^-1 A) over the squared lengths of the columns: 0 exactly where columns depend on each other."""
-        graph, weights = self._graph, self._weights
-        quotients = []
-        for k, (column, reflected) in enumerate(zip(self._columns, self.triangle, strict=True)):
-            pivot = reflected[k]
-            length = graph.sum(x * x * w for x, w in zip(column, weights, strict=True))
-            quotients.append(pivot * pivot * weights[k] / length)
+        graph = self._graph
+        lengths = (graph.sum(x * x * w for x, w in zip(c, self._metric, strict=True)) for c in self._columns)
+        quotients = [square / length for square, length in zip(self._squares, lengths, strict=True)]
         return Guard(Status.CONSTRAINT_RANK, graph.product(quotients), 2, scale=graph.one)
 
-    def apply_transposed(self, x: Vector) -> Vector:
-        """The reflections in the order in which they were made."""
-        for reflector in self._reflectors:
-            x = self._reflect(reflector, x)
-        return x
+    def solve(self, b: Vector, c: Sequence[Scalar]) -> tuple[Vector, Vector]:
+        """y and l of y + A l = b, A^T W y = c.
 
-    def apply(self, x: Vector) -> Vector:
-        """The reflections in the opposite order: the inverse."""
-        for reflector in reversed(self._reflectors):
-            x = self._reflect(reflector, x)
-        return x
-
-    def _reflect(self, reflector: tuple[int, Vector, Scalar], x: Vector) -> Vector:
-        k, v, factor = reflector
-        weighted = tuple(a * w for a, w in zip(v, self._weights[k:], strict=True))
-        share = dot(self._graph, weighted, x[k:]) * factor
-        return (*x[:k], *(entry - share * component for entry, component in zip(x[k:], v, strict=True)))
-
-
-def _solve_lower(
-    graph: Graph, triangle: Sequence[Vector], d: Sequence[Scalar], right: Sequence[Scalar]
-) -> list[Scalar]:
-    """z with sum_i R_ik z_i / d_i = right_k."""
-    z: list[Scalar] = []
-    weighted: list[Scalar] = []
-    for k, column in enumerate(triangle):
-        rest = right[k] - dot(graph, column[:k], weighted)
-        weighted.append(rest / column[k])
-        z.append(weighted[k] * d[k])
-    return z
+        Components along V are taken out of b one by one, and given back in the opposite order from what is there: what
+        rounding has left of them on the way does not stay (Bjorck and Paige, SIAM J. Matrix Anal. Appl. 15, 1994).
+        """
+        graph, count = self._graph, len(self._directions)
+        asked: list[Scalar] = []  # (V^T W y)_k
+        for k in range(count):
+            asked.append(c[k] - dot(graph, self._upper[k], asked))
+        y, shares = b, list[Scalar]()
+        for k in range(count):
+            along = dot(graph, self._weighted[k], y)
+            y = _less(y, along * self._inverses[k], self._directions[k])
+            shares.append((along - asked[k]) * self._inverses[k])
+        for k in reversed(range(count)):
+            surplus = dot(graph, self._weighted[k], y) - asked[k]
+            y = _less(y, surplus * self._inverses[k], self._directions[k])
+        for k in reversed(range(count)):
+            for i, entry in enumerate(self._upper[k]):
+                shares[i] = shares[i] - entry * shares[k]
+        return y, tuple(shares)
 
 
-def _solve_upper(triangle: Sequence[Vector], right: Sequence[Scalar]) -> Vector:
-    """x with sum_k R_ik x_k = right_i."""
-    x = list(right)
-    for k in reversed(range(len(triangle))):
-        x[k] = x[k] / triangle[k][k]
-        for i in range(k):
-            x[i] = x[i] - triangle[k][i] * x[k]
-    return tuple(x)
+def _less(x: Vector, share: Scalar, direction: Vector) -> Vector:
+    return tuple(entry - share * component for entry, component in zip(x, direction, strict=True))

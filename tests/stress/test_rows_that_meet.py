@@ -1,0 +1,61 @@
+"""Results beside a drop of rank stay within the tolerance: nothing that becomes small there is multiplied out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rows_that_meet import beside, wheels
+
+from symgen.ir.kernel import Status
+from symgen.model.model import Model
+from symgen.stress.form_kernels import FormKernels
+from symgen.stress.kernels import SCALARS, STRESSED, Kernels
+from symgen.stress.rule import of_more_draws
+from symgen.verify.reference import Reference
+from symgen.verify.tolerance import FACTOR, expectations
+
+ONE = "cos(p)*e_dot + sin(p)*h_dot + 0.3*p_dot"
+OTHER = "cos(s)*e_dot + sin(s)*h_dot + 0.3*p_dot"
+SUM = f"({ONE}) + ({OTHER})"
+APART = (1.0, 1e-2, 1e-4, 1e-6)
+STABLE = ("minor", "schur_qr", "nullspace", "householder", "range")
+
+SYSTEMS = {
+    "two_wheels": {"left": ONE, "right": OTHER},
+    "three_wheels": {"left": ONE, "right": OTHER, "both": SUM},
+    "wheels_and_knife": {"left": ONE, "right": OTHER, "knife": "e_dot - 2*h_dot + 0.4*s_dot"},
+}
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_no_digit_is_lost_twice(name: str, tmp_path: Path) -> None:
+    model = wheels(name, SYSTEMS[name])
+    generated = Kernels(model, tmp_path, STRESSED)
+    forms = FormKernels(model, tmp_path, generated.names)
+    assert _beyond(model, generated, forms) == []
+
+
+def _beyond(model: Model, generated: Kernels, forms: FormKernels) -> list[str]:
+    """What is beyond the tolerance with status 0; each kernel has to answer at most states."""
+    reference, found = Reference(model), list[str]()
+    for scalar in SCALARS:
+        for apart in APART:
+            for seed in range(3):
+                state = beside(reference, apart, seed, scalar)
+                expected = expectations(reference, state, generated.names, scalar, f"{apart} {seed}")
+                outcomes = {name: generated.run(name, state, scalar) for name in generated.names}
+                answered = {name: one.entries for name, one in outcomes.items() if one.status == Status.OK}
+                assert answered or (scalar == "float32" and apart < 1e-5)
+                results = [("generated", *one) for one in answered.items()]
+                for label, name, entries in forms.run(state, scalar):
+                    if entries is not None and label.removeprefix("form ") in STABLE:
+                        results.append((label, name, tuple(entries)))
+                for label, name, entries in results:
+                    one = expected[name]
+                    if not one.in_units(one.distance(entries)) <= FACTOR:
+                        one = of_more_draws(reference, state, name, scalar, f"{apart} {seed}", one)
+                    units = one.in_units(one.distance(entries))
+                    if not units <= FACTOR:
+                        found.append(f"{label} {name} {scalar} at {apart}: {units:.3g}")
+    return found
