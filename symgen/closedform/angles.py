@@ -7,7 +7,7 @@ closed forms in absolute ones (theory.md, section 5, step 1).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import lcm
 from typing import TypeAlias
@@ -71,10 +71,10 @@ def rational_constant(expression: Expression) -> Fraction | None:
             return None
 
 
-def read_argument(expression: Expression, value_of: Callable[[str], Expression | None]) -> Argument:
-    """Split a sine's argument into base angles and quarter turns; `value_of` gives the value of a definition's name."""
+def read_argument(expression: Expression, definitions: LinearDefinitions) -> Argument:
+    """Split a sine's argument into base angles and quarter turns."""
     terms: dict[Expression, Fraction] = {}
-    turns = _collect(expression, Fraction(1), value_of, terms)
+    turns = _collect(expression, Fraction(1), definitions, terms)
     if turns.denominator != 1:
         quotient = turns.numerator // turns.denominator
         rest = Binary("*", Number((turns - quotient) / 2), Pi())
@@ -89,7 +89,7 @@ def read_argument(expression: Expression, value_of: Callable[[str], Expression |
 def _collect(
     expression: Expression,
     factor: Fraction,
-    value_of: Callable[[str], Expression | None],
+    definitions: LinearDefinitions,
     terms: dict[Expression, Fraction],
 ) -> Fraction:
     """Add `factor` times the expression to `terms`; returns the quarter turns found."""
@@ -97,34 +97,71 @@ def _collect(
         case Pi():
             return 2 * factor
         case Negation(operand):
-            return _collect(operand, -factor, value_of, terms)
+            return _collect(operand, -factor, definitions, terms)
         case Binary("+" | "-" as operator, left, right):
-            turns = _collect(left, factor, value_of, terms)
-            return turns + _collect(right, factor if operator == "+" else -factor, value_of, terms)
+            turns = _collect(left, factor, definitions, terms)
+            return turns + _collect(right, factor if operator == "+" else -factor, definitions, terms)
         case Binary("*", left, right):
             for constant, other in ((left, right), (right, left)):
                 value = rational_constant(constant)
                 if value is not None:
-                    return _collect(other, factor * value, value_of, terms)
+                    return _collect(other, factor * value, definitions, terms)
         case Binary("/", left, right):
             value = rational_constant(right)
             if value:
-                return _collect(left, factor / value, value_of, terms)
+                return _collect(left, factor / value, definitions, terms)
         case Name(name):
-            definition = value_of(name)
-            if definition is not None:
-                return _collect(definition, factor, value_of, terms)
+            known = definitions.collected(name)
+            if known is not None and factor:
+                for base, count in known.terms.items():
+                    if isinstance(base, Number):  # a constant angle, which is kept positive
+                        _add(terms, Number(abs(base.value * factor)), count if factor > 0 else -count)
+                    else:
+                        _add(terms, base, factor * count)
+                return factor * known.turns
         case _:
             pass
     value = rational_constant(expression)
     if value is not None:
         if value * factor != 0:
-            constant_angle = Number(abs(value * factor))
-            sign = Fraction(1 if value * factor > 0 else -1)
-            terms[constant_angle] = terms.get(constant_angle, Fraction(0)) + sign
+            _add(terms, Number(abs(value * factor)), Fraction(1 if value * factor > 0 else -1))
         return Fraction(0)
-    terms[expression] = terms.get(expression, Fraction(0)) + factor
+    _add(terms, expression, factor)
     return Fraction(0)
+
+
+def _add(terms: dict[Expression, Fraction], base: Expression, factor: Fraction) -> None:
+    terms[base] = terms.get(base, Fraction(0)) + factor
+
+
+@dataclass(frozen=True, slots=True)
+class _Collected:
+    """An expression's terms and quarter turns."""
+
+    terms: dict[Expression, Fraction]
+    turns: Fraction
+
+
+class LinearDefinitions:
+    """The terms of definitions, each taken apart once however definitions nest."""
+
+    def __init__(self, definitions: Mapping[str, Expression]) -> None:
+        self._definitions = definitions
+        self._known: dict[str, _Collected | None] = {}
+        for name in definitions:  # in the order of use: a long chain is no deep recursion
+            self.collected(name)
+
+    def collected(self, name: str) -> _Collected | None:
+        """Terms and quarter turns of a definition; None for other names."""
+        if name not in self._known:
+            value = self._definitions.get(name)
+            if value is None:
+                self._known[name] = None
+            else:
+                terms: dict[Expression, Fraction] = {}
+                turns = _collect(value, Fraction(1), self, terms)
+                self._known[name] = _Collected(terms, turns)
+        return self._known[name]
 
 
 def choose_basis(preferred: Iterable[Argument], others: Iterable[Argument]) -> AngleBasis:

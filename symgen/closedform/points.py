@@ -31,17 +31,20 @@ def number(value: Fraction) -> mpf:
 
 
 def evaluate_expression(
-    expression: Expression, values: Mapping[str, mpf], definitions: Mapping[str, Expression]
+    expression: Expression, values: dict[str, mpf], definitions: Mapping[str, Expression]
 ) -> mpf:
-    """The value of a model expression; raises ValueError where it is not a real number."""
+    """The value of a model expression; raises ValueError where it is not a real number.
+
+    Values of definitions are entered in `values`, so that each is worked out once however definitions nest.
+    """
     match expression:
         case Number(value):
             return number(value)
         case Pi():
             return mp.pi
         case Name(name):
-            if name in definitions:
-                return evaluate_expression(definitions[name], values, definitions)
+            if name not in values and name in definitions:
+                values[name] = evaluate_expression(definitions[name], values, definitions)
             return values[name]
         case Negation(operand):
             return -evaluate_expression(operand, values, definitions)
@@ -76,13 +79,16 @@ class Point:
         self.values = dict(values)
         ring, definitions = mechanics.ring, mechanics.translator.definitions
         generators = [self.values.get(name, mpf(0)) for name in ring.variables]
+        known = dict(self.values)
+        for name in mechanics.translator.nested:  # in the order of use: a long chain is no deep recursion
+            evaluate_expression(Name(name), known, definitions)
         for atom in ring.basis.atoms:
             angle = mpf(0)
             for base, factor in atom:
-                angle += number(factor) * evaluate_expression(base, self.values, definitions)
+                angle += number(factor) * evaluate_expression(base, known, definitions)
             generators += [mpmath.sin(angle), mpmath.cos(angle)]
         for opaque in ring.opaque:
-            generators.append(evaluate_expression(opaque.expression, self.values, definitions))
+            generators.append(evaluate_expression(opaque.expression, known, definitions))
         with _working_precision():
             self._generators = [flint.arb(value) for value in generators]
 

@@ -10,6 +10,7 @@ from sympy.polys.rings import PolyElement
 from symgen.closedform.angles import (
     AngleBasis,
     Argument,
+    LinearDefinitions,
     choose_basis,
     read_argument,
     trigonometric_arguments,
@@ -17,7 +18,7 @@ from symgen.closedform.angles import (
 from symgen.closedform.quotient import Quotient, polynomial
 from symgen.closedform.ring import Opaque, TrigRing
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
-from symgen.model.walk import parts
+from symgen.model.walk import names_in, parts
 
 ONE = Number(Fraction(1))
 
@@ -34,10 +35,12 @@ class Translator:
         others: Iterable[Expression],
     ) -> None:
         self.definitions = dict(definitions)
+        self._linear = LinearDefinitions(self.definitions)
         atoms: dict[Expression, Opaque] = {}
         arguments = [self._scan(group, atoms) for group in (preferred, others)]
         basis: AngleBasis = choose_basis(*arguments)
         self.ring = TrigRing(tuple(variables), tuple(configuration), basis, tuple(atoms.values()))
+        self.nested = self._below([base for atom in basis.atoms for base, _ in atom], atoms)
         self._opaque = {key: self.ring.opaque_position[i] for i, key in enumerate(atoms)}
         self._values: dict[Expression, Quotient] = {}
         self._slopes: dict[tuple[int, str], Quotient] = {}
@@ -54,7 +57,7 @@ class Translator:
                 continue
             seen.add(expression)
             for argument in trigonometric_arguments(expression):
-                split = read_argument(argument, self.definitions.get)
+                split = read_argument(argument, self._linear)
                 found.append(split)
                 pending += [base for base, _ in split.combination]
             for part in parts(expression):
@@ -65,6 +68,17 @@ class Translator:
                     atoms[atom.expression] = atom
                     pending += [slope for _, slope in atom.outer_derivatives]
         return found
+
+    def _below(self, *groups: Iterable[Expression]) -> tuple[str, ...]:
+        """The definitions that these expressions use, directly or by others, in the order of use."""
+        found: set[str] = set()
+        pending = [expression for group in groups for expression in group]
+        while pending:
+            for name in names_in(pending.pop()):
+                if name.name in self.definitions and name.name not in found:
+                    found.add(name.name)
+                    pending.append(self.definitions[name.name])
+        return tuple(name for name in self.definitions if name in found)
 
     def value(self, expression: Expression) -> Quotient:
         """The expression as a fraction of ring elements, definitions by value."""
@@ -102,7 +116,7 @@ class Translator:
             case Power(base, exponent):
                 return self._power(base, exponent)
             case Call("sin" | "cos" | "tan" as function, (argument,)):
-                split = read_argument(argument, self.definitions.get)
+                split = read_argument(argument, self._linear)
                 sine, cosine = self.ring.multiple_angle(self.ring.basis.multiples(split), split.quarter_turns)
                 pair = polynomial(self.ring, sine), polynomial(self.ring, cosine)
                 return pair[0] if function == "sin" else pair[1] if function == "cos" else pair[0] / pair[1]

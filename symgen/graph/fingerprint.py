@@ -1,6 +1,6 @@
 """Values of scalars in a large prime field: two scalars with the same value are the same function.
 
-Symbols get fixed pseudo-random residues modulo 2^127 - 1, sines and cosines the rational parametrisation
+Symbols get fixed pseudo-random residues modulo a prime near 2^127, sines and cosines the rational parametrisation
 c = (1 - t^2)/(1 + t^2), s = 2t/(1 + t^2) of the circle, sums of angles the addition theorem.  A false identity between
 rational functions of symbols, sines and cosines passes with a chance of about degree / 2^127 (Schwartz and Zippel).
 Every other function is an independent residue that depends on its argument's value: identities it may take part in are
@@ -13,7 +13,8 @@ import random
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-PRIME = 2**127 - 1
+# 2 q + 1 with a prime q: doubling comes back to its start after q times at the earliest (modulo 2^127 - 1 after 127)
+PRIME = 2**127 - 2721
 
 
 def residue(value: Fraction) -> int:
@@ -40,8 +41,13 @@ def angle_pair(form: Mapping[int, int], pairs: Mapping[int, tuple[int, int]]) ->
         a, b = pairs[leaf]
         if count < 0:
             b = -b
-        for _ in range(abs(count)):
-            c, s = (c * a - s * b) % PRIME, (s * a + c * b) % PRIME
+        left = abs(count)
+        while left:  # by squares: nested definitions make large multiples
+            if left & 1:
+                c, s = (c * a - s * b) % PRIME, (s * a + c * b) % PRIME
+            left >>= 1
+            if left:
+                a, b = (a * a - b * b) % PRIME, 2 * a * b % PRIME
     return c, s
 
 

@@ -390,19 +390,37 @@ class Graph:
         return negative, total
 
     def angle_form(self, a: Scalar) -> dict[Scalar, int]:
-        """`a` as an integer combination of leaves (coordinates, or whatever is not a sum), without zeros."""
-        form: dict[Scalar, int] = {}
-        stack = [(a, 1)]
+        """`a` as an integer combination of leaves (coordinates, or whatever is not a sum), without zeros.
+
+        Leaves stand in the order in which they are met; each sum is looked at once, however often it is used.
+        """
+        weights: dict[Scalar, tuple[tuple[Scalar, int], ...]] = {}
+        stack = [a]
         while stack:
-            node, count = stack.pop()
-            if node.op == "add":
-                stack += [(node.args[1], count), (node.args[0], count)]
-            elif node.op == "sub":
-                stack += [(node.args[1], -count), (node.args[0], count)]
-            elif node.op == "neg":
-                stack.append((node.args[0], -count))
-            elif node.op == "mul" and (k := node.args[0].constant) is not None and k.denominator == 1:
-                stack.append((node.args[1], count * k.numerator))
-            elif not node.is_zero:
-                form[node] = form.get(node, 0) + count
-        return {leaf: count for leaf, count in form.items() if count}
+            node = stack.pop()
+            if node not in weights:
+                weights[node] = terms = _terms(node)
+                stack += [term for term, _ in reversed(terms)]
+        counts = dict.fromkeys(weights, 0)
+        counts[a] = 1
+        for node in sorted(weights, key=_serial, reverse=True):  # what a sum is made of is older than the sum
+            for term, factor in weights[node]:
+                counts[term] += factor * counts[node]
+        return {node: count for node, count in counts.items() if count and not weights[node] and not node.is_zero}
+
+
+def _serial(node: Scalar) -> int:
+    return node.serial
+
+
+def _terms(node: Scalar) -> tuple[tuple[Scalar, int], ...]:
+    """What a node adds up, each with a whole factor; nothing for leaves."""
+    if node.op == "add":
+        return (node.args[0], 1), (node.args[1], 1)
+    if node.op == "sub":
+        return (node.args[0], 1), (node.args[1], -1)
+    if node.op == "neg":
+        return ((node.args[0], -1),)
+    if node.op == "mul" and (k := node.args[0].constant) is not None and k.denominator == 1:
+        return ((node.args[1], k.numerator),)
+    return ()

@@ -1,8 +1,8 @@
-"""Derivatives of expressions by a name, as expressions: for what places frames and points, which is short."""
+"""Derivatives of expressions, as expressions: for what places frames and points, which is short."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from fractions import Fraction
 
 from symgen.model.combine import divided, minus, negated, plus, times
@@ -12,19 +12,17 @@ from symgen.model.mechanism import ZERO
 ONE = Number(Fraction(1))
 
 
-def derivative(expression: Expression, name: str, definitions: Mapping[str, Expression]) -> Expression:
-    """d expression / d name; names of `definitions` stand for their expressions."""
+def derivative(expression: Expression, slope: Callable[[str], Expression]) -> Expression:
+    """The derivative of an expression from those of the names in it."""
 
     def of(part: Expression) -> Expression:
-        return derivative(part, name, definitions)
+        return derivative(part, slope)
 
     match expression:
         case Number() | Pi():
             return ZERO
         case Name(name=found):
-            if found == name:
-                return ONE
-            return of(definitions[found]) if found in definitions else ZERO
+            return slope(found)
         case Negation(operand=operand):
             return negated(of(operand))
         case Binary(operator="+", left=left, right=right):

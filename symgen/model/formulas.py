@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from symgen.diagnostics import SymgenBug
 from symgen.model.combine import divided, minus, negated, plus, times
-from symgen.model.derivative import derivative
+from symgen.model.derivative import ONE, derivative
 from symgen.model.expression import Binary, Call, Expression, FunctionName, Name, Negation, Number, Pi
 from symgen.model.mechanism import ZERO
 from symgen.model.model import Coordinate, Definition
@@ -51,6 +51,7 @@ class Formulas:
         self._coordinates = [coordinate.name for coordinate in coordinates]
         self._known = known
         self.definitions: list[Definition] = []
+        self._slopes: dict[tuple[str, str], Expression] = {}
 
     def value(self, expression: Expression) -> Formula:
         """The expression itself."""
@@ -59,8 +60,29 @@ class Formulas:
     def rate(self, expression: Expression) -> Form:
         """Its gradient."""
         used = self._names_below(expression)
-        gradient = {name: derivative(expression, name, self._known) for name in self._coordinates if name in used}
+        nested = [name for name in self._known if name in used]
+        gradient = {name: self._slope(expression, name, nested) for name in self._coordinates if name in used}
         return {name: Formula(slope) for name, slope in gradient.items() if exact_value(slope) != 0}
+
+    def _slope(self, expression: Expression, name: str, nested: Iterable[str]) -> Expression:
+        """The derivative by a coordinate; `nested` are the definitions below the expression, in the order of use.
+
+        Derivatives of definitions have names of their own, so that they stay short however definitions nest.
+        """
+
+        def of(found: str) -> Expression:
+            if found in self._known:
+                return self._slopes[found, name]
+            return ONE if found == name else ZERO
+
+        for one in nested:
+            if (one, name) not in self._slopes:
+                slope = derivative(self._known[one], of)
+                number = exact_value(slope)
+                self._slopes[one, name] = (
+                    self.named(f"slope.{one}.{name}", Formula(slope)).expression if number is None else Number(number)
+                )
+        return derivative(expression, of)
 
     def number(self, value: int) -> Formula:
         """A whole number."""

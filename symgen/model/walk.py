@@ -73,7 +73,8 @@ def exact_value(expression: Expression) -> Fraction | None:
             inner = exact_value(operand)
             return None if inner is None else -inner
         case Binary(operator=operator, left=left, right=right):
-            a, b = exact_value(left), exact_value(right)
+            a = exact_value(left)
+            b = None if a is None else exact_value(right)
             if a is None or b is None or (operator == "/" and b == 0):
                 return None
             return a + b if operator == "+" else a - b if operator == "-" else a * b if operator == "*" else a / b

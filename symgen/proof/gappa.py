@@ -78,29 +78,36 @@ def obstacle(model: Model, kernel: Kernel) -> str:
         return "its result is constant"
     enclosure = enclose(kernel, _float_box(model))
     arguments = [s.operands[0] for s in kernel.statements if s.operation == "sincos"]
-    if any(_argument_error(kernel, argument, enclosure.bounds) is None for argument in arguments):
+    errors = _sum_errors(kernel, enclosure.bounds)
+    if any(_error_of(argument, errors) is None for argument in arguments):
         return "it takes the sine of more than a sum of angles"
     if enclosure.doubtful:
         return f"intervals do not keep its denominators {', '.join(enclosure.doubtful)} from 0"
     return ""
 
 
-def _argument_error(kernel: Kernel, argument: Operand, bounds: Mapping[str, Interval]) -> Fraction | None:
-    """How far a sum of inputs is from its exact value at most, by half a unit in the last place of each partial sum.
+def _sum_errors(kernel: Kernel, bounds: Mapping[str, Interval]) -> dict[str, Fraction]:
+    """How far each sum of inputs is from its exact value at most, by half a unit in the last place of each partial sum.
 
-    None where the argument is something else.
+    Locals that are something else are left out.
     """
-    if isinstance(argument, Literal) or argument.name in {load.local for load in kernel.loads}:
-        return Fraction(0)
-    (made,) = (s for s in kernel.statements if argument.name in s.targets)
-    parts = [_argument_error(kernel, operand, bounds) for operand in made.operands]
-    if made.operation not in ("add", "sub", "neg") or None in parts:
-        return None
-    own = Fraction(0)
-    if made.operation != "neg":
-        largest = max(map(abs, bounds[argument.name]))
-        own = Fraction(2) ** (math.frexp(largest)[1] - 25)  # largest < 2^e: half a unit is 2^(e-25)
-    return sum((part for part in parts if part is not None), own)
+    found = {load.local: Fraction(0) for load in kernel.loads}
+    for statement in kernel.statements:
+        parts = [_error_of(operand, found) for operand in statement.operands]
+        given = [part for part in parts if part is not None]
+        if statement.operation not in ("add", "sub", "neg") or len(given) < len(parts):
+            continue
+        (target,) = statement.targets
+        own = Fraction(0)
+        if statement.operation != "neg":
+            largest = max(map(abs, bounds[target]))
+            own = Fraction(2) ** (math.frexp(largest)[1] - 25)  # largest < 2^e: half a unit is 2^(e-25)
+        found[target] = sum(given, own)
+    return found
+
+
+def _error_of(operand: Operand, found: Mapping[str, Fraction]) -> Fraction | None:
+    return Fraction(0) if isinstance(operand, Literal) else found.get(operand.name)
 
 
 def _measurement(model: Model, program: Program, kernel: Kernel) -> ErrorView:
@@ -139,6 +146,7 @@ def _view(model: Model, kernel: Kernel, stem: str) -> GappaView:
     used = {o.name for s in statements if s.operation != "sincos" for o in s.operands if isinstance(o, Local)}
     used |= {o.name for o in kernel.outputs if isinstance(o, Local)}
     bounds = enclose(kernel, _float_box(model)).bounds
+    errors = _sum_errors(kernel, bounds)
     lines: list[str] = []
     hypotheses: list[str] = []
     for load in kernel.loads:
@@ -148,7 +156,7 @@ def _view(model: Model, kernel: Kernel, stem: str) -> GappaView:
     inputs = {load.local for load in kernel.loads}
     for statement in statements:
         if statement.operation == "sincos":
-            error = TRIG_ERROR + (_argument_error(kernel, statement.operands[0], bounds) or 0)
+            error = TRIG_ERROR + (_error_of(statement.operands[0], errors) or 0)
             for target in (name for name in statement.targets if name in used):
                 lines.append(f"{_rounded(target)} = rnd({_free(target)});")
                 hypotheses.append(_within(_exact(target, inputs), bounds[target]))

@@ -7,7 +7,7 @@ Evaluating Derivatives, ch. 3).  Sines and cosines are Taylor sums of a halved a
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from decimal import Decimal, DivisionByZero, InvalidOperation, localcontext
+from decimal import Decimal, localcontext
 
 from symgen.graph.scalar import PI, Scalar
 from symgen.graph.traverse import topological
@@ -57,20 +57,24 @@ class DecimalEvaluator:
         with localcontext() as context:
             context.prec = DIGITS
             known = self._sweep(point)
-            rows = []
-            for output in self._outputs:
-                adjoint = {output: ONE}
-                slopes: dict[str, Decimal] = {}
-                for node in reversed(self._order):
-                    weight = adjoint.get(node)
-                    if weight is None or not weight:
-                        continue
-                    if node.op == "symbol":
-                        slopes[str(node.payload)] = weight
-                    for argument, partial in zip(node.args, _partials(node, known), strict=True):
-                        adjoint[argument] = adjoint.get(argument, ZERO) + weight * partial
-                rows.append([slopes.get(name, ZERO) for name in names])
+            try:
+                rows = [self._slopes(output, known, names) for output in self._outputs]
+            except ArithmeticError as error:
+                raise UndefinedError(str(error)) from error
             return [known[output] for output in self._outputs], rows
+
+    def _slopes(self, output: Scalar, known: Mapping[Scalar, Decimal], names: Sequence[str]) -> list[Decimal]:
+        adjoint = {output: ONE}
+        slopes: dict[str, Decimal] = {}
+        for node in reversed(self._order):
+            weight = adjoint.get(node)
+            if weight is None or not weight:
+                continue
+            if node.op == "symbol":
+                slopes[str(node.payload)] = weight
+            for argument, partial in zip(node.args, _partials(node, known), strict=True):
+                adjoint[argument] = adjoint.get(argument, ZERO) + weight * partial
+        return [slopes.get(name, ZERO) for name in names]
 
     def _sweep(self, point: Mapping[str, Decimal]) -> dict[Scalar, Decimal]:
         known: dict[Scalar, Decimal] = {}
@@ -86,7 +90,7 @@ class DecimalEvaluator:
                         known[node] = pairs[angle][node.op == "cos"]
                     else:
                         known[node] = _value(node, [known[argument] for argument in node.args], point)
-            except (DivisionByZero, InvalidOperation, ZeroDivisionError) as error:
+            except ArithmeticError as error:  # beyond the range of decimals, too
                 raise UndefinedError(str(error)) from error
         return known
 
