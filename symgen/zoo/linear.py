@@ -7,6 +7,9 @@ from typing import Any
 
 Vector = list[Any]
 Matrix = list[Vector]
+_HALF = 0.5
+# rows that vanish but for the rounding of the numbers in the file
+NOTHING = 1e-12
 
 
 def inner(a: Sequence[Any], b: Sequence[Any]) -> Any:
@@ -35,9 +38,7 @@ def basis(vectors: Sequence[Sequence[Any]], rank: int) -> tuple[Matrix, list[flo
     The vectors are scaled to length 1 first, so that their units do not matter; the longest remainder is taken.
     """
     lengths = [size(vector) for vector in vectors]
-    left = [
-        [x / length for x in vector] for vector, length in zip(vectors, map(_ball_like, lengths), strict=True) if length
-    ]
+    left = [[x / length for x in vector] for vector, length in zip(vectors, lengths, strict=True) if length > NOTHING]
     taken: Matrix = []
     pivots: list[float] = []
     while len(taken) < rank and left:
@@ -54,13 +55,6 @@ def basis(vectors: Sequence[Sequence[Any]], rank: int) -> tuple[Matrix, list[flo
         for _ in range(2):
             left = [_without(vector, direction) for vector in left]
     return taken, pivots
-
-
-_HALF = 0.5
-
-
-def _ball_like(value: float) -> float:
-    return value
 
 
 def _without(vector: Vector, direction: Vector) -> Vector:

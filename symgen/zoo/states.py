@@ -12,6 +12,7 @@ import numpy as np
 from symgen.zoo.dice import Dice
 from symgen.zoo.fields import Floats
 from symgen.zoo.kkt import Evaluator, Numbers, Ranks
+from symgen.zoo.linear import NOTHING
 from symgen.zoo.reader import System
 
 STEPS = 30
@@ -107,14 +108,16 @@ class Walker:
             rows: Any = np.array(at.rows[:geometric])
             residual = np.array(at.residual)
             lengths = np.linalg.norm(rows, axis=1)
-            lengths[lengths == 0] = 1
+            lengths[lengths <= NOTHING] = 1
             gap = float(np.abs(residual / lengths).max())
             if gap >= best:
                 stalled += 1
             best = min(best, gap)
             if stalled >= 3 or gap == 0:
                 break
-            q = q - np.linalg.pinv(rows / lengths[:, None], rcond=SAME) @ (residual / lengths)
+            steep = rows / lengths[:, None]
+            steep[np.linalg.norm(rows, axis=1) <= NOTHING] = 0
+            q = q - np.linalg.pinv(steep, rcond=SAME) @ (residual / lengths)
         return q if best < CLOSED else None
 
     def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
@@ -148,8 +151,7 @@ class Walker:
 
 def _normalized(rows: Any) -> Any:
     lengths = np.linalg.norm(rows, axis=1)
-    lengths[lengths == 0] = 1
-    return rows / lengths[:, None]
+    return rows[lengths > NOTHING] / lengths[lengths > NOTHING, None]
 
 
 def _null_space(at: Numbers) -> Any:
