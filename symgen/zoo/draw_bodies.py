@@ -70,6 +70,8 @@ def planar_bodies(dice: Dice) -> Description:
         if room < 1:
             break
         rows += _planar_loop(sketch, parts, index, room)
+    if dice.chance(0.15):
+        _surplus(sketch)
     elements(sketch, parts, plane)
     inputs(sketch, parts, len(sketch.start) - rows)
     return finish(dice, sketch.family, sketch.blocks, sketch.start)
@@ -95,6 +97,20 @@ def spatial_bodies(dice: Dice) -> Description:
     elements(sketch, parts, "")
     inputs(sketch, parts, free)
     return finish(dice, sketch.family, sketch.blocks, sketch.start)
+
+
+def _surplus(sketch: Sketch) -> None:
+    """A loop that is closed twice, or held once more by a row of its own in other units."""
+    dice = sketch.dice
+    name, entry = dice.choice(list(sketch.block("loops").items()))
+    if dice.chance(0.5) or entry["type"] == "distance":
+        sketch.block("loops")[sketch.name(f"{name}_again")] = dict(entry)
+        return
+    one, other = entry["between"]
+    axis = dice.choice([axis for axis in MAIN_AXES if not _flat(sketch, axis)])
+    scale = dice.choice(("1e-6", "1e6", "2"))
+    rows = sketch.block("constraints").setdefault("geometric", {})
+    rows[sketch.name("held")] = f"{scale}*({one}.{axis} - {other}.{axis})"
 
 
 def norms(parts: list[Part]) -> int:
@@ -199,6 +215,12 @@ def _tip(sketch: Sketch, style: Style, k: int) -> tuple[str, str, str]:
     tip[dice.choice(free)] = length
     if dice.chance(0.2):
         tip[dice.choice(free)] = dice.number(-0.4, 0.4, 2)
+    if dice.chance(0.06):
+        # an offset that this machine does not have
+        name = sketch.name(f"h_{k}")
+        sketch.block("parameters")[name] = {"value": "0"}
+        index = dice.choice(free)
+        tip[index] = name if tip[index] == "0" else f"{tip[index]} + {name}"
     return tip[0], tip[1], tip[2]
 
 
@@ -206,7 +228,7 @@ def _body(sketch: Sketch, style: Style, k: int, tip: tuple[str, str, str]) -> di
     dice = sketch.dice
     body: dict[str, Any] = {"mass": sketch.parameter(f"m_{k}", dice.mass(dice.chance(0.04)))}
     if dice.chance(0.85):
-        body["com"] = [f"{part}/2" if part != "0" else "0" for part in tip]
+        body["com"] = [f"({part})/2" if "+" in part else f"{part}/2" if part != "0" else "0" for part in tip]
     if style.sparse and "com" in body and dice.chance(0.3):
         return body
     if style.plane:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from symgen.zoo.describe import Description
 from symgen.zoo.dice import Dice
+from symgen.zoo.draw_absolute import absolute_coordinates, gyroscope, points_and_rods
 from symgen.zoo.draw_bodies import planar_bodies, spatial_bodies, tree_bodies
 from symgen.zoo.draw_energy import planar_energies
 from symgen.zoo.draw_linkages import (
@@ -38,6 +39,9 @@ FAMILIES: dict[str, tuple[float, Callable[[Dice], Description]]] = {
     "disc": (0.5, disc),
     "cable_robot": (1, cable_robot),
     "geared": (1, geared),
+    "absolute_coordinates": (1.5, absolute_coordinates),
+    "points_and_rods": (1.5, points_and_rods),
+    "gyroscope": (0.7, gyroscope),
 }
 
 

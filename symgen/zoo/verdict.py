@@ -9,7 +9,10 @@ from symgen.zoo.run import Run
 
 VERIFIED, NOTICED, REFUSED, FAILED = "verified", "verified with a notice", "refused", "failed"
 # file:line:column: message, excerpt, marker, remedy
-PLACED = re.compile(r"^[^\n]*?\.yaml:\d+:\d+: (?P<message>[^\n]+)\n.*?^  remedy: (?P<remedy>[^\n]+)", re.M | re.S)
+PLACED = re.compile(
+    r"^[^\n]*?\.yaml:\d+:\d+: (?!notice: )(?P<message>[^\n]+)\n.*?^  remedy: (?P<remedy>[^\n]+)", re.M | re.S
+)
+LEFT_OUT = re.compile(r"(\w+) is left out, verification rejects every way of it\n\s*([^\n]*)")
 NUMBERS = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
 # every draw has a configuration that satisfies its rows, so these cannot be true
 UNTRUE = (
@@ -46,6 +49,9 @@ def verdict_of(run: Run) -> Verdict:
     if run.code == 0:
         notices = [line for line in run.err.splitlines() if "notice" in line]
         return Verdict(NOTICED if notices else VERIFIED)
+    if left_out := LEFT_OUT.search(run.err):
+        # the rest is written, and the user is told what to do; but the quantity was asked for and the state is regular
+        return Verdict(FAILED, "left out", f"{left_out[1]}: {without_numbers(left_out[2])}"[:150])
     if "verification failed" in run.err:
         return Verdict(FAILED, "verification", _withheld(run.err))
     if run.code == 1 and (placed := PLACED.search(run.err)):

@@ -20,6 +20,11 @@ MISTAKE = """zoo.yaml:12:5: `a` of something in m
       |    ^^^
   remedy: divide by a length
 """
+LEFT_OUT = """zoo.yaml:3:1: notice: `a` cannot move
+zoo.yaml: energy is left out, verification rejects every way of it
+  factored: error 30 times
+  remedy: give narrower `ranges`
+"""
 UNPLACED = "message without a place or remedy"
 WITHOUT_REMEDY = MISTAKE.rpartition("  remedy")[0]
 UNTRUE = MISTAKE.replace("`a` of something in m", "no configuration was found")
@@ -37,6 +42,7 @@ WITHHELD = "zoo.yaml: verification failed, nothing is written\n  C float64, G: e
         (Run(1, "", UNTRUE, 1, 1), "failed", "refused without reason"),
         (Run(2, "", "symgen: internal error: x\n", 1, 1), "failed", "internal error"),
         (Run(1, "", WITHHELD, 1, 1), "failed", "verification"),
+        (Run(1, "", LEFT_OUT, 1, 1), "failed", "left out"),
         (Run(-9, "", "", 61, 1, "time"), "failed", "time"),
         (Run(-11, "", "", 1, 1), "failed", "signal"),
     ],
