@@ -21,7 +21,10 @@ POINTS = 6
 
 @dataclass(frozen=True, slots=True)
 class Genericity:
-    """Generic ranks on V: rho = rank B, delta = n - rho, alpha = rank of the projected control matrix (26)."""
+    """Generic ranks on V: rho = rank B, delta = n - rho, alpha = rank of the projected control matrix (26).
+
+    The ranks of B and of [B; M^T] are identical where no configuration, on V or off it, exceeds them.
+    """
 
     n: int
     r: int
@@ -29,6 +32,8 @@ class Genericity:
     rank: int
     alpha: int
     geometric_rank: int
+    rank_is_identical: bool = True
+    actuation_is_identical: bool = True
 
     @property
     def delta(self) -> int:
@@ -100,5 +105,8 @@ def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:
 
 def genericity(mechanics: Mechanics) -> Genericity:
     """The ranks kernels are made for: those of the branch that is meant."""
-    ranks = assembly_of(mechanics.model).ranks
-    return Genericity(mechanics.n, mechanics.r, mechanics.m, ranks.constraints, ranks.actuation, ranks.geometric)
+    found = assembly_of(mechanics.model)
+    ranks, identical = found.ranks, (found.rank_is_identical, found.actuation_is_identical)
+    return Genericity(
+        mechanics.n, mechanics.r, mechanics.m, ranks.constraints, ranks.actuation, ranks.geometric, *identical
+    )

@@ -22,7 +22,8 @@ from symgen.ir.kernel import Status
 class PivotedReflections(Reflections):
     """`rank` reflections, each made from the row with the longest remainder.
 
-    `lengths` are the squared lengths of the rows chosen, `coefficients` L: the rows in terms of the directions taken.
+    `lengths` are the squared lengths of the rows chosen, `coefficients` L: the rows in terms of the directions taken,
+    `rest` what is left of the rows beside these directions.
     """
 
     def __init__(self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False) -> None:
@@ -42,6 +43,7 @@ class PivotedReflections(Reflections):
                 (*row[: k + 1], *(entry * (1 - c) for entry in row[k + 1 :]))
                 for c, row in zip(chosen, turned, strict=True)
             ]
+        self.rest: Matrix = tuple(remaining)
         self.coefficients: Matrix = tuple(row[:rank] for row in remaining)
 
     def _add(self, k: int, tail: Vector) -> None:

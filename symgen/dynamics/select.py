@@ -21,6 +21,7 @@ from symgen.dynamics.catalogue import (
     scalars,
 )
 from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.excess import with_test_of_excess
 from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
 from symgen.dynamics.forms.motions import BY_FRAMES, cost_factor
@@ -222,8 +223,9 @@ def derive_quantities(
 
 
 def finished(mechanics: Mechanics, generic: Genericity, derived: Derived) -> Derived:
-    """A quantity on the graph of `mechanics` as it is scheduled: numbers grouped, told what its reader must know."""
-    return _with_groups(mechanics, _remarked(derived, generic))
+    """A quantity on the graph of `mechanics` as it is scheduled: ranks tested that other branches may exceed, numbers
+    grouped, told what its reader must know."""
+    return _with_groups(mechanics, _remarked(with_test_of_excess(mechanics, generic, derived), generic))
 
 
 def _with_alike_bodies(model: Model, derived: Derived) -> Derived:

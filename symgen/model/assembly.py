@@ -27,10 +27,10 @@ class Assembly:
     """What kernels are made for, and what else was found.
 
     `ranks` are those of the branch that is meant; `places` have them, where the start leads first, the most regular one
-    first where that is singular.  `others` has one configuration for each other
-    combination of ranks that whole branches have.  `bound` is what no configuration exceeds: the ranks of B and of
-    [B; M^T] off the constraints, where q is free.  `start` is where the declared start leads, with its ranks, where it
-    is singular.
+    first where that is singular.  `regular` is whether any of them is: else ranks drop wherever the constraints hold.
+    `others` has one configuration for each other combination of ranks that whole branches have.  `bound` is what no
+    configuration exceeds: the ranks of B and of [B; M^T] off the constraints, where q is free.  `start` is where the
+    declared start leads, with its ranks, where it is singular.
     """
 
     ranks: Ranks
@@ -38,6 +38,7 @@ class Assembly:
     others: tuple[Place, ...] = ()
     bound: tuple[int, int] = (0, 0)
     start: Place | None = None
+    regular: bool = True
 
     @property
     def rank_is_identical(self) -> bool:

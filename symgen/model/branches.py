@@ -243,7 +243,7 @@ class _Search:
         these = kinds[ranks]
         if singular is not None:
             these = sorted(these, key=self._nearness)
-        return Assembly(ranks, tuple(these), others, self._bound, singular)
+        return Assembly(ranks, tuple(these), others, self._bound, singular, bool(branch))
 
     def _nearness(self, place: Place) -> float:
         """How near a configuration is to a drop of rank: the less the smallest pivot, the more."""

@@ -41,6 +41,15 @@ def check_motion(
             spans["constraints"],
         )
         return
+    if not found.regular:
+        yield Mistake(
+            f"only singular configurations were found, such as {_shown(mechanics, found.places[0])}: beside it the "
+            f"constraints that hold there have another rank than {rank}",
+            "check lengths: what closes in a singular pose alone cannot move; give a regular one under `configuration`; "
+            "write a row whose gradient does not vanish where it holds, no square",
+            spans["geometric"],
+        )
+        return
     regular = [(list(place.q), mechanics.jacobian(place.q)) for place in found.places[:SAMPLES]]
     yield from _check_masses(mechanics, [*regular, *_further(mechanics, found)], spans["kinetic_energy"])
     elsewhere = [(list(place.q), mechanics.jacobian(place.q)) for place in found.others]
@@ -75,10 +84,10 @@ def _other_branches(mechanics: Mechanics, found: Assembly, span: Span | None) ->
     """That the start is singular, and that there are branches on which kernels give a status."""
     n, meant = len(mechanics.coordinates), found.ranks
     if found.start is not None:
-        why = "the start is a singular configuration" if span is not None else "the middles of the ranges are singular"
+        begin = "the start leads" if span is not None else "the middles of the ranges lead"
         yield Notice(
-            f"{why} ({_shown(mechanics, found.start)}): ranks are taken from configurations around it; "
-            "a regular one under `configuration` says which branch is meant",
+            f"{begin} to a singular configuration ({_shown(mechanics, found.start)}): ranks are those of others; a "
+            "regular one under `configuration` says which branch is meant",
             span,
         )
     for place in found.others:

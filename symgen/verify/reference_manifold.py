@@ -146,6 +146,18 @@ def _found_ranks(system: System, rounded: bool) -> Ranks | None:
     return Ranks(constraints, max(r.geometric for r in regular), max(r.actuation for r in regular), rounded)
 
 
+def exceeds(
+    system: System, ranks: Ranks, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
+) -> bool:
+    """Whether a point of V has greater ranks than are meant, as other branches may: kernels give a status there."""
+    if ranks.constraints == system.r and ranks.actuation == min(system.m, system.n - ranks.constraints):
+        return False
+    found = _ranks_at(system, q, parameters, literals, rounded=True)
+    if found is None or found.constraints != ranks.constraints:
+        return found is None or found.constraints > ranks.constraints
+    return found.actuation > ranks.actuation
+
+
 def starts(system: System, generator: random.Random, count: int) -> list[list[float]]:
     """Starting points: the model's `configuration` (where loading found it singular, a regular one), then random ones
     in the ranges of the coordinates."""

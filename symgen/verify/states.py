@@ -12,7 +12,7 @@ from typing import Any
 
 from symgen.ir.kernel import Scalar
 from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_manifold import onto_manifold, starts
+from symgen.verify.reference_manifold import exceeds, onto_manifold, starts
 from symgen.verify.reference_quantities import NEED_GRADIENTS
 from symgen.verify.reference_system import ParameterValues, default_parameters
 from symgen.verify.reference_tape import precision
@@ -118,7 +118,7 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
             start = _step(reference, last, generator)
         # lengths that others follow from are rounded afterwards: a linkage may close for their exact values alone
         q = onto_manifold(system, start, exact, literals, rounded=reference.ranks.rounded)
-        if q is None:
+        if q is None or exceeds(system, reference.ranks, q, exact, literals):
             continue
         in_range = _in_ranges(reference, q)
         place = [float(x) for x in q]

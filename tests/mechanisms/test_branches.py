@@ -5,16 +5,20 @@ from __future__ import annotations
 import math
 import resource
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
+import shipped
 from linkages import cranks_on_one_coupler, row_of_four_bars
 
+from symgen.diagnostics import ModelError
 from symgen.dynamics.genericity import genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.select import derive_quantities
 from symgen.ir.interpret import interpret
 from symgen.ir.kernel import Status
 from symgen.ir.schedule import schedule
+from symgen.model.assembly import Place, Ranks
 from symgen.model.load import load_text
 from symgen.model.model import Model
 
@@ -49,10 +53,10 @@ def test_equal_bars_hold_their_weight_on_the_branch_that_moves(count: int, scale
 
 def test_a_singular_start_and_a_branch_of_other_ranks_are_told() -> None:
     said = [notice.message for notice in load_text(row_of_four_bars(1), "row.yaml").notices]
-    assert any("middles of the ranges are singular (a0 = 0, a1 = 0, b1 = 0)" in text for text in said)
+    assert any("the middles of the ranges lead to a singular configuration (a0 = 0, a1 = 0, b1 = 0)" in text for text in said)
     assert any("another branch" in text and "the inputs span 0 of 1 directions, here 1" in text for text in said)
     declared = load_text(row_of_four_bars(1, tail="configuration: {a0: 0, a1: 0, b1: 0}"), "row.yaml")
-    assert any("the start is a singular configuration" in notice.message for notice in declared.notices)
+    assert any("the start leads to a singular configuration" in notice.message for notice in declared.notices)
     regular = load_text(row_of_four_bars(1, tail="configuration: {a0: 1, a1: 1, b1: 0}"), "row.yaml")
     assert not any("singular" in notice.message for notice in regular.notices)
 
@@ -85,6 +89,85 @@ def test_too_few_inputs_are_still_served() -> None:
     generic = genericity(Mechanics(model))
     assert (generic.delta, generic.alpha) == (2, 1)
     assert inverse(model, [0.8, 0.8, 0.0, 0.3])[0] == Status.OK
+
+
+GATED = """
+model: gated
+coordinates: {x: {}, y: {}, z: {}, w: {}, v: {}}
+kinetic_energy: x_dot**2 + y_dot**2 + 2*z_dot**2 + 3*w_dot**2 + v_dot**2
+potential_energy: 3*x + 2*v - z
+constraints: {geometric: {first: (x - y)*w, second: 1e-3*(x - y)*z}}
+inputs: {a: {acts_on: {x: 1}}, b: {acts_on: {z: 1}}, c: {acts_on: {w: 1}}, d: {acts_on: {v: 1}}}
+configuration: {x: 0.3, y: 0.3, z: 0.5, w: 0.4, v: 0.1}
+"""
+
+
+def test_a_branch_of_greater_rank_gives_a_status() -> None:
+    """Two rows that say the same while the slides stay together; when they part, both gates are shut."""
+    model = load_text(GATED, "gated.yaml")
+    generic = genericity(Mechanics(model))
+    assert (generic.rank, generic.alpha, generic.rank_is_identical) == (1, 4, False)
+    assert any("the constraints have rank 2, here 1" in notice.message for notice in model.notices)
+    status, u = inverse(model, [0.3, 0.3, 0.5, 0.4, 0.1])
+    assert status == Status.OK
+    assert u == pytest.approx([3, -1, 0, 2], abs=1e-12)
+    assert inverse(model, [0.3, 0.302, 0.5, 0.4, 0.1])[0] == Status.OK  # measured: 1e-3 off
+    assert inverse(model, [0.3, -0.5, 0.0, 0.0, 0.1])[0] == Status.CONSTRAINT_RANK
+
+
+def test_inputs_that_do_more_on_a_branch_nobody_found_give_a_status() -> None:
+    """A torque on the coupler, as if only the parallelogram were known, where it does no work."""
+    text = row_of_four_bars(1, ground="0.7").replace("acts_on: {a0: 1}", "acts_on: {b1: 1}")
+    known = load_text(text, "coupler.yaml")
+    assert known.assembly is not None
+    place = Place((0.8, 0.8, 0.0), Ranks(2, 2, 0))
+    model = replace(known, assembly=replace(known.assembly, ranks=place.ranks, places=(place,)))
+    assert inverse(model, [0.8, 0.8, 0.0]) == (Status.OK, (0.0,))
+    crossed = next(p.q for p in known.assembly.places if p.ranks.actuation == 1)
+    assert inverse(model, crossed)[0] == Status.ACTUATION_RANK
+
+
+def test_ranks_that_hold_everywhere_need_no_test() -> None:
+    """A loop in a tilted plane has three rows of rank two, whatever the angles."""
+    model = shipped.model("tilted_four_bar")
+    generic = genericity(Mechanics(model))
+    assert generic.rank < generic.r
+    assert generic.rank_is_identical
+    assert generic.actuation_is_identical
+
+
+@pytest.mark.parametrize(
+    ("rows", "tail"),
+    [("{r: (x - y)**2}", ""), ("{r: x*x + y*y, s: x - z}", "configuration: {x: 0, y: 0, z: 0}")],
+    ids=["square", "shaky"],
+)
+def test_rows_whose_gradient_vanishes_where_they_hold_are_refused(rows: str, tail: str) -> None:
+    text = f"""
+model: flat
+coordinates: {{x: {{}}, y: {{}}, z: {{}}, w: {{}}}}
+kinetic_energy: x_dot**2 + y_dot**2 + z_dot**2 + w_dot**2
+constraints: {{geometric: {rows}}}
+inputs: {{u: {{acts_on: {{w: 1}}}}}}
+{tail}
+"""
+    with pytest.raises(ModelError, match="only singular configurations were found"):
+        load_text(text, "flat.yaml")
+
+
+def test_a_linkage_that_closes_stretched_alone_is_refused() -> None:
+    text = row_of_four_bars(1, crank="0.2", ground="0.7").replace("w*cos(b1) - w -", "0.3*cos(b1) - w -")
+    with pytest.raises(ModelError, match=r"only singular configurations were found|cannot move"):
+        load_text(text.replace("w*sin(b1)", "0.3*sin(b1)"), "stretched.yaml")
+
+
+@pytest.mark.parametrize("count", [1, 12])
+def test_what_cannot_close_is_named_with_its_gap_at_once(count: int) -> None:
+    """The last coupler is a metre too short for its cranks."""
+    text = row_of_four_bars(count).replace(f"w*cos(b{count}) - w", f"w*cos(b{count}) - w - 1.6")
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
+    with pytest.raises(ModelError, match=rf"`x{count}` stays at -0.8\d* in the nearest one"):
+        load_text(text, "gap.yaml")
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - before < 4
 
 
 def test_a_long_row_takes_no_dense_sums() -> None:
