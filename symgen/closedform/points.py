@@ -156,17 +156,23 @@ def parameter_values(model: Model) -> dict[str, mpf]:
 def generic_points(model: Model, mechanics: Mechanics, count: int, on_constraints: bool = True) -> list[Point]:
     """Points at the default parameters, random (but the same every time) in everything else; on V by default.
 
-    Fewer than `count` when Newton's method does not reach V or expressions have no real value.
+    Fewer than `count` when Newton's method does not reach V or expressions have no real value.  Where V has several
+    branches they lie near the configurations that loading found on the one that is meant.
     """
     mp.dps = DIGITS + 10
     source = random.Random(1)
     parameters = parameter_values(model)
-    start = dict(model.configuration)
+    known = model.assembly
+    starts = [dict(model.configuration)]
+    if on_constraints and known is not None and known.has_branches:
+        names = [c.name for c in model.coordinates]
+        starts = [dict(zip(names, map(Fraction, place.q), strict=True)) for place in known.places]
     points: list[Point] = []
     for attempt in range(6 * count):
         if len(points) == count:
             break
         values = dict(parameters)
+        start = starts[attempt % len(starts)]
         for c in model.coordinates:
             spread = 0.3 if c.name in start and mechanics.residual else 2.0
             middle = number(start.get(c.name, Fraction(0)))

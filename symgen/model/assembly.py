@@ -41,6 +41,11 @@ class Assembly:
     regular: bool = True
 
     @property
+    def has_branches(self) -> bool:
+        """Whether a random configuration may lie on another branch than the one that is meant."""
+        return bool(self.others) or self.start is not None or not self.rank_is_identical
+
+    @property
     def rank_is_identical(self) -> bool:
         """Whether the rank of B is no greater anywhere, not only on the branches that were found."""
         return self.bound[0] == self.ranks.constraints

@@ -45,8 +45,8 @@ def check_motion(
         yield Mistake(
             f"only singular configurations were found, such as {_shown(mechanics, found.places[0])}: beside it the "
             f"constraints that hold there have another rank than {rank}",
-            "check lengths: what closes in a singular pose alone cannot move; give a regular one under `configuration`; "
-            "write a row whose gradient does not vanish where it holds, no square",
+            "check lengths: what closes in a singular pose alone cannot move; give a regular one under "
+            "`configuration`; write rows whose gradients do not vanish where they hold, no squares",
             spans["geometric"],
         )
         return
