@@ -15,6 +15,7 @@ from symgen import __version__
 from symgen.arguments import add_form, add_generation, add_models, chosen_forms, make_parser, names, parts
 from symgen.ir.kernel import Scalar
 from symgen.measuring import bench, simulate, stress, target
+from symgen.model.names import did_you_mean
 from symgen.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, guarded
 from symgen.processes import ToolError
 from symgen.results import PARTS, Options, Result, WrongUseError
@@ -61,6 +62,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     begin_writing()
     command, rest = (given[0], given[1:]) if given and given[0] in _COMMANDS else ("", given)
     try:
+        if given and not command:
+            _check_command(given[0])
         with signals_end_the_run():
             code = _COMMANDS[command](rest) if command else _generate(rest)
             sys.stdout.flush()
@@ -78,6 +81,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         return _complain(f"{place}{error.strerror or error}")
+
+
+def _check_command(word: str) -> None:
+    """WrongUseError for a word that is neither a command nor the name of a file, but close to a command."""
+    if word.isidentifier() and not Path(word).exists():
+        remedy = did_you_mean(word, _COMMANDS, "")
+        if remedy:
+            raise WrongUseError(f"{word} is no command and no file; {remedy.replace('`', '`symgen ', 1)}")
 
 
 def _prepare_streams() -> None:
@@ -166,8 +177,7 @@ def _explain(arguments: list[str]) -> int:
     add_form(parser)
     given = parser.parse_args(arguments)
 
-    if not given.model.is_file():
-        raise WrongUseError(f"no such file: {given.model}")
+    check_present([given.model])
 
     def explain() -> int:
         from symgen.pipeline import explain

@@ -49,12 +49,26 @@ class ModelError(Exception):
         super().__init__(self.render())
 
     def render(self) -> str:
-        """Every mistake as `file:line:column: message`, the excerpt with a marker, and the remedy."""
-        return "\n".join(self._rendered(mistake) for mistake in self.mistakes)
+        """Every mistake as `file:line:column: message`, the excerpt with a marker, and the remedy.
 
-    def _rendered(self, mistake: Mistake) -> str:
-        file = mistake.span.file if mistake.span is not None else ""
-        return render_mistake(file or self.file, self.texts[file] if file else self.text, mistake)
+        What is wrong in the same way at several places is told once, with the further places.
+        """
+        alike: dict[tuple[str, str, str], list[Mistake]] = {}
+        for mistake in self.mistakes:
+            file = mistake.span.file if mistake.span is not None else ""
+            alike.setdefault((file, mistake.message, mistake.remedy), []).append(mistake)
+        return "\n".join(self._rendered(file, mistakes) for (file, _, _), mistakes in alike.items())
+
+    def _rendered(self, file: str, mistakes: list[Mistake]) -> str:
+        first, *others = mistakes
+        places = list(dict.fromkeys(m.span for m in others if m.span is not None and m.span != first.span))
+        if places:
+            listed = [f"{span.line}:{span.column}" for span in places[:MOST_PLACES]]
+            if len(places) > MOST_PLACES:
+                listed.append(f"{len(places) - MOST_PLACES} more places")
+            among = listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} and {listed[-1]}"
+            first = Mistake(f"{first.message} (also at {among})", first.remedy, first.span)
+        return render_mistake(file or self.file, self.texts[file] if file else self.text, first)
 
 
 class SymgenBug(Exception):
@@ -62,6 +76,7 @@ class SymgenBug(Exception):
 
 
 EXCERPT_WIDTH = 110
+MOST_PLACES = 8
 
 
 def printable(text: str) -> str:

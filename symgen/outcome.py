@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import traceback
 from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 
@@ -34,7 +35,19 @@ def check_present(models: Sequence[Path]) -> None:
     """WrongUseError for the first file that is missing, before work on any of them starts."""
     for path in models:
         if not path.is_file():
-            raise WrongUseError(f"no such file: {path}")
+            raise WrongUseError(_why_missing(path))
+
+
+def _why_missing(path: Path) -> str:
+    """That there is no file, and the model that was meant where one is near."""
+    if path.is_dir():
+        models = sorted(path.glob("*.yaml"))
+        such = f", such as {models[0]}" if models else ""
+        return f"{path} is a folder: name a model file{such}"
+    beside = [one.name for one in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
+    meant = f"{path.name}.yaml" if f"{path.name}.yaml" in beside else path.name
+    near = meant if meant in beside else next(iter(get_close_matches(meant, sorted(beside), 1, 0.6)), "")
+    return f"no such file: {path}" + (f"; did you mean {path.parent / near}?" if near else "")
 
 
 def guarded(work: Callable[[], int]) -> int:

@@ -14,7 +14,7 @@ from symgen.model.mechanics import default_values
 from symgen.model.model import Allocation, Input, Limit, Model, Parameter, Range
 from symgen.model.names import did_you_mean
 from symgen.model.reading import entries, items, member
-from symgen.model.scope import PARAMETERS, Scope
+from symgen.model.scope import PARAMETERS, Scope, a_kind
 from symgen.model.source import MappingNode, Node, ScalarNode
 from symgen.model.walk import evaluate
 from symgen.records import dataclass
@@ -48,8 +48,7 @@ def declare_settings(scope: Scope, tree: MappingNode) -> None:
             scope.kinds[setting.name] = "setting"
         elif taken != "setting":
             where = f" (line {scope.spans[setting.name].line})" if setting.name in scope.spans else ""
-            article = "an" if taken[0] in "ai" else "a"
-            message = f"the {setting.about} becomes the parameter `{setting.name}`, which is {article} {taken}{where}"
+            message = f"the {setting.about} becomes the parameter `{setting.name}`, which is {a_kind(taken)}{where}"
             scope.wrong(message, ONE_NAME_EACH, setting.place)
 
 

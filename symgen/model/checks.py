@@ -114,6 +114,22 @@ def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:
             scope.notices.append(Notice(f"`{name}` is not made: {reason}", span))
 
 
+def notice_efforts(scope: Scope, model: Model) -> None:
+    """Effort limits of a robot, and what keeps inputs within them where that is known."""
+    told = scope.efforts
+    if told is None or (model.allocation is not None and model.allocation.limits):
+        return
+    if model.assembly is not None and _shares_once(model, model.assembly):
+        told = Notice(f"{told.message}: `limits` under `allocation` can", told.span)
+    scope.notices.append(told)
+
+
+def _shares_once(model: Model, assembly: Assembly) -> bool:
+    """Whether there is one direction of internal force, with a sign of its own."""
+    delta = model.n - assembly.ranks.constraints
+    return assembly.ranks.actuation == delta == model.m - 1 and assembly.ranks.constraints == model.r
+
+
 def _add(scope: Scope, found: Iterable[Mistake | Notice]) -> None:
     for one in found:
         if isinstance(one, Mistake):

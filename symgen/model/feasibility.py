@@ -15,6 +15,10 @@ from symgen.model.names import counted
 # Configurations at which masses are looked at, and how many say that a coordinate is held.
 SAMPLES, ENOUGH = 5, 3
 FURTHER = 40
+USUAL = 3
+
+# An energy this small beside its terms is none.
+NO_ENERGY = 1e-12
 
 # Components of a motion this small are none.
 HELD = 1e-7
@@ -116,13 +120,14 @@ def _check_masses(
     """G must be positive definite along the constraints; across them it may be anything, which is told."""
     definite_somewhere = negative_across = False
     still: set[str] = set()
+    usual = _usual_mass(mechanics)
     for q, jacobian in regular:
         try:
             mass = mechanics.mass_matrix(q)
         except (ArithmeticError, ValueError):
             continue
         where = ", ".join(f"{c.name} = {value:.4g}" for c, value in zip(mechanics.coordinates, q, strict=True))
-        along, definite = is_positive(_along(mass, jacobian))
+        along, definite = is_positive(_along(mass, usual, jacobian))
         if not mechanics.mass_is_sure and not along:
             yield _negative_energy(mechanics, where, span)
             return
@@ -134,7 +139,8 @@ def _check_masses(
         if definite_somewhere and mechanics.mass_is_sure:
             break
         if not definite_somewhere:
-            still |= _without_mass(mechanics, jacobian, mass)
+            negligible = [[NO_ENERGY**2 * x for x in row] for row in usual]
+            still |= _without_mass(mechanics, jacobian, _above(mass, negligible))
     if not definite_somewhere:
         names = [f"`{c.name}`" for c in mechanics.coordinates if c.name in still]
         alone = len(names) == 1
@@ -146,10 +152,42 @@ def _check_masses(
         )
 
 
-def _along(mass: Rows, jacobian: Rows) -> Rows:
-    """W^T G W for an orthonormal basis W of the velocities that the constraints allow."""
+def _usual_mass(mechanics: Mechanics) -> Rows:
+    """The largest size of each entry of G at a few configurations, admissible or not."""
+    n = len(mechanics.coordinates)
+    largest = [[0.0] * n for _ in range(n)]
+    for q, _ in mechanics.anywhere(USUAL):
+        try:
+            found = mechanics.mass_matrix(q)
+        except (ArithmeticError, ValueError):
+            continue
+        largest = [[max(a, abs(b)) for a, b in zip(*rows, strict=True)] for rows in zip(largest, found, strict=True)]
+    return largest
+
+
+def _along(mass: Rows, usual: Rows, jacobian: Rows) -> Rows:
+    """W^T G W for an orthonormal basis W of the velocities that the constraints allow; what rounding leaves is 0.
+
+    Rounding in G itself is of second order where the places of masses cancel.
+    """
     basis = null_space(jacobian, len(mass))
-    images = [[sum(a * b for a, b in zip(row, vector, strict=True)) for row in mass] for vector in basis]
+    bounds = [
+        [max(NO_ENERGY * abs(a), NO_ENERGY**2 * b) for a, b in zip(*rows, strict=True)]
+        for rows in zip(mass, usual, strict=True)
+    ]
+    sizes = [[abs(a) for a in vector] for vector in basis]
+    values, least = _reduced(mass, basis), _reduced(bounds, sizes)
+    return _above(values, least)
+
+
+def _above(values: Rows, least: Rows) -> Rows:
+    """The values, with 0 for those no larger than these."""
+    pairs = zip(values, least, strict=True)
+    return [[x if abs(x) > low else 0.0 for x, low in zip(*rows, strict=True)] for rows in pairs]
+
+
+def _reduced(matrix: Rows, basis: Rows) -> Rows:
+    images = [[sum(a * b for a, b in zip(row, vector, strict=True)) for row in matrix] for vector in basis]
     return [[sum(a * b for a, b in zip(image, vector, strict=True)) for vector in basis] for image in images]
 
 

@@ -8,10 +8,11 @@ from symgen.model.expression import Number
 from symgen.model.mechanism import AXES, NO_VECTOR, WORLD, ZERO, Frame, Point, Quaternion, Turn, Vector3
 from symgen.model.names import did_you_mean
 from symgen.model.reading import description_of, entries, items, member, text_of
-from symgen.model.scope import FRAME, PARAMETERS, Kind, Scope
+from symgen.model.scope import FRAME, PARAMETERS, Kind, Scope, a_kind
 from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
 
 ONE = Number(ZERO.value + 1)
+NEED_FRAME = "name the frame it belongs to, or put a frame there under `frames`"
 
 
 def read_frames(scope: Scope, tree: MappingNode, joints: tuple[Frame, ...]) -> tuple[Frame, ...]:
@@ -83,6 +84,11 @@ def frame_name(scope: Scope, node: Node | None, what: str) -> str | None:
         return None
     if name == WORLD or scope.kinds.get(name) == "frame":
         return name
+    kind = scope.kinds.get(name)
+    if kind is not None:
+        remedy = NEED_FRAME if kind == "point" else "name one of `frames` or `joints`, or `world`"
+        scope.wrong(f"`{name}` is {a_kind(kind)}, but {what} names a frame", remedy, node.span)
+        return None
     frames = [other for other, kind in scope.kinds.items() if kind == "frame"]
     remedy = did_you_mean(name, [WORLD, *frames], "declare it under `frames`")
     scope.wrong(f"unknown frame `{name}` in {what}", remedy, node.span)

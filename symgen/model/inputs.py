@@ -13,7 +13,7 @@ from symgen.model.mechanism import PLACES, TURNING_RATES, VELOCITIES, WORLD, ZER
 from symgen.model.model import Input
 from symgen.model.names import did_you_mean
 from symgen.model.reading import description_of, entries, items, key_span, member, text_of
-from symgen.model.scope import CONFIGURATION, Scope
+from symgen.model.scope import CONFIGURATION, Scope, a_kind
 from symgen.model.source import MappingNode, Node, ScalarNode
 
 FORCES = ("point", "torque_on", "cable")
@@ -62,13 +62,20 @@ def working_rate(scope: Scope, node: Node, action: str, what: str) -> Expression
 
 
 def point_name(scope: Scope, node: Node | None, what: str) -> str | None:
-    """The name of a declared point, or of a frame for its origin."""
+    """The name of a declared point, or of a frame or the world for its origin."""
     name = text_of(node)
     if name is None or node is None:
         return None
+    if name == WORLD:
+        return name
     if scope.kinds.get(name) in ("point", "frame"):
         scope.used.add(name)
         return name
+    kind = scope.kinds.get(name)
+    if kind is not None:
+        remedy = "name one of `points`, or a frame for its origin"
+        scope.wrong(f"`{name}` is {a_kind(kind)}, but {what} names a point", remedy, node.span)
+        return None
     points = [other for other, kind in scope.kinds.items() if kind in ("point", "frame")]
     scope.wrong(f"unknown point `{name}` in {what}", did_you_mean(name, points, "declare it under `points`"), node.span)
     return None

@@ -10,7 +10,7 @@ from symgen.diagnostics import Span
 from symgen.model.combine import divided, minus, negated, plus, times
 from symgen.model.expression import Call, Expression, Name, Number, Power
 from symgen.model.formulas import Form, Formula, Formulas
-from symgen.model.frames import frame_name
+from symgen.model.frames import NEED_FRAME, frame_name
 from symgen.model.inputs import point_name, squared_distance
 from symgen.model.kinematics import Kinematics
 from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, component, is_component
@@ -52,12 +52,28 @@ class Rows:
             kind = text_of(member(node, "type"))
             if kind not in LOOPS:
                 continue
+            between = items(member(node, "between"))
+            if kind not in OF_POINTS and self._are_points(between, kind, what):
+                continue
             owner_of = point_name if kind in OF_POINTS else frame_name
-            owners = [owner_of(self._scope, item, f"`between` of {what}") for item in items(member(node, "between"))]
+            owners = [owner_of(self._scope, item, f"`between` of {what}") for item in between]
             known = [owner for owner in owners if owner is not None]
             if len(known) != 2:
                 continue
             yield from self._named(key, self._closing(kind, known[0], known[1], node, what))
+
+    def _are_points(self, between: Iterable[Node], kind: str, what: str) -> bool:
+        """Whether points stand where a joint has frames, which is a mistake with a remedy of its own."""
+        points = [item for item in between if self._scope.kinds.get(text_of(item) or "") == "point"]
+        if not points:
+            return False
+        named = " and ".join(f"`{text_of(item)}`" for item in points)
+        remedy = "write `type: point`: two points meet, which is what a spherical joint holds"
+        if kind != "spherical":
+            remedy = f"points meet with `type: point`; a {kind} joint holds directions too: {NEED_FRAME}"
+        said = f"{named} {'is a point' if len(points) == 1 else 'are points'}, but {what} of type {kind} joins frames"
+        self._scope.wrong(said, remedy, points[0].span)
+        return True
 
     def of_wheels(self, tree: MappingNode) -> Iterator[ConstraintRow]:
         """The rows of wheels that roll on the plane z = 0 of the world."""

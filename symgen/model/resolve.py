@@ -11,7 +11,7 @@ from typing import Literal
 from symgen.diagnostics import Notice, Span
 from symgen.model.allocation import declare_settings, read_allocation
 from symgen.model.bodies import read_mechanism
-from symgen.model.checks import check_mechanics, notice_empty_outputs
+from symgen.model.checks import check_mechanics, notice_efforts, notice_empty_outputs
 from symgen.model.combine import plus
 from symgen.model.components import without_components
 from symgen.model.constants import constant
@@ -107,6 +107,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     scope.mistakes.extend(check_units(tree, as_written, (*fits, *fits_of_friction)))
     model = check_mechanics(scope, tree, model, kinetic_read, whole)
     notice_empty_outputs(scope, tree, model)
+    notice_efforts(scope, model)
     _notice_unused(scope, tree)
     return model
 

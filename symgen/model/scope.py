@@ -48,6 +48,11 @@ _REMEDIES: dict[Kind, str] = {
 }
 
 
+def a_kind(kind: Kind) -> str:
+    """The kind with its article."""
+    return "the time" if kind == "time" else f"{'an' if kind[0] in 'ai' else 'a'} {kind}"
+
+
 @dataclass(slots=True)
 class Scope:
     """The declared names of a model, and the mistakes and notices found so far."""
@@ -60,6 +65,7 @@ class Scope:
     faulty: set[str] = field(default_factory=set)
     mistakes: list[Mistake] = field(default_factory=list)
     notices: list[Notice] = field(default_factory=list)
+    efforts: Notice | None = None  # limits of a robot's drives; what can be done with them is known at the end
 
     def wrong(self, message: str, remedy: str, span: Span | None) -> None:
         """Records a mistake."""
@@ -83,8 +89,7 @@ class Scope:
             taken = self.kinds[name]
             span = self.spans.get(name)
             where = "" if span is None else f" ({span.file}:{span.line})" if span.file else f" (line {span.line})"
-            article = "an" if taken[0] in "ai" else "a"
-            self.wrong(f"`{name}` is already {article} {taken}{where}", "give each thing a name of its own", node.span)
+            self.wrong(f"`{name}` is already {a_kind(taken)}{where}", "give each thing a name of its own", node.span)
             return False
         self.kinds[name] = kind
         self.spans[name] = node.span
@@ -128,9 +133,7 @@ class Scope:
             return False
         self.used.add(name)
         if kind not in allowed:
-            article = "an" if kind[0] in "ai" else "a"
-            noun = "the time" if kind == "time" else f"{article} {kind}"
-            self.wrong(f"`{name}` is {noun}, which {where} must not contain", _REMEDIES[kind], span)
+            self.wrong(f"`{name}` is {a_kind(kind)}, which {where} must not contain", _REMEDIES[kind], span)
             return False
         if earlier is not None and kind in ("parameter", "definition") and name not in earlier:
             self.wrong(f"{where} uses `{name}`, which is declared later", "declare it before its first use", span)

@@ -69,6 +69,9 @@ def import_robot(scope: Scope, tree: MappingNode, folder: Path) -> Imported:
         found = (*_notices(robot, span), *judge_links(robot))
         # names in the file are any text
         scope.notices.extend(Notice(printable(notice.message), notice.span) for notice in found)
+        efforts = _listed(robot, "effort")
+        if efforts:
+            scope.efforts = Notice(printable(f"effort limits of the URDF bound no input ({efforts})"), span)
     return Imported(tree, text, file)
 
 
@@ -111,10 +114,6 @@ def _notices(robot: Robot, span: Span) -> list[Notice]:
             listed = ", ".join(dict.fromkeys(name for name in names if name)) or "no name"
             why = f": {ABOUT[tag]}" if tag in ABOUT else ""
             notices.append(Notice(f"`{tag}` of the URDF takes no part ({listed}){why}", span))
-    efforts = _listed(robot, "effort")
-    if efforts:
-        message = f"effort limits of the URDF bound no input ({efforts}): `limits` under `allocation` can"
-        notices.append(Notice(message, span))
     still = [name for name, joint in robot.joints.items() if _is_zero(joint.limits.get("velocity"))]
     if still:
         message = f"velocity limits of 0 in the URDF are taken for none ({', '.join(still)})"

@@ -148,6 +148,25 @@ def test_wrong_use(asked: list[Options], arguments: list[str], capsys: pytest.Ca
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["verfy", SKATE], "verfy is no command and no file; did you mean `symgen verify`?"),
+        (["explains", SKATE, "--depth", "3"], "explains is no command and no file; did you mean `symgen explain`?"),
+        ([str(MODELS / "skate")], f"no such file: {MODELS / 'skate'}; did you mean {SKATE}?"),
+        ([str(MODELS / "skat.yaml")], f"did you mean {SKATE}?"),
+        ([str(MODELS)], f"{MODELS} is a folder: name a model file, such as {MODELS / 'arm7.yaml'}"),
+        (["a_machine_of_mine"], "no such file: a_machine_of_mine\n"),
+    ],
+)
+def test_a_word_that_is_no_file_is_told_with_what_was_meant(
+    asked: list[Options], arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert code(*arguments) == 2
+    assert message in capsys.readouterr().err
+    assert not asked
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
         (["--states", "many"], "'many' is no whole number from 8 up"),
         (["--only", "c,rust"], "'rust' is none of c, python"),
         (["--outputs", " , "], "expected names separated by commas"),

@@ -360,6 +360,12 @@ BODIES = {
     ),
     "unknown_element": heavy("zy: 1"),
     "massless_motion": arm(bodies="bodies: {upper: {mass: 0}, lower: {mass: m}}\n"),
+    "massless_motion_seen_in_rounding_only": arm(
+        frames=FRAMES.replace("[l, 0, 0]", "[1, 0, 0]"),
+        bodies="bodies: {upper: {mass: m}, lower: {mass: m, com: [1, 0, 0]}}\n",
+        points="points: {tip: {frame: lower, at: [1, 0, 0]}}\n",
+        more="loops: {folded: {type: point, between: [tip, world]}}\n",
+    ),
     "massless_motion_of_two": arm(
         frames="frames:\n  upper: {rotation: [[z, a]]}\n  lower: {parent: upper, rotation: [[z, b]]}\n",
         bodies="bodies: {lower: {mass: m, com: [l/2, 0, 0], inertia: {zz: J}}}\n",
@@ -400,6 +406,11 @@ ELEMENTS = {
         more="joints: {wrist: {type: planar, parent: lower, coordinates: [c, d]}}\n"
         "loops: {cut: {type: revolute, between: [wrist, upper]}}\n"
     ),
+    "two_points_in_a_spherical_joint": arm(
+        points=POINTS + "  wall: {at: [l, 0, 0]}\n",
+        more="loops: {cut: {type: spherical, between: [tip, wall]}}\n",
+    ),
+    "a_coordinate_in_a_loop_of_points": arm(more="loops: {cut: {type: point, between: [tip, b]}}\n"),
     "joint_axis_of_zero_length": arm(
         more="joints: {wrist: {type: revolute, parent: lower, axis: [0, 0, 0], coordinate: c}}\n"
     ),

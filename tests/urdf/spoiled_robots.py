@@ -115,6 +115,7 @@ PARTS: dict[str, Case] = {
     "no_mass": changed('<mass value="2"/>', ""),
     "no_inertia_element": changed(' iyz="0" izz="0.05"', ' izz="0.05"'),
     "negative_mass": changed('value="2"', 'value="-2"'),
+    "one_attribute_at_every_joint": changed('<axis xyz="0 0 1"/>', '<axis xyz="0 0 1" stiffness="3"/>'),
     "impossible_inertia": changed('izz="0.04"', 'izz="-0.4"'),
 }
 GROUPS = {"hostile": HOSTILE, "paths": PATHS, "tree": TREE, "joints": JOINTS, "parts": PARTS}

@@ -76,8 +76,30 @@ def test_what_takes_no_part_is_told_by_name(tmp_path: Path) -> None:
         "joints",
         "`gazebo` of the URDF takes no part (upper): it is for a simulator",
         "`material` of the URDF takes no part (red)",
-        "effort limits of the URDF bound no input (shoulder 50): `limits` under `allocation` can",
+        "effort limits of the URDF bound no input (shoulder 50)",
     ]
+
+
+@pytest.mark.parametrize(
+    ("inputs", "told"),
+    [
+        ("", [""]),
+        ("inputs: {s: {unit: N*m, joint: shoulder}, e: {unit: N*m, joint: elbow}}\n", [""]),
+        (
+            "inputs: {s: {unit: N*m, joint: shoulder}, e: {unit: N*m, joint: elbow}, f: {unit: N*m, joint: elbow}}\n",
+            [": `limits` under `allocation` can"],
+        ),
+        (
+            "inputs: {s: {unit: N*m, joint: shoulder}, e: {unit: N*m, joint: elbow}, f: {unit: N*m, joint: elbow}}\n"
+            "allocation: {limits: {e: [-5, 5]}}\n",
+            [],
+        ),
+    ],
+)
+def test_limits_of_drives_are_offered_where_they_can_be_kept(tmp_path: Path, inputs: str, told: list[str]) -> None:
+    messages = [notice.message for notice in load(tmp_path, ARM, HEAD + inputs).notices]
+    start = "effort limits of the URDF bound no input (shoulder 50)"
+    assert [message.removeprefix(start) for message in messages if message.startswith(start)] == told
 
 
 def test_links_on_fixed_joints_are_carried_by_one_body(tmp_path: Path) -> None:
