@@ -62,6 +62,16 @@ class Evaluator:
         return Numbers(matrix(n, n), matrix(r, n), matrix(n, m), matrix(1, n)[0], matrix(1, r)[0], list(flat))
 
 
+def onto_rows(rows: Matrix, residual: Vector, rank: int) -> Vector:
+    """The smallest step that Newton's method takes towards residual 0, rows being of this rank."""
+    held, _ = basis(rows, rank)
+    along = [[inner(row, direction) for direction in held] for row in rows]
+    columns = transposed(along, len(held))
+    gram = [[inner(x, y) for y in columns] for x in columns]
+    shares = solve(gram, times(columns, residual))
+    return [-inner(shares, column) for column in transposed(held, len(rows[0]))]
+
+
 @dataclass(frozen=True)
 class Split:
     """The directions that the rows hold and those that they leave free; `pivots` tell how far the rows are apart."""

@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from symgen.zoo.dice import Dice
-from symgen.zoo.fields import Floats
-from symgen.zoo.kkt import Evaluator, Numbers, Ranks
+from symgen.zoo.fields import Balls, Floats, precision
+from symgen.zoo.kkt import Evaluator, Numbers, Ranks, onto_rows
 from symgen.zoo.linear import NOTHING
 from symgen.zoo.reader import System
 
 STEPS = 30
+REFINEMENTS = 3
 CLOSED = 1e-12
 SAME = 1e-8
 # how far rows, inputs and masses are apart at states that are compared, unless the model has none of the kind
@@ -41,6 +43,7 @@ class Walker:
         self._system, self._evaluate, self._dice = system, evaluate, dice
         self._start = np.array([start.get(name, 0.0) for name in system.coordinates])
         self._floats = Floats()
+        self._balls = Balls()
         self._ranges = system.blocks.get("ranges") or {}
 
     def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[State], Ranks]:
@@ -54,7 +57,8 @@ class Walker:
         for q in points:
             at = self._numbers(q, parameters)
             if self._rank(at, REGULAR) == ranks.constraints and self._reached(at, REGULAR) == ranks.actuation:
-                found.append(self._state(q, at, parameters))
+                nearest = self._refined(q, parameters)
+                found.append(self._state(nearest, self._numbers(nearest, parameters), parameters))
             if len(found) == count:
                 break
         return found, ranks
@@ -119,6 +123,27 @@ class Walker:
             steep[np.linalg.norm(rows, axis=1) <= NOTHING] = 0
             q = q - np.linalg.pinv(steep, rcond=SAME) @ (residual / lengths)
         return q if best < CLOSED else None
+
+    def _refined(self, q: Any, parameters: Mapping[str, float]) -> Any:
+        """The float nearest to a configuration that satisfies the rows to 30 digits.
+
+        Where rows depend on each other nothing is defined off V but by rounding.
+        """
+        geometric = sum(row.geometric for row in self._system.rows)
+        if not geometric:
+            return q
+        number = self._balls.number
+        names = self._system.coordinates
+        rank = _rank_of(_normalized(np.array(self._numbers(q, parameters).rows[:geometric])), SAME)
+        with precision():
+            fixed = {name: number(Fraction(value)) for name, value in parameters.items()}
+            fixed |= dict.fromkeys(self._system.rate_names, number(Fraction(0)))
+            exact = [number(Fraction(float(x))) for x in q]
+            for _ in range(REFINEMENTS):
+                at = self._evaluate({**fixed, **dict(zip(names, exact, strict=True))}, self._balls)
+                step = onto_rows(at.rows[:geometric], at.residual, rank)
+                exact = [(x + dx).mid() for x, dx in zip(exact, step, strict=True)]
+            return np.array([float(x) for x in exact])
 
     def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
         at = self._numbers(q, parameters)
