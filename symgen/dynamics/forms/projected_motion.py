@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symgen.dynamics.forms.motion import Motion, Problem
+from symgen.dynamics.forms.refinement import refined
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.inertia import Cholesky, ConstrainedInertia, diagonal_sizes
 from symgen.dynamics.spaces import NullSpace, Reflections
@@ -12,21 +13,31 @@ from symgen.ir.kernel import Status
 
 
 def nullspace(problem: Problem, space: NullSpace, inertia: ConstrainedInertia) -> Motion:
-    """q_ddot = K (f + G B^+ a) - B^+ a, lambda = (B^+)^T (f - G q_ddot); needs G positive definite on ker B only."""
-    lifted = space.lift(problem.bias)
-    pushed = matvec(problem.graph, problem.mass_matrix, lifted)
-    along = inertia.solve(tuple(f + g for f, g in zip(problem.force, pushed, strict=True)))
-    accelerations = subtract_vectors(along, lifted)
-    return Motion(accelerations, _reactions(problem, space, accelerations), (*space.guards, *_own(space, inertia)))
+    """q_ddot = K (f + G B^+ a) - B^+ a, lambda = (B^+)^T (f - G q_ddot), with one step of refinement.
+
+    It needs G positive definite on ker B only.  Both expressions lose what masses are apart by, in f - G q_ddot most of
+    all; what the equations still ask for is solved for once more.
+    """
+
+    def solve(f: Vector, c: Vector) -> tuple[Vector, Vector]:
+        lifted = space.lift(c)
+        pushed = matvec(problem.graph, problem.mass_matrix, lifted)
+        along = inertia.solve(subtract_vectors(f, pushed))
+        q_ddot = tuple(x + y for x, y in zip(along, lifted, strict=True))
+        return q_ddot, _reactions(problem, space, f, q_ddot)
+
+    solution = solve(problem.force, tuple(-a for a in problem.bias))
+    accelerations, multipliers = refined(problem, solution, solve)
+    return Motion(accelerations, multipliers, (*space.guards, *_own(space, inertia)))
 
 
 def _own(space: NullSpace, inertia: ConstrainedInertia) -> tuple[Guard, ...]:
     return tuple(guard for guard in inertia.guards if guard not in space.guards)
 
 
-def _reactions(problem: Problem, space: NullSpace, accelerations: Vector) -> Vector:
+def _reactions(problem: Problem, space: NullSpace, force: Vector, accelerations: Vector) -> Vector:
     inertial = matvec(problem.graph, problem.mass_matrix, accelerations)
-    return space.lift_transposed(subtract_vectors(problem.force, inertial))
+    return space.lift_transposed(subtract_vectors(force, inertial))
 
 
 def shifted(problem: Problem, space: NullSpace) -> Motion:
@@ -48,7 +59,8 @@ def shifted(problem: Problem, space: NullSpace) -> Motion:
     pushed = matvec(graph, problem.mass_matrix, lifted)
     right = space.project(tuple(f + g for f, g in zip(problem.force, pushed, strict=True)))
     accelerations = factor.solve(tuple(x - mu * y for x, y in zip(right, lifted, strict=True)))
-    return Motion(accelerations, _reactions(problem, space, accelerations), (*space.guards, *factor.guards))
+    multipliers = _reactions(problem, space, problem.force, accelerations)
+    return Motion(accelerations, multipliers, (*space.guards, *factor.guards))
 
 
 def kkt(problem: Problem) -> Motion:

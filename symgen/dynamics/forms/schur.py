@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from symgen.dynamics.forms.motion import Motion, Problem
+from symgen.dynamics.forms.refinement import refined
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.inertia import Cholesky, diagonal_sizes
 from symgen.dynamics.spaces import LONGEST_PRODUCT
@@ -54,10 +55,7 @@ def schur_qr(problem: Problem) -> Motion:
     elimination = _Elimination(problem, factor, [factor.lowered(row) for row in problem.rows])
     solution = elimination.solve(problem.force, tuple(-a for a in problem.bias))
     if problem.r:
-        first = _rounded(problem.graph, solution)
-        # exactly, the sum of both is the first again
-        further = _rounded(problem.graph, elimination.solve(*left_over(problem, *first)))
-        solution = _sum(first[0], further[0]), _sum(first[1], further[1])
+        solution = refined(problem, solution, elimination.solve)
     return Motion(*solution, elimination.guards)
 
 
@@ -87,26 +85,6 @@ class _Elimination:
         """q_ddot and lambda from L^-1 f."""
         x, multipliers = self._orthogonal.solve(force, c)
         return self._factor.raised(tuple(y * w for y, w in zip(x, self._weights, strict=True))), multipliers
-
-
-def left_over(problem: Problem, q_ddot: Vector, multipliers: Vector) -> tuple[Vector, Vector]:
-    """f - G q_ddot - B^T lambda and -a - B q_ddot, for numbers that have been computed."""
-    graph, rows = problem.graph, problem.rows
-    forces = tuple(
-        f - dot(graph, g, q_ddot) - graph.sum(row[i] * x for row, x in zip(rows, multipliers, strict=True))
-        for i, (f, g) in enumerate(zip(problem.force, problem.mass_matrix, strict=True))
-    )
-    rates = tuple(-a - dot(graph, row, q_ddot) for row, a in zip(rows, problem.bias, strict=True))
-    return forces, rates
-
-
-def _rounded(graph: Graph, solution: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
-    q_ddot, multipliers = solution
-    return tuple(map(graph.rounded, q_ddot)), tuple(map(graph.rounded, multipliers))
-
-
-def _sum(a: Vector, b: Vector) -> Vector:
-    return tuple(x + y for x, y in zip(a, b, strict=True))
 
 
 def schur_ldl(problem: Problem) -> Motion:
