@@ -91,6 +91,16 @@ class RowForms:
         self.forms = [wedge_all(unit(graph), [rows[k] for k in subset]) for subset in self.subsets]
         self.square = graph.sum(square(graph, form) for form in self.forms)
 
+    def beside_their_lengths(self, squares: Sequence[Scalar]) -> Scalar:
+        """The sum of |omega_I|^2 / prod |b_k|^2 from the `squares` of the rows' lengths; a row of zeros adds nothing.
+
+        Where one long row follows from others, what the sum of |omega_I|^2 is of its own bound says nothing of ranks.
+        """
+        graph = self.graph
+        lengths = (graph.product(squares[k] for k in subset) for subset in self.subsets)
+        pairs = zip((square(graph, form) for form in self.forms), lengths, strict=True)
+        return graph.sum(graph.function("ratio_or_zero", pair) for pair in pairs)
+
     @property
     def minors(self) -> frozenset[Scalar]:
         """The r x r minors of B, all of them small where its rank drops."""
@@ -187,6 +197,19 @@ class ActuationForms:
             for family in self.products
             for subset, product in zip(self.subsets, family, strict=True)
         )
+
+    def beside_rows(self, squares: Sequence[Scalar]) -> Scalar:
+        """The same with the rows' own lengths taken out of each row subset's share, by their `squares`."""
+        graph = self.graph
+        lengths = (graph.product(squares[k] for k in subset) for subset in self.rows.subsets)
+        shares = (
+            graph.sum(
+                square(graph, product) * self.importance(subset)
+                for subset, product in zip(self.subsets, family, strict=True)
+            )
+            for family in self.products
+        )
+        return graph.sum(graph.function("ratio_or_zero", pair) for pair in zip(shares, lengths, strict=True))
 
     def denominator(self) -> Scalar:
         """Delta itself when `single`, else the sum of squares."""

@@ -38,6 +38,8 @@ def solvable(
     scale = graph.sum(
         graph.product(squares[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
     )
+    if isinstance(space, MinorSpace) and generic.rank < len(space.rows):
+        return (Guard(status, forms.beside_rows(space.squares), 2, space.guards, scale),)
     if isinstance(space, MinorSpace):
         lengths = [_square(mechanics, row) for row in mechanics.constraint_jacobian]
         scale = scale * elementary_symmetric(graph, lengths, generic.rank)

@@ -85,12 +85,19 @@ class MinorSpace:
     def guards(self) -> tuple[Guard, ...]:
         if self.rank == 0:
             return ()
+        if self.rank < len(self.rows):
+            measure = self.forms.beside_their_lengths(self.squares)
+            return (Guard(Status.CONSTRAINT_RANK, measure, 2, scale=self.graph.one),)
         return (Guard(Status.CONSTRAINT_RANK, self.forms.square, 2, scale=self.size),)
 
     @cached_property
+    def squares(self) -> list[Scalar]:
+        """The squared lengths of the rows."""
+        return [dot(self.graph, row, row) for row in self.rows]
+
+    @cached_property
     def size(self) -> Scalar:
-        squares = [dot(self.graph, row, row) for row in self.rows]
-        return self.graph.sum(self.graph.product(squares[k] for k in subset) for subset in self.forms.subsets)
+        return self.graph.sum(self.graph.product(self.squares[k] for k in subset) for subset in self.forms.subsets)
 
     @cached_property
     def projector(self) -> Matrix:
