@@ -17,6 +17,7 @@ from symgen.zoo.fields import Balls, Floats, precision
 from symgen.zoo.generated import Answer, Target, targets
 from symgen.zoo.kkt import Evaluator, Ranks, Split, internal_force, inverse_dynamics, motion, split
 from symgen.zoo.mechanics import equations
+from symgen.zoo.pinocchio_trees import SAME, disagreement
 from symgen.zoo.reader import System
 from symgen.zoo.states import State, Walker, rounded
 from symgen.zoo.tape import Program
@@ -75,6 +76,9 @@ class Witness:
         walker = Walker(self._system, self._evaluate, self._start, Dice("states", self._seed))
         found, ranks = walker.states(defaults, count)
         findings: list[Finding] = []
+        other = disagreement(blocks, defaults, Dice("Pinocchio", self._seed))
+        if other is not None and other > SAME:
+            findings.append(Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}"))
         largest = 0.0
         for target in targets(folder, blocks["model"]):
             for state in found:
