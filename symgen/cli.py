@@ -255,7 +255,8 @@ def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: C
 
 def _tell_left_out(path: Path, result: Result) -> None:
     for one in result.left_out:
-        print(f"{path}: {one.quantity} is left out, verification rejects every way of it", file=sys.stderr)
+        types = " and ".join(one.scalars)
+        print(f"{path}: {one.quantity} is left out in {types}: verification rejects every way of it", file=sys.stderr)
         print(*(f"  {way}: {why}" for way, why in one.tried), f"  remedy: {one.remedy}", sep="\n", file=sys.stderr)
 
 

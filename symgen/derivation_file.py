@@ -24,7 +24,7 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
     """The file's text; keys in a fixed order."""
     generic = derivations.generic
     ways = {choice.quantity: choice for choice in derivations.choices}
-    rejected = derivations.rejected
+    rejected, left_out = derivations.rejected, derivations.left_out
     kernels: dict[str, Any] = {}
     for kernel in program.kernels:
         choice = ways[kernel.name]
@@ -71,6 +71,7 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
         "skipped": [{"what": d.what, "why": d.why} for d in structure.decisions],
         "absent": [{"quantity": name, "why": why} for name, why in derivations.absent],
         **({"rejected": [{"quantity": r.quantity, "way": r.way, "why": r.why} for r in rejected]} if rejected else {}),
+        **({"left_out": [{"quantity": name, "scalars": list(types)} for name, types in left_out]} if left_out else {}),
         "sine_and_cosine": "libm" if program.sincos is None else "portable",
         "form_of_inverse_dynamics": _form(derivations.form),
         **{f"form_of_{quantity}": _form(form) for quantity, form in derivations.named},

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symgen.dynamics.alternatives import Alternative
-from symgen.dynamics.select import Derivations, Rejection
+from symgen.dynamics.select import Choice, Derivations, Rejection
 from symgen.dynamics.structure import Structure
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
@@ -36,9 +36,13 @@ class Draft:
         """The float64 program, which Python, the counts and the report are made from."""
         return self.programs["float64"]
 
+    def choice(self, quantity: str) -> Choice:
+        """The way a quantity takes."""
+        return next(choice for choice in self.derivations.choices if choice.quantity == quantity)
+
     def way(self, quantity: str) -> str:
         """The way a quantity takes, and its form where that says more."""
-        choice = next(choice for choice in self.derivations.choices if choice.quantity == quantity)
+        choice = self.choice(quantity)
         return f"{choice.form} along {choice.way}" if choice.form not in ("", choice.way) else choice.way
 
     def kernels(self, quantity: str) -> dict[Scalar, Kernel]:
@@ -46,9 +50,9 @@ class Draft:
         found = ((scalar, kernel) for scalar, program in self.programs.items() for kernel in program.kernels)
         return {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
 
-    def kernels_along(self, alternative: Alternative) -> dict[Scalar, Kernel]:
+    def kernels_along(self, alternative: Alternative, scalars: Sequence[Scalar]) -> dict[Scalar, Kernel]:
         """The kernels of a quantity along another way."""
-        programs = schedule(alternative.mechanics, [alternative.derived], tuple(self.programs))
+        programs = schedule(alternative.mechanics, [alternative.derived], scalars)
         if self.trig == "libm":
             programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
         return {scalar: program.kernels[0] for scalar, program in programs.items()}
@@ -68,15 +72,25 @@ class Draft:
             form=form,
             named=tuple(named.items()),
         )
-        programs = {
-            scalar: replace(program, kernels=tuple(kernels[scalar] if k.name == name else k for k in program.kernels))
-            for scalar, program in self.programs.items()
-        }
+        programs = {}
+        for scalar, program in self.programs.items():
+            exchanged = (kernels.get(scalar, k) if k.name == name else k for k in program.kernels)
+            programs[scalar] = replace(program, kernels=tuple(exchanged))
         return replace(self, derivations=derivations, programs=programs)
 
-    def without(self, quantity: str, why: str) -> Draft:
-        """The draft without a quantity."""
+    def without(self, quantity: str, scalars: Sequence[Scalar], why: str) -> Draft:
+        """The draft without a quantity in some scalar types; without float64, which all else is made of, in none."""
         derivations = self.derivations
+        left_out = tuple(one for one in derivations.left_out if one[0] != quantity)
+        derivations = replace(derivations, left_out=(*left_out, (quantity, tuple(scalars))))
+        programs = {
+            scalar: replace(program, kernels=tuple(kernel for kernel in program.kernels if kernel.name != quantity))
+            if scalar in scalars
+            else program
+            for scalar, program in self.programs.items()
+        }
+        if "float64" not in scalars:
+            return replace(self, derivations=derivations, programs=programs)
         derivations = replace(
             derivations,
             quantities=tuple(q for q in derivations.quantities if q.name != quantity),
@@ -85,10 +99,6 @@ class Draft:
             form=None if quantity == "inverse_dynamics" else derivations.form,
             named=tuple(one for one in derivations.named if one[0] != quantity),
         )
-        programs = {
-            scalar: replace(program, kernels=tuple(kernel for kernel in program.kernels if kernel.name != quantity))
-            for scalar, program in self.programs.items()
-        }
         return replace(self, derivations=derivations, programs=programs)
 
     def rejecting(self, rejected: tuple[Rejection, ...]) -> Draft:

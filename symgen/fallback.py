@@ -2,30 +2,41 @@
 
 Another way is held against the same states by interpretation before anything is printed or compiled; the files that
 come of it are then verified like any others.  A way that needs most of what is allowed at these states will need more
-at others: it is taken only where no other way keeps a margin.
+at others: it is taken only where no other way keeps a margin.  Where no way passes in float32, float64 stays.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeAlias
 
 from symgen.draft import Draft
-from symgen.dynamics.alternatives import Alternative, alternative, alternatives
-from symgen.dynamics.select import Rejection
+from symgen.dynamics.alternatives import Alternative, Alternatives
+from symgen.dynamics.select import Choice, Rejection
 from symgen.ir.kernel import Kernel, Scalar
+from symgen.records import dataclass
 from symgen.results import AUTO, Options
 from symgen.verify.certificate import Fault, LeftOut
 from symgen.verify.expected import Expected
-from symgen.verify.interpreted import measured
+from symgen.verify.interpreted import measured, wrong_exactly
 from symgen.verify.tolerance import FACTOR
 
 REJECTED = "verification rejects it"
+WRONG = "; wrong in exact arithmetic too: a fault of symgen, please report it"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
+Kernels: TypeAlias = Mapping[Scalar, Kernel]
 
-_Passing: TypeAlias = tuple[float, Alternative, Mapping[Scalar, Kernel]]
+
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    """A way with its kernels and its largest error in `scalars`, where it passes; without `other` the way taken."""
+
+    largest: float
+    scalars: tuple[Scalar, ...]
+    other: Alternative | None = None
+    kernels: Kernels | None = None
 
 
 class Fallback:
@@ -34,78 +45,96 @@ class Fallback:
     def __init__(self, options: Options, progress: Callable[[str], None]) -> None:
         self._options = options
         self._progress = progress
+        self._alternatives: Alternatives | None = None
         self._left: dict[str, Iterator[Alternative]] = {}
-        self._passing: dict[str, list[_Passing]] = {}
+        self._passing: dict[str, list[_Candidate]] = {}
         self._tried: dict[str, list[tuple[str, str]]] = {}
-        self._kernels: dict[str, list[Mapping[Scalar, Kernel]]] = {}
+        self._kernels: dict[str, list[Kernels]] = {}
 
-    def settle(self, draft: Draft, rejected: Mapping[str, Fault], expected: Expected) -> Draft:
+    def settle(self, draft: Draft, rejected: Mapping[str, Sequence[Fault]], expected: Expected) -> Draft:
         """The draft with every rejected quantity along its next way that passes, or without it."""
-        for quantity, fault in rejected.items():
-            draft = self._replaced(draft, quantity, fault, expected)
+        if self._alternatives is None:
+            derivations = draft.derivations
+            self._alternatives = Alternatives(draft.model, derivations.generic, derivations.inverse)
+        for quantity, faults in rejected.items():
+            draft = self._replaced(draft, quantity, faults, expected)
         return draft
 
-    def _replaced(self, draft: Draft, quantity: str, fault: Fault, expected: Expected) -> Draft:
-        tried = self._tried.setdefault(quantity, [])
+    def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:
+        tried, passing = self._tried.setdefault(quantity, []), self._passing.setdefault(quantity, [])
         known = len(tried)
-        tried.append((draft.way(quantity), f"{fault.what} ({fault.target})"))
-        self._kernels.setdefault(quantity, []).append(draft.kernels(quantity))
+        kernels = draft.kernels(quantity)
+        wrong = wrong_exactly(kernels["float64"], expected)
+        tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})" + WRONG * wrong))
+        self._kernels.setdefault(quantity, []).append(kernels)
+        failing = {fault.scalar for fault in faults}
+        if "float64" not in failing:
+            passing.append(_Candidate(0.0, ("float64",)))
         found = self._next(draft, quantity, expected)
         draft = draft.rejecting(tuple(Rejection(quantity, way, why) for way, why in tried[known:]))
-        if found is not None:
-            return draft.along(*found)
-        left_out = LeftOut(quantity, tuple(tried), self._remedy(quantity))
-        return replace(draft.without(quantity, REJECTED), left_out=(*draft.left_out, left_out))
+        if found is not None and found.other is not None and found.kernels is not None:
+            draft = draft.along(found.other, found.kernels)
+        passed = () if found is None else found.scalars
+        without = tuple(scalar for scalar in kernels if scalar not in passed)
+        if not without:
+            return draft
+        left_out = LeftOut(quantity, without, tuple(tried), self._remedy(quantity, without))
+        others = (one for one in draft.left_out if one.quantity != quantity)
+        return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
 
-    def _next(
-        self, draft: Draft, quantity: str, expected: Expected
-    ) -> tuple[Alternative, Mapping[Scalar, Kernel]] | None:
-        """The next way that passes with a margin, or else the one that passes best; those that do not are noted."""
-        passing = self._passing.setdefault(quantity, [])
-        if quantity not in self._left:
-            self._left[quantity] = iter(self._alternatives(draft, quantity))
-        for other in self._left[quantity]:
+    def _next(self, draft: Draft, quantity: str, expected: Expected) -> _Candidate | None:
+        """The next way that passes with a margin, or else the best of those that pass; others are noted."""
+        passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
+        for other in self._others(quantity, draft.choice(quantity)):
             self._progress(f"another way to {quantity}, {other.choice.way}")
-            kernels = draft.kernels_along(other)
+            kernels = draft.kernels_along(other, needed)
             if kernels in self._kernels[quantity]:
                 continue
-            largest, fault = _measured(draft, kernels, expected)
-            if fault is not None:
-                self._tried[quantity].append((other.choice.way, f"{fault.what} ({fault.target})"))
-                self._kernels[quantity].append(kernels)
-            elif largest <= MARGIN:
-                return other, kernels
-            else:
-                passing.append((largest, other, kernels))
+            self._kernels[quantity].append(kernels)
+            one = self._measured(draft, other, kernels, expected)
+            if one.scalars == needed and one.largest <= MARGIN:
+                return one
+            if "float64" in one.scalars:
+                passing.append(one)
         if not passing:
             return None
-        best = min(passing, key=lambda one: one[0])
+        best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
         passing.remove(best)
-        return best[1:]
+        return best
 
-    def _alternatives(self, draft: Draft, quantity: str) -> tuple[Alternative, ...]:
-        if self._options.forms.get(quantity, AUTO) != AUTO:
-            return ()
-        self._progress(f"other ways to {quantity}")
-        derivations = draft.derivations
-        return alternatives(draft.model, derivations.generic, derivations.inverse, quantity)
+    def _others(self, quantity: str, taken: Choice) -> Iterator[Alternative]:
+        if self._options.forms.get(quantity, AUTO) != AUTO or self._alternatives is None:
+            return iter(())
+        if quantity not in self._left:
+            self._progress(f"other ways to {quantity}")
+            self._left[quantity] = self._alternatives.of(quantity, taken)
+        return self._left[quantity]
 
-    def _remedy(self, quantity: str) -> str:
+    def _measured(self, draft: Draft, other: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
+        """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
+        passed: list[Scalar] = []
+        worst = 0.0
+        for scalar, kernel in kernels.items():
+            if scalar not in expected.scalars:
+                passed.append(scalar)
+                continue
+            largest, fault = measured(kernel, draft.programs[scalar].sincos, scalar, expected)
+            if fault is None:
+                passed.append(scalar)
+                worst = max(worst, largest)
+                continue
+            self._tried[other.choice.quantity].append((other.choice.way, f"{fault.what} ({fault.target})"))
+            if scalar == "float64":
+                break  # float32 alone is of no use: the other type is what Python and the report are made of
+        return _Candidate(worst, tuple(passed), other, kernels)
+
+    def _remedy(self, quantity: str, without: Sequence[Scalar]) -> str:
         asked = self._options.forms.get(quantity, AUTO)
         if asked != AUTO:
             return f"leave `--form {quantity}={asked}` away: another form may pass"
+        if "float64" not in without:
+            return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
         return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"
-
-
-def _measured(draft: Draft, kernels: Mapping[Scalar, Kernel], expected: Expected) -> tuple[float, Fault | None]:
-    """The largest error of kernels by interpretation, in the scalar types that are verified, and what is wrong."""
-    worst = 0.0
-    for scalar in expected.scalars:
-        largest, fault = measured(kernels[scalar], draft.programs[scalar].sincos, scalar, expected)
-        if fault is not None:
-            return largest, fault
-        worst = max(worst, largest)
-    return worst, None
 
 
 def as_recorded(draft: Draft, recorded: Mapping[str, Any]) -> Draft:
@@ -116,15 +145,14 @@ def as_recorded(draft: Draft, recorded: Mapping[str, Any]) -> Draft:
     if recorded.get("model_sha256") != draft.model.text_hash:
         return draft
     rejected = tuple(Rejection(r["quantity"], r["way"], r["why"]) for r in recorded.get("rejected", ()))
-    derivations = draft.derivations
-    for quantity in dict.fromkeys(one.quantity for one in rejected):
-        if all(choice.quantity != quantity for choice in derivations.choices):
-            continue
+    left_out = {one["quantity"]: tuple(one["scalars"]) for one in recorded.get("left_out", ())}
+    present = {choice.quantity for choice in draft.derivations.choices}
+    others = Alternatives(draft.model, draft.derivations.generic, draft.derivations.inverse)
+    for quantity in dict.fromkeys(one.quantity for one in rejected if one.quantity in present):
         kernel = recorded["kernels"].get(quantity)
-        if kernel is None:
-            draft = draft.without(quantity, REJECTED)
-            continue
-        other = alternative(draft.model, derivations.generic, derivations.inverse, quantity, kernel["way"])
-        if other is not None:
-            draft = draft.along(other, draft.kernels_along(other))
+        other = None if kernel is None else others.named(quantity, kernel["way"])
+        if other is not None and draft.choice(quantity).way != other.choice.way:
+            draft = draft.along(other, draft.kernels_along(other, tuple(draft.programs)))
+        if quantity in left_out:
+            draft = draft.without(quantity, left_out[quantity], REJECTED)
     return draft.rejecting(rejected)

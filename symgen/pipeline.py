@@ -194,7 +194,7 @@ def _recorded(model: Model, options: Options) -> Any:
 def _code(draft: Draft, options: Options) -> dict[str, str | bytes]:
     files: dict[str, str | bytes] = {}
     sources: dict[str, str] = {}
-    programs = [draft.programs[scalar] for scalar in options.scalars]
+    programs = [program for scalar in options.scalars if (program := draft.programs[scalar]).kernels]
     if {"c", "package"} & {*options.parts}:
         for program in programs:
             for emit in (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc):
@@ -232,7 +232,7 @@ def _verified(
     c_sources, python_source = generated_sources(draft.model, files)
     if not c_sources and python_source is None:
         return None, None
-    kernels = draft.program.kernels
+    kernels = {scalar: program.kernels for scalar, program in draft.programs.items()}
     found = verify_expecting(draft.model, kernels, c_sources, python_source, options.states, progress, expected)
     return replace(found[0], left_out=draft.left_out), found[1]
 
@@ -377,7 +377,10 @@ def _notices(draft: Draft, options: Options, certificate: Certificate | None) ->
 def _replaced(draft: Draft) -> tuple[Notice, ...]:
     """The quantities that take another way than the cheapest, because verification rejected that."""
     found = []
+    left_out = {one.quantity for one in draft.left_out}
     for choice in draft.derivations.choices:
+        if choice.quantity in left_out:
+            continue
         tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
         if tried:
             found.append(Notice(f"{choice.quantity} takes {choice.way}: verification rejects {', '.join(tried)}"))

@@ -5,17 +5,23 @@ Each is derived on a graph of its own, so that it depends neither on what was de
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from symgen.dynamics.catalogue import BY_NAME, Derived, derive, scalars
-from symgen.dynamics.compared import MOTIONS
-from symgen.dynamics.forms.form import FORM_NAMES
-from symgen.dynamics.forms.motions import BY_FRAMES, MOTION_NAMES
+from symgen.dynamics.compared import MOTIONS, quantities_by
+from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.genericity import Genericity
-from symgen.dynamics.inverse import FormChoice, InverseDynamics, Offer, derived_on, moved
+from symgen.dynamics.inverse import AUTOMATIC, FormChoice, InverseDynamics, Offer, derived_on, moved
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.select import Choice, block_way, finished, ways
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
 from symgen.records import dataclass
+
+# Those of a tier come before any of the next.  The second ones square the condition of B, or are long.
+INPUTS = (AUTOMATIC, ("printed", "weighted", "kkt"))
+MOTION = (("minor", "schur_qr", "nullspace", BY_FRAMES), ("schur_ldl", "shifted", "kkt"))
+OTHERS = (("minors", "householder", "blocks"),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,71 +39,74 @@ class Alternative:
         return dict(self.choice.costs)[self.choice.way]
 
 
-def alternatives(
-    model: Model, generic: Genericity, inverse: InverseDynamics | None, quantity: str
-) -> tuple[Alternative, ...]:
-    """Every way to a quantity that is valid at all regular states, the one that counts least first.
+class Alternatives:
+    """The ways to the quantities of one model; `inverse` holds the forms of u that were looked at already."""
 
-    `inverse` holds the forms of u that were looked at already.
-    """
-    named = (_named(model, generic, inverse, quantity, name) for name in names(quantity))
-    return tuple(sorted((one for one in named if one is not None), key=lambda one: one.cost))
+    def __init__(self, model: Model, generic: Genericity, inverse: InverseDynamics | None) -> None:
+        self._model = model
+        self._generic = generic
+        self._inverse = inverse
+        self._motions: dict[str, tuple[Mechanics, tuple[Derived, ...]]] = {}
+
+    def of(self, quantity: str, taken: Choice) -> Iterator[Alternative]:
+        """Every way to a quantity but the one taken that is valid at all regular states.
+
+        Tier by tier, the one that counts least first; those of a tier are derived when the first of them is asked for.
+        """
+        same = taken.form if taken.way in ("minors", "householder", taken.form) else ""
+        for tier in _tiers(quantity):
+            found = [self._named(quantity, name) for name in tier if name not in (taken.way, same)]
+            yield from sorted((one for one in found if one is not None), key=lambda one: one.cost)
+
+    def named(self, quantity: str, name: str) -> Alternative | None:
+        """One way to a quantity by its name; None where the system does not have it."""
+        return self._named(quantity, name) if any(name in tier for tier in _tiers(quantity)) else None
+
+    def _named(self, quantity: str, name: str) -> Alternative | None:
+        if quantity == "inverse_dynamics":
+            return self._of_inputs(name)
+        return self._of_motion(quantity, name) if quantity in MOTIONS else self._along(quantity, name)
+
+    def _of_inputs(self, name: str) -> Alternative | None:
+        """A form of u that is nowhere singular."""
+        if self._inverse is None:
+            self._inverse = InverseDynamics(self._model, self._generic)
+        offer = self._inverse.offer(name)
+        if not isinstance(offer, Offer):
+            return None
+        found = self._inverse.verdict(offer, first_only=True)
+        if found.singular:
+            return None
+        choice = FormChoice(name, found, ((name, offer.form.weight, found.explanation),))
+        mechanics = Mechanics(self._model)
+        derived = finished(mechanics, self._generic, derived_on(mechanics.graph, offer))
+        return Alternative(Choice(derived.name, name, choice.costs), mechanics, derived, choice)
+
+    def _of_motion(self, quantity: str, name: str) -> Alternative | None:
+        """A form of q_ddot or lambda that is valid wherever the motion is determined."""
+        from symgen.dynamics.by_name import valid_form
+
+        if name not in self._motions:
+            self._motions[name] = quantities_by(self._model, self._generic, name)
+        form = valid_form(*self._motions[name], quantity, name)
+        if form is None:
+            return None
+        mechanics = Mechanics(self._model)
+        derived = finished(mechanics, self._generic, moved(mechanics.graph, form.derived))
+        return Alternative(Choice(quantity, name, form.choice.costs, name), mechanics, derived, form.choice)
+
+    def _along(self, quantity: str, name: str) -> Alternative | None:
+        """A quantity along a way to the null space."""
+        mechanics = Mechanics(self._model)
+        along = {**ways(mechanics, self._generic), "blocks": block_way(mechanics, self._generic)}.get(name)
+        if along is None:
+            return None
+        derived = derive(BY_NAME[quantity], along)
+        costs = ((name, cost(scalars(derived)).weight),)
+        return Alternative(Choice(quantity, name, costs), mechanics, finished(mechanics, self._generic, derived))
 
 
-def alternative(
-    model: Model, generic: Genericity, inverse: InverseDynamics | None, quantity: str, name: str
-) -> Alternative | None:
-    """One way to a quantity by its name; None where the system does not have it."""
-    return _named(model, generic, inverse, quantity, name) if name in names(quantity) else None
-
-
-def names(quantity: str) -> tuple[str, ...]:
-    """The names of the ways to a quantity."""
+def _tiers(quantity: str) -> tuple[tuple[str, ...], ...]:
     if quantity == "inverse_dynamics":
-        return FORM_NAMES
-    return (*MOTION_NAMES, BY_FRAMES) if quantity in MOTIONS else ("minors", "householder", "blocks")
-
-
-def _named(
-    model: Model, generic: Genericity, inverse: InverseDynamics | None, quantity: str, name: str
-) -> Alternative | None:
-    if quantity == "inverse_dynamics":
-        return _of_inputs(model, generic, inverse or InverseDynamics(model, generic), name)
-    return (_of_motion if quantity in MOTIONS else _along)(model, generic, quantity, name)
-
-
-def _of_inputs(model: Model, generic: Genericity, inverse: InverseDynamics, name: str) -> Alternative | None:
-    """A form of u that is nowhere singular."""
-    offer = inverse.offer(name)
-    if not isinstance(offer, Offer):
-        return None
-    found = inverse.verdict(offer, first_only=True)
-    if found.singular:
-        return None
-    choice = FormChoice(name, found, ((name, offer.form.weight, found.explanation),))
-    mechanics = Mechanics(model)
-    derived = finished(mechanics, generic, derived_on(mechanics.graph, offer))
-    return Alternative(Choice(derived.name, name, choice.costs), mechanics, derived, choice)
-
-
-def _of_motion(model: Model, generic: Genericity, quantity: str, name: str) -> Alternative | None:
-    """A form of q_ddot or lambda that is valid wherever the motion is determined."""
-    from symgen.dynamics.by_name import NamedForm, named_form
-
-    form = named_form(model, generic, quantity, name)
-    if not isinstance(form, NamedForm) or not form.verdict.admitted:
-        return None
-    mechanics = Mechanics(model)
-    derived = finished(mechanics, generic, moved(mechanics.graph, form.derived))
-    return Alternative(Choice(quantity, name, form.choice.costs, name), mechanics, derived, form.choice)
-
-
-def _along(model: Model, generic: Genericity, quantity: str, name: str) -> Alternative | None:
-    """A quantity along a way to the null space."""
-    mechanics = Mechanics(model)
-    along = {**ways(mechanics, generic), "blocks": block_way(mechanics, generic)}.get(name)
-    if along is None:
-        return None
-    derived = derive(BY_NAME[quantity], along)
-    costs = ((name, cost(scalars(derived)).weight),)
-    return Alternative(Choice(quantity, name, costs), mechanics, finished(mechanics, generic, derived))
+        return INPUTS
+    return MOTION if quantity in MOTIONS else OTHERS

@@ -67,6 +67,15 @@ def named_form(model: Model, generic: Genericity, quantity: str, name: str) -> N
     return NamedForm(name, mechanics, derived, _verdict(mechanics, quantity, name))
 
 
+def valid_form(mechanics: Mechanics, found: tuple[Derived, ...], quantity: str, name: str) -> NamedForm | None:
+    """q_ddot or lambda among those `found` by a name, if that form is valid wherever the motion is determined."""
+    derived = next((one for one in found if one.name == quantity), None)
+    if derived is None:
+        return None
+    verdict = _verdict(mechanics, quantity, name)
+    return NamedForm(name, mechanics, derived, verdict) if verdict.admitted else None
+
+
 def forms_compared(model: Model, generic: Genericity, quantity: str, taken: str) -> FormChoice | None:
     """Every form of a quantity by counted cost, with `taken` as the name of what is taken; None without forms."""
     names = (*MOTION_NAMES, BY_FRAMES) if quantity in MOTIONS else tuple(PROJECTOR)

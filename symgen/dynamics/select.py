@@ -55,7 +55,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Rejection:
-    """A way that verification rejected, and why; for a quantity without a kernel there is no other."""
+    """A way that verification rejected, and why."""
 
     quantity: str
     way: str
@@ -75,6 +75,7 @@ class Derivations:
     named: tuple[tuple[str, FormChoice], ...] = ()  # of other quantities, where a form was asked for by name
     inverse: InverseDynamics | None = None  # the forms of u that were looked at
     rejected: tuple[Rejection, ...] = ()  # by verification
+    left_out: tuple[tuple[str, tuple[str, ...]], ...] = ()  # quantities with the scalar types in which no way passes
 
 
 class NoSuchFormError(Exception):

@@ -25,7 +25,7 @@ def readme(model: Model, programs: Sequence[Program], stems: Sequence[str]) -> s
         _use(model, programs, stems),
         _symbols(model, programs[0]),
         _statuses(model, programs),
-        _counts(programs[0]),
+        _counts(*programs),
     )
     return "\n".join(line for part in parts for line in part) + "\n"
 
@@ -133,7 +133,7 @@ def _statuses(model: Model, programs: Sequence[Program]) -> Iterator[str]:
         yield ""
 
 
-def _counts(program: Program) -> Iterator[str]:
+def _counts(program: Program, *others: Program) -> Iterator[str]:
     yield "## Functions and operations"
     yield ""
     yield "Changes of sign are not counted; a pair of sine and cosine counts as one."
@@ -144,6 +144,12 @@ def _counts(program: Program) -> Iterator[str]:
         c = count_operations(kernel.statements)
         counts = f"{c.add} | {c.mul} | {c.div} | {c.sqrt} | {c.sincos} | {c.other}"
         yield f"| `{kernel.name}` | {_cell(meaning(kernel))}; {_shape(kernel)} | {counts} |"
+    for other in others:
+        missing = {kernel.name for kernel in program.kernels} - {kernel.name for kernel in other.kernels}
+        if missing:
+            names = ", ".join(f"`{name}`" for name in sorted(missing))
+            yield ""
+            yield f"Not in {C_TYPE[other.scalar]}, where verification rejects it: {names}."
 
 
 def _shape(kernel: Kernel) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 
 from symgen.emit.locals import array_arguments
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program
@@ -28,9 +29,14 @@ def emit_proofs(model: Model, programs: Sequence[Program]) -> dict[str, str]:
         files |= emit_eva(model, program)
         files |= emit_gappa(model, program)
     if len(programs) > 1:
-        files |= emit_fuzz(model, programs)
+        both = set.intersection(*({kernel.name for kernel in program.kernels} for program in programs))
+        files |= emit_fuzz(model, [_only(program, both) for program in programs])
     page = "\n".join(_page(model, programs, sorted(files))) + "\n"
     return {**files, "proof/README.md": page}
+
+
+def _only(program: Program, names: Collection[str]) -> Program:
+    return replace(program, kernels=tuple(kernel for kernel in program.kernels if kernel.name in names))
 
 
 def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> Iterator[str]:

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from math import isfinite
 from typing import Any
 
+from symgen.ir.kernel import Scalar
 from symgen.records import dataclass
 
 
@@ -56,6 +57,11 @@ class Fault:
     target: str = ""
 
     @property
+    def scalar(self) -> Scalar:
+        """The scalar type of the target."""
+        return "float32" if "float32" in self.target else "float64"
+
+    @property
     def text(self) -> str:
         """The fault as a sentence."""
         place = ", ".join(part for part in (self.target, self.quantity) if part)
@@ -64,9 +70,13 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A quantity that is not written, because verification rejects every way of it: each with the reason; a remedy."""
+    """A quantity that is not written in some scalar types, because verification rejects every way of it there.
+
+    `tried` tells each with the reason.
+    """
 
     quantity: str
+    scalars: tuple[Scalar, ...]
     tried: tuple[tuple[str, str], ...]
     remedy: str
 
@@ -102,11 +112,10 @@ class Certificate:
         return not self.faults and not self.left_out
 
     @property
-    def rejected(self) -> dict[str, Fault]:
-        """The first fault of each quantity that has one; empty where something is wrong with all of it."""
-        if not all(fault.quantity for fault in self.faults):
-            return {}
-        return {fault.quantity: fault for fault in reversed(self.faults)}
+    def rejected(self) -> dict[str, tuple[Fault, ...]]:
+        """The faults of each quantity that has some; empty where something is wrong with all of it."""
+        names = dict.fromkeys(fault.quantity for fault in self.faults)
+        return {} if "" in names else {name: tuple(f for f in self.faults if f.quantity == name) for name in names}
 
     @property
     def targets(self) -> tuple[str, ...]:
@@ -124,7 +133,12 @@ class Certificate:
             "passed": self.passed,
             "failures": list(self.failures),
             "left_out": [
-                {"quantity": one.quantity, "tried": [{"way": w, "why": y} for w, y in one.tried], "remedy": one.remedy}
+                {
+                    "quantity": one.quantity,
+                    "scalars": list(one.scalars),
+                    "tried": [{"way": way, "why": why} for way, why in one.tried],
+                    "remedy": one.remedy,
+                }
                 for one in self.left_out
             ],
             "notes": list(self.notes),

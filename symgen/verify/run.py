@@ -50,13 +50,14 @@ def verify(
     states: int = USUAL_STATES,
     progress: Progress = lambda _: None,
 ) -> Certificate:
-    """The certificate alone; see `verify_expecting`."""
-    return verify_expecting(model, kernels, c_sources, python_source, states, progress)[0]
+    """The certificate alone, of types that have the same kernels; see `verify_expecting`."""
+    every: dict[Scalar, Sequence[Kernel]] = {"float64": kernels, **dict.fromkeys(c_sources, kernels)}
+    return verify_expecting(model, every, c_sources, python_source, states, progress)[0]
 
 
 def verify_expecting(
     model: Model,
-    kernels: Sequence[Kernel],
+    kernels: Mapping[Scalar, Sequence[Kernel]],
     c_sources: Mapping[Scalar, CSource],
     python_source: str | None,
     states: int,
@@ -65,7 +66,7 @@ def verify_expecting(
 ) -> tuple[Certificate, Expected | None]:
     """Run what was generated and compare it with the reference; what goes wrong is a fault of the certificate.
 
-    `kernels` name the emitted quantities with their arguments and shapes (those of one program serve for all targets).
+    `kernels` name the emitted quantities of each type with their arguments and shapes.
     Fewer than 8 admissible states found is a fault, no C compiler a note.  What is `expected` at the states is handed
     back, None where there are no states; a further verification of these quantities, or of some, takes it as it is.
     """
@@ -86,7 +87,8 @@ def verify_expecting(
         with _compilations(compiler, c_sources) as compilations:
             if expected is None:
                 progress("verifying: looking for states")
-                expected = Expected(model, [kernel.name for kernel in kernels], states, progress)
+                names = dict.fromkeys(kernel.name for every in kernels.values() for kernel in every)
+                expected = Expected(model, tuple(names), states, progress)
             return _verified(blank, expected, kernels, c_sources, compilations, python_source, progress), expected
     except (VerificationError, ReferenceValueError) as fault:
         return replace(blank, faults=(Fault(str(fault)),)), None
@@ -95,14 +97,13 @@ def verify_expecting(
 def _verified(
     blank: Certificate,
     expected: Expected,
-    kernels: Sequence[Kernel],
+    kernels: Mapping[Scalar, Sequence[Kernel]],
     c_sources: Mapping[Scalar, CSource],
     compilations: Mapping[Scalar, Compilation],
     python_source: str | None,
     progress: Progress,
 ) -> Certificate:
     """The certificate with everything that was found; compilers work while the reference does."""
-    names = tuple(kernel.name for kernel in kernels)
     reference = expected.reference
     model, doubles = reference.model, expected.samples("float64")
     scalars: dict[Scalar, None] = dict.fromkeys((*compilations, *(("float64",) if python_source is not None else ())))
@@ -111,7 +112,7 @@ def _verified(
     progress("verifying: running C and Python")
     results, faults = _run_c(model, kernels, c_sources, compilations, samples)
     if python_source is not None:
-        outcomes, wrong = _run_python(python_source, kernels, doubles)
+        outcomes, wrong = _run_python(python_source, kernels["float64"], doubles)
         results["Python float64"] = ("float64", outcomes)
         faults += wrong
     errors: list[ErrorRecord] = []
@@ -124,7 +125,7 @@ def _verified(
             found = check_laws(target, reference, samples[scalar], values[scalar], made)
         else:  # the same bits: C and Python usually agree
             records = [replace(r, target=target) for r in errors if r.target == twin and r.quantity in made]
-            whole = len(made) == len(names)
+            whole = len(made) == len(kernels[scalar])
             found = [replace(law, target=target) for law in laws if law.target == twin and whole]
         judged.append(target)
         errors += records
@@ -196,7 +197,7 @@ def _compilations(
 
 def _run_c(
     model: Model,
-    kernels: Sequence[Kernel],
+    every: Mapping[Scalar, Sequence[Kernel]],
     sources: Mapping[Scalar, CSource],
     compilations: Mapping[Scalar, Compilation],
     samples: Mapping[Scalar, Sequence[Sample]],
@@ -205,7 +206,7 @@ def _run_c(
     results: dict[str, tuple[Scalar, Results]] = {}
     faults = []
     for scalar, compilation in compilations.items():
-        target = f"C {scalar}"
+        target, kernels = f"C {scalar}", every[scalar]
         try:
             library = compilation.library()
         except CompilationError as refusal:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import operator
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from flint import arb
-
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
+from symgen.verify.interpreted import EXACT
 from symgen.verify.reference_tape import ball
 
 FLIPPED = {"add": "sub", "sub": "add"}
@@ -81,30 +79,6 @@ def _with_statement(kernel: Kernel, block: int, place: int, statement: Statement
     statements = (*old.statements[:place], statement, *old.statements[place + 1 :])
     blocks = (*kernel.blocks[:block], replace(old, statements=statements), *kernel.blocks[block + 1 :])
     return replace(kernel, blocks=blocks)
-
-
-EXACT: dict[str, Callable[..., Any]] = {
-    "add": operator.add,
-    "sub": operator.sub,
-    "mul": operator.mul,
-    "div": operator.truediv,
-    "neg": operator.neg,
-    "abs": abs,
-    "sqrt": arb.sqrt,
-    "copysign": lambda a, b: abs(a) if b >= 0 else -abs(a),
-    "ratio_or_zero": lambda a, b: arb(0) if b == 0 else a / b,
-    "tan": arb.tan,
-    "asin": arb.asin,
-    "acos": arb.acos,
-    "atan": arb.atan,
-    "atan2": arb.atan2,
-    "exp": arb.exp,
-    "log": arb.log,
-    "sinh": arb.sinh,
-    "cosh": arb.cosh,
-    "tanh": arb.tanh,
-    "pow": operator.pow,
-}
 
 
 def exact_outputs(kernel: Kernel, arguments: Mapping[str, Sequence[float]], parameters: Sequence[float]) -> list[Any]:

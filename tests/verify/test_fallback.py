@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from symgen import cli
-from symgen.dynamics import by_name, derivation
+from symgen.dynamics import alternatives, by_name, compared, derivation
 from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.forms.motion import Motion
 from symgen.dynamics.guards import Guard
@@ -86,29 +86,67 @@ def inaccurate(motion: Motion) -> Motion:
     return replace(motion, multipliers=off(motion.multipliers))
 
 
+def cancelling(motion: Motion) -> Motion:
+    """λ that loses digits: it is multiplied by 1 + 2^21 (cosh^2 - sinh^2 - 1)."""
+    return replace(motion, multipliers=tuple(map(lossy, motion.multipliers)))
+
+
+def lossy(value: Scalar) -> Scalar:
+    graph = value.graph
+    one = graph.const(Fraction(-1))
+    cosh, sinh = (graph.raw(name, (graph.symbol("a"),), None) for name in ("cosh", "sinh"))
+    squares = graph.raw("mul", (cosh, cosh), None), graph.raw("mul", (sinh, sinh), None)
+    nothing = graph.raw("add", (graph.raw("add", (squares[0], one), None), graph.raw("neg", squares[1:], None)), None)
+    share = graph.raw("mul", (graph.const(Fraction(2**21)), nothing), None)
+    return graph.raw("add", (value, graph.raw("mul", (value, share), None)), None)
+
+
+def refused(graph: Graph, size: Fraction) -> Guard:
+    """A denominator that is small beside its scale."""
+    return Guard(Status.MASS_RANK, graph.symbol("J") * graph.const(size), 1, scale=graph.symbol("m"))
+
+
 def refusing(motion: Motion) -> Motion:
     """λ with a denominator that every state takes for zero."""
-    graph: Graph = motion.multipliers[0].graph
-    tiny = graph.symbol("J") * graph.const(Fraction(1, 2**80))
-    return replace(motion, guards=(*motion.guards, Guard(Status.MASS_RANK, tiny, 1, scale=graph.symbol("m"))))
+    tiny = refused(motion.multipliers[0].graph, Fraction(1, 2**80))
+    return replace(motion, guards=(*motion.guards, tiny))
 
 
-def spoil_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def refusing_float32(motion: Motion) -> Motion:
+    """λ with a denominator that is beyond float32."""
+    small = refused(motion.multipliers[0].graph, Fraction(1, 2**20))
+    return replace(motion, guards=(*motion.guards, small))
+
+
+def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion]) -> None:
     """λ of every form that can be asked for by name."""
-    quantities = by_name.quantities_by
+    quantities = compared.quantities_by
 
     def worse(model: Any, generic: Any, name: str) -> tuple[Mechanics, tuple[Derived, ...]]:
         mechanics, found = quantities(model, generic, name)
-        return mechanics, tuple(
-            replace(one, outputs=off(one.outputs)) if one.name == "multipliers" else one for one in found
-        )
+        return mechanics, tuple(map(of_multipliers, found))
+
+    def of_multipliers(one: Derived) -> Derived:
+        if one.name != "multipliers":
+            return one
+        motion = spoilt(Motion((), one.outputs, one.guards))
+        return replace(one, outputs=motion.multipliers, guards=motion.guards)
 
     monkeypatch.setattr(by_name, "quantities_by", worse)
+    monkeypatch.setattr(alternatives, "quantities_by", worse)
 
 
-@pytest.mark.parametrize(("spoilt", "why"), [(inaccurate, "error .* is allowed"), (refusing, "status 5 at 8 of 8")])
+@pytest.mark.parametrize(
+    ("spoilt", "why", "wrong"),
+    [
+        (inaccurate, "error .* is allowed", True),
+        (cancelling, "error .* is allowed", False),
+        (refusing, "status 5 at 8 of 8", False),
+        (refusing_float32, r"status 5 at 8 of 8 .*\(C float32\)", False),
+    ],
+)
 def test_what_is_rejected_takes_the_next_way(
-    yoke: Path, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion], why: str
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion], why: str, wrong: bool
 ) -> None:
     usual = made(yoke)
     assert "rejected" not in derived(usual)
@@ -116,9 +154,10 @@ def test_what_is_rejected_takes_the_next_way(
     result = made(yoke)
     assert result.failures == ()
     assert result.left_out == ()
-    (rejected,) = derived(result)["rejected"]
+    rejected, *_ = derived(result)["rejected"]
     assert rejected["quantity"] == "multipliers"
     assert re.search(why, rejected["why"])
+    assert ("wrong in exact arithmetic too" in rejected["why"]) == wrong
     taken = derived(result)["kernels"]["multipliers"]["way"]
     assert derived(result)["form_of_multipliers"]["name"] == taken
     assert any(n.message.startswith(f"multipliers takes {taken}: verification rejects") for n in result.notices)
@@ -147,7 +186,7 @@ def test_what_no_way_passes_is_left_out_alone(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     spoil_choice(monkeypatch, inaccurate)
-    spoil_named(monkeypatch)
+    spoil_named(monkeypatch, inaccurate)
     out = tmp_path / "out"
     common = [str(yoke), "--out", str(out), "--states", "8", "--quiet"]
     assert cli.main(common) == 1
@@ -178,6 +217,32 @@ def test_what_no_way_passes_is_left_out_alone(
     assert "the files on disk are not" not in capsys.readouterr().err
 
 
+def test_float64_stays_where_float32_alone_is_rejected(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spoil_choice(monkeypatch, refusing_float32)
+    spoil_named(monkeypatch, refusing_float32)
+    common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
+    assert cli.main(common) == 1
+    told = capsys.readouterr().err
+    assert "multipliers is left out in float32: " in told
+    assert "`--scalar float64`" in told
+    folder = tmp_path / "out/yoke"
+    certificate = json.loads((folder / "certificate.json").read_bytes())
+    assert [one["scalars"] for one in certificate["left_out"]] == [["float32"]]
+    verified = {(error["quantity"], error["target"]) for error in certificate["errors"]}
+    assert ("multipliers", "C float64") in verified
+    assert ("multipliers", "C float32") not in verified
+    assert ("forward_dynamics", "C float32") in verified
+    assert "multipliers" in (folder / "c/yoke.h").read_text(encoding="utf-8")
+    assert "multipliers" not in (folder / "c/yoke_f.h").read_text(encoding="utf-8")
+    assert "multipliers" not in (folder / "proof/yoke_fuzz.c").read_text(encoding="utf-8")
+    assert "def multipliers(" in (folder / "python/yoke.py").read_text(encoding="utf-8")
+    assert "Not in float, " in (folder / "package/README.md").read_text(encoding="utf-8")
+    assert cli.main([*common, "--check"]) == 0
+    assert cli.main([*common, "--scalar", "float64", "--out", str(tmp_path / "one")]) == 0
+
+
 def test_check_takes_over_the_way_that_verification_led_to(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -191,7 +256,7 @@ def test_check_takes_over_the_way_that_verification_led_to(
 
 
 def test_a_form_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    spoil_named(monkeypatch)
+    spoil_named(monkeypatch, inaccurate)
     result = made(yoke, replace(FAST, forms={"multipliers": "kkt"}))
     (left_out,) = result.left_out
     assert left_out.quantity == "multipliers"
@@ -204,7 +269,7 @@ def test_nothing_is_written_where_nothing_passes(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     spoil_choice(monkeypatch, inaccurate)
-    spoil_named(monkeypatch)
+    spoil_named(monkeypatch, inaccurate)
     out = tmp_path / "out"
     arguments = [str(yoke), "--out", str(out), "--outputs", "multipliers", "--only", "c", "--states", "8", "--quiet"]
     assert cli.main(arguments) == 1
