@@ -1,44 +1,37 @@
-"""Many draws, each run and judged, one line of JSON for each; chunks of a campaign are summed up afterwards."""
+"""Many draws, each run, judged and, where it fails, made small; several at a time where there are cores to spare."""
 
 from __future__ import annotations
 
-import json
+import os
+import shutil
 import time
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass, replace
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import dataclass, replace
+from itertools import islice
+from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 from symgen.zoo.cases import case_of
 from symgen.zoo.describe import Description
 from symgen.zoo.families import draw
+from symgen.zoo.records import Record
 from symgen.zoo.run import run_command
 from symgen.zoo.shrink import shrink
-from symgen.zoo.verdict import FAILED, REFUSED, VERIFIED, Verdict, verdict_of, without_numbers
+from symgen.zoo.verdict import FAILED, REFUSED, Verdict, verdict_of, without_numbers
 from symgen.zoo.witness import check
 
 Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Record:
-    """One draw: where it comes from, how it ended, what it took."""
+class Campaign:
+    """Which draws, where their files go, how many runs a failing one is made small in (0: not at all)."""
 
     seed: int
-    index: int
-    family: str
-    ending: str
-    kind: str
-    signature: str
-    cpu: float
-    megabytes: float
-    file: str = ""
-
-    @property
-    def failed(self) -> bool:
-        """Whether the draw did not end as it should."""
-        return bool(self.kind)
+    folder: Path
+    family: str = ""
+    shrinking: int = 0
 
 
 def judge(description: Description, model: Path) -> tuple[Verdict, float, float]:
@@ -49,96 +42,76 @@ def judge(description: Description, model: Path) -> tuple[Verdict, float, float]
     run = run_command(model, folder)
     verdict = verdict_of(run)
     if not verdict.failed and verdict.ending != REFUSED:
-        checked = check(
-            description.text, folder / str(description.blocks["model"]), description.start, description.text
-        )
-        for finding in checked.findings[:1]:
-            verdict = Verdict(FAILED, finding.kind, without_numbers(finding.text))
-            (folder / "stderr").write_text("\n".join(each.text for each in checked.findings) + "\n" + run.err)
-        if not checked.states:
-            verdict = replace(verdict, signature="no state to compare")
+        verdict, told = _witnessed(description, folder, verdict)
+        (folder / "stderr").write_text(told + run.err, encoding="utf-8")
     return verdict, run.cpu, run.megabytes
 
 
-def campaign(
-    seed: int, indices: Iterable[int], folder: Path, seconds: float, family: str, shrinking: int, tell: Tell
-) -> Iterator[Record]:
-    """Draws until they or the seconds are used up; failing ones are made small in `shrinking` runs at most."""
+def _witnessed(description: Description, folder: Path, verdict: Verdict) -> tuple[Verdict, str]:
+    """What the numbers make of a verdict, and what there is to say about it."""
+    made = folder / str(description.blocks["model"])
+    if not (made / "derivation.json").exists():
+        return Verdict(FAILED, "nothing written"), ""
+    try:
+        checked = check(description.text, made, description.start, description.text)
+    except Exception as fault:  # a draw on which the witness itself breaks must not end a campaign of a thousand
+        return Verdict(FAILED, "fault of the zoo", without_numbers(f"{type(fault).__name__}: {fault}")), f"{fault!r}\n"
+    if checked.findings:
+        first = checked.findings[0]
+        told = "".join(f"{finding.text}\n" for finding in checked.findings)
+        return Verdict(FAILED, first.kind, without_numbers(first.text)), told
+    return (verdict, "") if checked.states else (replace(verdict, signature="no state to compare"), "")
+
+
+def one_draw(campaign: Campaign, index: int) -> tuple[Record, str]:
+    """A draw from its number to its record, and a line about it."""
+    description = draw(campaign.seed, index, campaign.family)
+    model = campaign.folder / f"{campaign.seed}_{index}" / "zoo.yaml"
+    verdict, cpu, megabytes = judge(description, model)
+    record = Record(
+        campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature, round(cpu, 1),
+        round(megabytes), str(model) if verdict.failed else "",
+    )  # fmt: skip
+    if not verdict.failed:
+        shutil.rmtree(model.parent, ignore_errors=True)
+    elif campaign.shrinking:
+        small = shrunk(description, verdict, model.with_name("small.yaml"), campaign.shrinking)
+        model.with_name("case.yaml").write_text(case_of(small, verdict).text, encoding="utf-8")
+    told = f"{record.ending} {record.kind} {record.signature} ({record.cpu} s, {record.megabytes} MB)"
+    return record, f"{record.seed}:{index} {record.family}: {' '.join(told.split())}"
+
+
+def run_campaign(campaign: Campaign, indices: Iterable[int], seconds: float, jobs: int, tell: Tell) -> Iterator[Record]:
+    """Draws until they or the seconds (0: no limit) are used up, `jobs` at a time, in the order in which they end."""
     began = time.monotonic()
-    for index in indices:
-        if seconds and time.monotonic() - began > seconds:
-            return
-        description = draw(seed, index, family)
-        model = folder / f"{seed}_{index}" / "zoo.yaml"
-        verdict, cpu, megabytes = judge(description, model)
-        record = Record(
-            seed, index, description.family, verdict.ending, verdict.kind, verdict.signature, round(cpu, 1),
-            round(megabytes), str(model) if verdict.failed else "",
-        )  # fmt: skip
-        if not verdict.failed:
-            _remove(model)
-        elif shrinking:
-            small = shrunk(description, verdict, model.with_name("small.yaml"), tell, shrinking)
-            case = case_of(small, verdict)
-            model.with_name("case.yaml").write_text(case.text, encoding="utf-8")
-        tell(f"{seed}:{index} {record.family}: {record.ending} {record.kind} {record.signature} ({record.cpu} s)")
-        yield record
+    waiting = iter(indices)
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        running: set[Future[tuple[Record, str]]] = set()
+        while True:
+            late = bool(seconds) and time.monotonic() - began > seconds
+            for index in islice(waiting, 0 if late else jobs - len(running)):
+                running.add(pool.submit(one_draw, campaign, index))
+            if not running:
+                return
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                record, line = future.result()
+                tell(line)
+                yield record
 
 
-def shrunk(description: Description, verdict: Verdict, model: Path, tell: Tell, most: int) -> Description:
+def usual_jobs() -> int:
+    """As many as there are processors."""
+    return os.cpu_count() or 1
+
+
+def shrunk(description: Description, verdict: Verdict, model: Path, most: int) -> Description:
     """The draw made small, still with the same ending."""
 
     def fails(candidate: Description) -> bool:
         other = judge(candidate, model)[0]
-        same = (other.kind, other.signature) == (verdict.kind, verdict.signature)
-        if same:
-            tell(f"  {len(candidate.text.splitlines())} lines, {len(candidate.start)} coordinates")
         # what takes too long need not stop at the same step
-        return same or (verdict.kind == other.kind and verdict.kind in ("time", "memory", "no end"))
+        alike = other.signature == verdict.signature or other.kind in ("time", "memory", "no end")
+        return alike and other.kind == verdict.kind
 
     return shrink(description, fails, most)
-
-
-def _remove(model: Path) -> None:
-    import shutil
-
-    shutil.rmtree(model.parent, ignore_errors=True)
-
-
-def write_record(path: Path, record: Record) -> None:
-    """Adds a line."""
-    with path.open("a", encoding="utf-8") as lines:
-        lines.write(json.dumps(asdict(record)) + "\n")
-
-
-def read_records(paths: Iterable[Path]) -> list[Record]:
-    """The records of some chunks; of a draw that was run twice the later one."""
-    found: dict[tuple[int, int, str], Record] = {}
-    for path in paths:
-        for line in path.read_text(encoding="utf-8").splitlines():
-            given: dict[str, Any] = json.loads(line)
-            record = Record(**given)
-            found[record.seed, record.index, record.family] = record
-    return list(found.values())
-
-
-def summary(records: list[Record]) -> str:
-    """Counts by family and ending, the failures by kind, the largest draws."""
-    if not records:
-        return "no draws"
-    endings = [VERIFIED, *sorted({record.ending for record in records} - {VERIFIED})]
-    families = sorted({record.family for record in records})
-    table = Counter((record.family, record.ending) for record in records)
-    wide = max(len(family) for family in families)
-    lines = [f"{len(records)} draws"]
-    for family in families:
-        told = ", ".join(f"{table[family, ending]} {ending}" for ending in endings if table[family, ending])
-        lines.append(f"  {family:{wide}}  {told}")
-    failures = Counter((record.kind, record.signature) for record in records if record.failed)
-    for (kind, signature), count in failures.most_common():
-        lines.append(f"  {count} x {kind}: {signature}")
-    slowest = max(records, key=lambda record: record.cpu)
-    largest = max(records, key=lambda record: record.megabytes)
-    lines.append(f"  most CPU time: {slowest.cpu} s ({slowest.seed}:{slowest.index} {slowest.family})")
-    lines.append(f"  most memory: {largest.megabytes} MB ({largest.seed}:{largest.index} {largest.family})")
-    return "\n".join(lines)

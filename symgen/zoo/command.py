@@ -6,8 +6,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from symgen.zoo.campaign import campaign, read_records, summary, write_record
+from symgen.zoo.campaign import Campaign, run_campaign, usual_jobs
 from symgen.zoo.families import FAMILIES, draw
+from symgen.zoo.records import read_records, summary, write_record
 
 
 def main() -> int:
@@ -17,6 +18,7 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0, help="number of the first draw")
     parser.add_argument("--draws", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=0, help="no new draw after so many seconds (0: no limit)")
+    parser.add_argument("--jobs", type=int, default=usual_jobs(), help="draws at a time (default: one a processor)")
     parser.add_argument("--family", choices=sorted(FAMILIES), default="")
     parser.add_argument("--shrink", type=int, default=0, metavar="RUNS", help="make failing draws small")
     parser.add_argument("--out", type=Path, default=Path("build/zoo"))
@@ -33,9 +35,10 @@ def main() -> int:
     given.out.mkdir(parents=True, exist_ok=True)
     path = given.out / f"{given.seed}_{given.first}.jsonl"
     path.unlink(missing_ok=True)
+    campaign = Campaign(given.seed, given.out, given.family, given.shrink)
     indices = range(given.first, given.first + given.draws)
     records = []
-    for record in campaign(given.seed, indices, given.out, given.seconds, given.family, given.shrink, _tell):
+    for record in run_campaign(campaign, indices, given.seconds, given.jobs, _tell):
         write_record(path, record)
         records.append(record)
     print(summary(records))

@@ -80,7 +80,12 @@ class Witness:
         if other is not None and other > SAME:
             findings.append(Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}"))
         largest = 0.0
+        members = (*self._system.parameters, *self._allocation())
         for target in targets(folder, blocks["model"]):
+            if members and len(target.parameters) != len(members):
+                told = f"{target.name}: parameters {target.parameters} where {members} are due"
+                findings.append(Finding("witness: parameters", told))
+                continue
             for state in found:
                 for quantity in target.quantities:
                     error, finding = self._compared(target, quantity, state, ranks)
