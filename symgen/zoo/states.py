@@ -22,7 +22,8 @@ CLOSED = 1e-12
 SAME = 1e-8
 # how far rows, inputs and masses are apart at states that are compared, unless the model has none of the kind
 REGULAR = 1e-3
-FURTHEST = 40.0
+# a walk stays about as near as the ranges that the documentation takes for granted
+FURTHEST = 3.2
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class Walker:
             free = self._free(here, parameters)
             step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
             there = self._closed(here + 0.6 * step, parameters)
-            if there is not None and np.abs(there).max() < FURTHEST and self._inside(there):
+            if there is not None and np.abs(there - first).max() < FURTHEST and self._inside(there):
                 points.append(there)
                 here = there
             else:
