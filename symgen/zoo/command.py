@@ -6,7 +6,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from symgen.zoo.campaign import Campaign, run_campaign, usual_jobs
+from symgen.zoo.campaign import Campaign, judge, run_campaign, shrunk, usual_jobs
+from symgen.zoo.cases import case_of, read_case
+from symgen.zoo.describe import read_description
 from symgen.zoo.families import FAMILIES, draw
 from symgen.zoo.records import read_records, summary, write_record
 
@@ -23,11 +25,14 @@ def main() -> int:
     parser.add_argument("--shrink", type=int, default=0, metavar="RUNS", help="make failing draws small")
     parser.add_argument("--out", type=Path, default=Path("build/zoo"))
     parser.add_argument("--show", action="store_true", help="print the model file of the first draw and run nothing")
+    parser.add_argument("--file", type=Path, help="judge this model file, and make it small where it fails")
     parser.add_argument("--sum", type=Path, nargs="*", help="sum up the records of earlier chunks and run nothing")
     given = parser.parse_args()
     if given.show:
         print(draw(given.seed, given.first, given.family).text, end="")
         return 0
+    if given.file is not None:
+        return _one_file(given.file, given.out, given.shrink)
     if given.sum is not None:
         records = read_records(given.sum)
         print(summary(records))
@@ -43,6 +48,19 @@ def main() -> int:
         records.append(record)
     print(summary(records))
     return int(any(record.failed for record in records))
+
+
+def _one_file(path: Path, out: Path, runs: int) -> int:
+    """Judges a model file or a stored case; where it fails and `runs` are given, prints the case that is left of it."""
+    case = read_case(path)
+    description = read_description(case.model, case.start)
+    model = out / path.stem / f"{path.stem}.yaml"
+    verdict = judge(description, model)[0]
+    _tell(f"{path}: {verdict.ending} {verdict.kind} {verdict.signature}")
+    if verdict.failed and runs:
+        small = shrunk(description, verdict, model.with_name("small.yaml"), runs)
+        print(case_of(small, verdict).text, end="")
+    return int(verdict.failed)
 
 
 def _tell(line: str) -> None:

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import yaml
+
 # blocks in the order in which people write them
 ORDER = (
     "model", "description", "coordinates", "parameters", "definitions", "gravity", "frames", "joints", "bodies",
@@ -51,6 +53,27 @@ class Description:
             else:
                 lines.append(f"{key}: {flow(value)}")
         return "\n".join(lines) + "\n"
+
+
+def read_description(text: str, start: Mapping[str, float] | None = None) -> Description:
+    """A model file back as data, so that it can be made small; the start is its configuration where none is given."""
+    blocks: dict[str, Any] = yaml.load(text, Loader=yaml.BaseLoader)
+    for name in ("kinetic_energy", "potential_energy"):
+        if name in blocks:
+            blocks[name] = Terms(tuple(summands(blocks[name])))
+    given = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
+    return Description("file", blocks, {**given, **(start or {})})
+
+
+def summands(text: str) -> list[str]:
+    """The terms of a sum, outside of brackets; a difference stays together."""
+    terms, depth, begin = [], 0, 0
+    for index, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        if depth == 0 and text.startswith(" + ", index):
+            terms.append(text[begin:index].strip())
+            begin = index + 3
+    return [*terms, text[begin:].strip()]
 
 
 def _entries(value: Mapping[str, Any], indent: str, block: str) -> list[str]:

@@ -1,0 +1,104 @@
+"""A campaign from its command line: what is told, what is kept, how chunks are summed up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from symgen.zoo import campaign, command
+from symgen.zoo.campaign import Campaign, judge, one_draw
+from symgen.zoo.describe import Terms, read_description, summands
+from symgen.zoo.families import FAMILIES, draw
+from symgen.zoo.records import Record, read_records, summary, write_record
+from symgen.zoo.run import Run
+from symgen.zoo.verdict import FAILED, VERIFIED, Verdict
+
+RIGHT = Record(1, 0, "disc", VERIFIED, "", "", 2.0, 100)
+WRONG = Record(1, 1, "bennett", FAILED, "internal error", "KeyError at run", 3.5, 90, "there.yaml")
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_file_is_read_back_as_it_was_drawn(family: str) -> None:
+    description = draw(2, 1, family)
+    again = read_description(description.text, description.start)
+    assert again.text.replace('"', "") == description.text.replace('"', "")
+    assert again.start == description.start
+
+
+def test_summands_stand_outside_of_brackets() -> None:
+    assert summands("a*(b + c) - d + e**2 + (f + g)") == ["a*(b + c) - d", "e**2", "(f + g)"]
+    assert str(Terms(("a", "-b"))) == "a + (-b)"
+
+
+def test_chunks_are_summed_up(tmp_path: Path) -> None:
+    for name, record in (("a", WRONG), ("b", RIGHT), ("b", Record(1, 1, "bennett", VERIFIED, "", "", 4.0, 95))):
+        write_record(tmp_path / name, record)
+    assert "1 failed" in summary(read_records([tmp_path / "a"]))
+    told = summary(read_records([tmp_path / "a", tmp_path / "b"]))
+    # a draw that was run again counts as it ended last
+    assert "2 draws" in told
+    assert "failed" not in told
+    assert "most CPU time: 4.0 s (1:1 bennett)" in told
+
+
+def test_the_sum_of_failures_is_a_failure(tmp_path: Path, monkeypatch, capsys) -> None:
+    write_record(tmp_path / "a", WRONG)
+    monkeypatch.setattr("sys.argv", ["zoo", "--sum", str(tmp_path / "a")])
+    assert command.main() == 1
+    assert "1 x internal error: KeyError at run" in capsys.readouterr().out
+
+
+def test_a_draw_is_shown(monkeypatch, capsys) -> None:
+    monkeypatch.setattr("sys.argv", ["zoo", "--show", "--seed", "3", "--first", "4", "--family", "geared"])
+    assert command.main() == 0
+    assert capsys.readouterr().out == draw(3, 4, "geared").text
+
+
+@pytest.fixture
+def ends(monkeypatch):
+    """The command replaced by an ending, without files."""
+
+    def use(run: Run) -> None:
+        def instead(_model: Path, folder: Path) -> Run:
+            folder.mkdir(parents=True, exist_ok=True)
+            return run
+
+        monkeypatch.setattr(campaign, "run_command", instead)
+
+    return use
+
+
+def test_a_run_that_writes_nothing_is_no_success(ends, tmp_path: Path) -> None:
+    ends(Run(0, "", "", 1, 1))
+    verdict, _, _ = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml")
+    assert (verdict.ending, verdict.kind) == (FAILED, "nothing written")
+
+
+def test_what_breaks_the_witness_is_a_failure_of_the_draw(ends, tmp_path: Path) -> None:
+    ends(Run(0, "", "", 1, 1))
+    made = tmp_path / "zoo" / "zoo"
+    made.mkdir(parents=True)
+    (made / "derivation.json").write_text("{}")
+    (made / "python").mkdir()
+    (made / "python" / "zoo.py").write_text("raise RuntimeError('no')")
+    verdict, _, _ = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml")
+    assert (verdict.ending, verdict.kind) == (FAILED, "fault of the zoo")
+
+
+def test_a_failing_draw_leaves_its_file_and_a_small_case(ends, tmp_path: Path) -> None:
+    ends(Run(2, "", "symgen: internal error: odd\n", 1, 1))
+    record, told = one_draw(Campaign(1, tmp_path, "car_with_trailers", shrinking=150), 0)
+    assert record.failed
+    assert "internal error" in told
+    large, small = Path(record.file).read_text(), Path(record.file).with_name("case.yaml").read_text()
+    assert "# expected: verified" in small
+    assert len(small) < len(large) / 2
+
+
+def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch) -> None:
+    ends(Run(0, "", "", 1, 1))
+    monkeypatch.setattr(campaign, "_witnessed", lambda *_: (Verdict(VERIFIED), ""))
+    record, _ = one_draw(Campaign(1, tmp_path), 0)
+    assert not record.failed
+    assert not list(tmp_path.iterdir())
