@@ -25,9 +25,10 @@ zoo.yaml: energy is left out in float64 and float32: verification rejects every 
   factored: error 30 times
   remedy: give narrower `ranges`
 """
-WRONG = """zoo.yaml: notice: energy takes minors: verification rejects factored (error 3e9 times d + eps |y*| at state 1, 16 is
-allowed (C float64); wrong in exact arithmetic too: a fault of symgen, please report it)
-""".replace("is\n", "is ")
+WRONG = (
+    "zoo.yaml: notice: energy takes minors: verification rejects factored (error 3e9 times d + eps |y*| at state 1 "
+    "(C float64); wrong in exact arithmetic too: a fault of symgen, please report it)\n"
+)
 UNPLACED = "message without a place or remedy"
 WITHOUT_REMEDY = MISTAKE.rpartition("  remedy")[0]
 UNTRUE = MISTAKE.replace("`a` of something in m", "no configuration was found")
