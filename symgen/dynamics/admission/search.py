@@ -1,25 +1,29 @@
-"""A search for regular states at which a scalar vanishes: many seeded starts, counted steps, 40 digits.
+"""A search for regular states at which a scalar vanishes: many seeded starts, counted steps, decided in 40 digits.
 
-Levenberg and Marquardt's method drives the constraint residuals and the scalar (each of its squares, if it is a sum of
-squares) to 0 together, over all coordinates and over the parameters within their ranges (Nocedal and Wright, Numerical
+Starts are followed in double precision; only where one ends close to a zero do 40 digits go on from there.  Levenberg
+and Marquardt's method drives the constraint residuals and the scalar (each of its squares, if it is a sum of squares)
+to 0 together, over all coordinates and over the parameters within their ranges (Nocedal and Wright, Numerical
 Optimization, ch. 10).  Angles run through the whole circle whatever range they are sampled from.  A state counts only
 where the ranks of B and of [B; M^T] are beyond doubt, so a scalar that vanishes with a rank is not blamed.
 """
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Sequence
 from decimal import Decimal, localcontext
 from fractions import Fraction
 
 from symgen.dynamics.admission.decimals import DIGITS, ONE, ZERO, DecimalEvaluator, UndefinedError
+from symgen.dynamics.admission.floats import FloatGradients
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.matrix import flatten
 from symgen.graph.scalar import PI, Scalar
 from symgen.graph.translate import translate
 from symgen.graph.traverse import topological
+from symgen.model.sparse import solve_gram, transposed_product
 from symgen.records import dataclass
 
 SEED = 20120731
@@ -27,6 +31,7 @@ STARTS = 12
 STEPS = 40
 MOST_TERMS = 12  # of a sum of squares that are driven to 0 one by one
 VANISHED = Decimal("1e-12")  # of the scalar's usual size, and of the constraint residuals
+NEAR, FINISHED = 1e-8, 1e-14  # the same in double precision: where decimals go on, and where no step gains any more
 REGULAR = Decimal("1e-4")  # of the largest pivot of a matrix with rows of length 1
 Point = dict[str, Decimal]
 
@@ -70,11 +75,13 @@ class Search:
             reached = {str(n.payload) for n in topological([scalar, *self._residuals]) if n.op == "symbol"}
             names = [name for name in self._box if name in reached]
             evaluator = DecimalEvaluator([*self._residuals, *terms])
+            floats = FloatGradients([*self._residuals, *terms], names)
             source = random.Random(SEED)
-            sizes: list[Decimal] = []
+            sizes: list[float] = []
             for start in range(STARTS):
                 point = self._start(source, inner=start < STARTS // 2)
-                found = self._descend(evaluator, point, names, sizes)
+                near = self._approach(floats, point, names, sizes)
+                found = None if near is None else self._descend(evaluator, *near, names)
                 if found is not None and self._regular(found):
                     shown = [*self._angles, *names]
                     return Found(tuple((name, found[name]) for name in self._box if name in shown))
@@ -89,17 +96,61 @@ class Search:
                 point[name] = lower + (upper - lower) * share
         return point
 
+    def _approach(
+        self, evaluate: FloatGradients, point: Point, names: Sequence[str], sizes: list[float]
+    ) -> tuple[Point, Decimal] | None:
+        """Where the way from a start ends close to a zero, and the scalar's usual size."""
+        at = {name: float(value) for name, value in point.items()}
+        state = evaluate(at)
+        if state is None:
+            return None
+        rows, (values, slopes) = len(self._residuals), state
+        sizes.append(max(map(abs, values[rows:])))
+        usual = sorted(sizes)[len(sizes) // 2] or 1.0
+        weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
+        limits = [(float(lower), float(upper)) for lower, upper in (self._box[name] for name in names)]
+        damping, size = 1e-3, max(abs(v) * w for v, w in zip(values, weights, strict=True))
+        for _ in range(STEPS):
+            if size <= FINISHED:
+                break
+            scaled = [
+                {k: w * slope * (limits[k][1] - limits[k][0]) for k, slope in row.items()}
+                for w, row in zip(weights, slopes, strict=True)
+            ]
+            scale = sum(x * x for row in scaled for x in row.values()) / len(scaled)
+            right = [w * v for w, v in zip(weights, values, strict=True)]
+            y = solve_gram(scaled, right, damping * scale + 1e-30)
+            fresh = None
+            if y is not None:
+                trial = dict(at)
+                for k, share in transposed_product(scaled, y).items():
+                    lower, upper = limits[k]
+                    moved = at[names[k]] - (upper - lower) * share
+                    trial[names[k]] = moved if names[k] in self._angles else min(max(moved, lower), upper)
+                fresh = evaluate(trial)
+                if fresh is None:
+                    return None
+            fresh_size = math.inf if fresh is None else max(abs(v) * w for v, w in zip(fresh[0], weights, strict=True))
+            if fresh is not None and fresh_size < size:
+                at, (values, slopes), size, damping = trial, fresh, fresh_size, damping / 10
+            elif size <= NEAR:
+                break
+            else:
+                damping = damping * 10
+                if damping > 1000:
+                    return None
+        return ({name: Decimal(value) for name, value in at.items()}, Decimal(usual)) if size <= NEAR else None
+
     def _descend(
-        self, evaluator: DecimalEvaluator, point: Point, names: Sequence[str], sizes: list[Decimal]
+        self, evaluator: DecimalEvaluator, point: Point, usual: Decimal, names: Sequence[str]
     ) -> Point | None:
-        damping = Decimal("1e-3")
+        """The zero beside a point, if there is one."""
+        damping = Decimal("1e-12")
         rows = len(self._residuals)
         try:
             values, slopes = evaluator.gradients(point, names)
         except UndefinedError:
             return None
-        sizes.append(max(map(abs, values[rows:])))
-        usual = sorted(sizes)[len(sizes) // 2] or ONE
         weights = [ONE] * rows + [ONE / usual] * (len(values) - rows)
         widths = [self._box[name][1] - self._box[name][0] for name in names]
         size = _size(values, weights)
