@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from symgen.zoo.describe import Description
@@ -69,8 +70,8 @@ def planar_bodies(dice: Dice) -> Description:
         room = len(sketch.start) - rows - 1
         if room < 1:
             break
-        rows += _planar_loop(sketch, parts, index, room)
-    if dice.chance(0.15):
+        rows += sketch.that_moves(partial(_planar_loop, sketch, parts, index, room), oddly=0.1)
+    if rows and dice.chance(0.15):
         _surplus(sketch)
     elements(sketch, parts, plane)
     inputs(sketch, parts, len(sketch.start) - rows)
@@ -88,12 +89,7 @@ def spatial_bodies(dice: Dice) -> Description:
     parts = grown(sketch, style, dice.whole(4, 11), first)
     free = len(sketch.start) - norms(parts)
     for index in range(dice.weighted({1: 6, 2: 3, 3: 1, 4: 0.5})):
-        fitting = [kind for kind, rows in ROWS.items() if rows < free]
-        if not fitting:
-            break
-        kind = dice.choice(fitting)
-        _spatial_loop(sketch, parts, index, kind)
-        free -= ROWS[kind]
+        free -= sketch.that_moves(partial(_spatial_loop, sketch, parts, index, free), oddly=0.02)
     elements(sketch, parts, "")
     inputs(sketch, parts, free)
     return finish(dice, sketch.family, sketch.blocks, sketch.start)
@@ -300,8 +296,13 @@ def _chain(parts: list[Part], index: int) -> set[int]:
     return found
 
 
-def _spatial_loop(sketch: Sketch, parts: list[Part], index: int, kind: str) -> None:
+def _spatial_loop(sketch: Sketch, parts: list[Part], index: int, free: int) -> int:
+    """A loop of any kind that leaves at least one of `free` degrees of freedom; how many rows it has."""
     dice = sketch.dice
+    fitting = [kind for kind, rows in ROWS.items() if rows < free]
+    if not fitting:
+        return 0
+    kind = dice.choice(fitting)
     leaf = max((dice.whole(0, len(parts) - 1) for _ in range(2)), key=lambda k: _depth(parts, k))
     chain = _chain(parts, leaf)
     others = [k for k in range(len(parts)) if k not in chain]
@@ -320,12 +321,13 @@ def _spatial_loop(sketch: Sketch, parts: list[Part], index: int, kind: str) -> N
                 f"rod_{index}", exact(math.dist(sketch.place(tip), sketch.place(anchor)))
             )
         sketch.block("loops")[name] = entry
-        return
+        return ROWS[kind]
     dock = sketch.name(f"dock_{index}")
     sketch.block("frames")[dock] = docked(sketch, frame, other)
     sketch.block("loops")[name] = {"type": kind, "between": [frame, dock]}
     if kind != "spherical" and dice.chance(0.6):
         sketch.block("loops")[name]["axis"] = dice.choice(MAIN_AXES)
+    return ROWS[kind]
 
 
 def docked(sketch: Sketch, frame: str, other: str) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 from symgen.zoo.describe import Description, Terms
 from symgen.zoo.dice import Dice, decimal
@@ -31,7 +32,7 @@ def planar_energies(dice: Dice) -> Description:
     links = _tree(sketch, dice.whole(1, dice.choice((3, 5, 8))))
     loops = min(dice.weighted({0: 4, 1: 4, 2: 2, 3: 1, 4: 0.5}), (len(links) - 1) // 2)
     for index in range(loops):
-        _loop(sketch, links, index)
+        sketch.that_moves(partial(_loop, sketch, links, index), oddly=0.05)
     _potentials(sketch, links)
     _surplus(sketch)
     _inputs(sketch, links)
@@ -122,8 +123,8 @@ def joined(terms: list[str]) -> str:
     return text
 
 
-def _loop(sketch: Sketch, links: list[Link], index: int) -> None:
-    """One loop more: a tip at the ground, on a line, on another tip, or at the end of a rod."""
+def _loop(sketch: Sketch, links: list[Link], index: int) -> int:
+    """One loop more: a tip at the ground, on a line, on another tip, or at the end of a rod; how many rows it has."""
     dice = sketch.dice
     # a chain that is long enough to move when it is closed, and now and then any
     least = 1 if dice.chance(0.07) else 3
@@ -132,7 +133,8 @@ def _loop(sketch: Sketch, links: list[Link], index: int) -> None:
     x, y = links[leaf].tip
     others = [k for k in range(len(links)) if k != leaf]
     other = links[dice.choice(others)].tip
-    match dice.weighted({"ground": 4, "line": 3, "meet": 2, "rod": 2, "angle": 1}):
+    kind = dice.weighted({"ground": 4, "line": 3, "meet": 2, "rod": 2, "angle": 1})
+    match kind:
         case "ground":
             sketch.row(f"close_{index}_x", x)
             sketch.row(f"close_{index}_y", y)
@@ -152,10 +154,11 @@ def _loop(sketch: Sketch, links: list[Link], index: int) -> None:
             if len(alike) < 2:
                 alike = [link.coordinate for link in links if link.slides != slides]
             if len(alike) < 2:
-                return
+                return 0
             one, two = dice.sample(alike, 2)
             ratio = dice.choice(("1", "2", "-3", "0.5"))
             sketch.row(f"gear_{index}", f"{one} - {ratio}*{two}" if ratio[0] != "-" else f"{one} + {ratio[1:]}*{two}")
+    return 2 if kind in ("ground", "meet") else 1
 
 
 def _depth(links: list[Link], index: int) -> int:

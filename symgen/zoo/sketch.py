@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from copy import deepcopy
 from typing import Any
+
+import numpy as np
 
 from symgen.zoo.dice import Dice, decimal, exact
 from symgen.zoo.fields import Floats
+from symgen.zoo.mechanics import equations
 from symgen.zoo.names import Namer
 from symgen.zoo.reader import System
 from symgen.zoo.tape import Node
+
+# rows that are none, and rows that are as good as dependent
+FLAT, DEPENDENT = 1e-12, 1e-3
+TRIES = 8
 
 
 class Sketch:
@@ -76,6 +85,39 @@ class Sketch:
         system = System(self.blocks)
         flat = self.values(system, [entry for row in system.frames.pose(frame).axes for entry in row])
         return [flat[0:3], flat[3:6], flat[6:9]]
+
+    def rank(self, away: float = 0.0) -> int:
+        """The rank of the constraint Jacobian at the start, or at a place that is about so far away from it."""
+        system = System(self.blocks)
+        rows = equations(system).rows
+        values = {name: value + self.dice.uniform(-away, away) for name, value in self.start.items()}
+        values |= dict.fromkeys(system.rate_names, 0.0)
+        for name, node in system.parameters.items():
+            values[name] = system.tape.evaluate([node], values, Floats())[0]
+        jacobian = np.array([system.tape.evaluate(row, values, Floats()) for row in rows])
+        if not jacobian.size:
+            return 0
+        lengths = np.linalg.norm(jacobian, axis=1)
+        steep = jacobian[lengths > FLAT] / lengths[lengths > FLAT, None]
+        return int((np.linalg.svd(steep, compute_uv=False) > DEPENDENT).sum()) if steep.size else 0
+
+    def locked(self) -> bool:
+        """Whether rows depend on each other at the start that do not elsewhere: what they hold cannot move, or is
+        singular there."""
+        return self.rank() < self.rank(away=0.2)
+
+    def that_moves(self, close: Callable[[], int], oddly: float) -> int:
+        """Tries loops until one leaves the mechanism able to move, and now and then takes one that does not.
+
+        How many rows it has; 0 where none is found.
+        """
+        for _ in range(TRIES):
+            before = deepcopy(self.blocks)
+            rows = close()
+            if not rows or not self.locked() or self.dice.chance(oddly):
+                return rows
+            self.blocks = before
+        return 0
 
     def row(self, plain: str, text: str, measured: bool = True) -> str:
         """A geometric row that holds at the start."""
