@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import multiprocessing
 import multiprocessing.connection
+import os
 import signal
 import sys
 import traceback
@@ -14,6 +17,7 @@ from symgen.diagnostics import SymgenBug
 
 Answer = TypeVar("Answer")
 Receive: TypeAlias = Callable[[], Any]
+_PR_SET_PDEATHSIG = 1  # sys/prctl.h
 
 
 class Background(Generic[Answer]):
@@ -30,7 +34,7 @@ class Background(Generic[Answer]):
         if sys.platform.startswith("linux"):
             context = multiprocessing.get_context("fork")
             self._pipe, far = context.Pipe()
-            self._process = context.Process(target=_child, args=(work, far, self._pipe), daemon=True)
+            self._process = context.Process(target=_child, args=(work, far, self._pipe, os.getpid()), daemon=True)
             self._process.start()
             far.close()
 
@@ -71,11 +75,13 @@ def _child(
     work: Callable[[Receive], Answer],
     pipe: multiprocessing.connection.Connection,
     far: multiprocessing.connection.Connection,
+    parent: int,
 ) -> None:
     """Works until the answer is sent or the parent is gone; the parent alone decides what an interrupt means.
 
     A copy of the parent's end left open here would keep `recv` waiting for a parent that was killed.
     """
+    _end_with(parent)
     far.close()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for name in ("SIGTERM", "SIGHUP"):
@@ -92,3 +98,11 @@ def _child(
         pipe.send(outcome)
     except BrokenPipeError:
         return
+
+
+def _end_with(parent: int) -> None:
+    """Lets the kernel kill this process when the parent is killed, which may be long before the next message is due."""
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:
+        os._exit(1)

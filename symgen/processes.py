@@ -1,21 +1,28 @@
 """Compilers, emulators and other tools that a run starts: within a time limit, and ended with the run.
 
 Each leads a process group of its own: a compiler's driver that is ended alone leaves the compiler proper at work.
+What a run that is killed leaves at work is ended by its guardian.
 """
 
 from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
+
+from symgen import guardian
 
 if TYPE_CHECKING:  # most commands start no tool
     import subprocess
 
 _running: set[subprocess.Popen[bytes]] = set()
 _ending = False
+_starting = False  # by the main thread, in which handlers of signals run
+_due: BaseException | None = None
 
 
 class ToolError(Exception):
@@ -32,15 +39,46 @@ def start(command: Sequence[str], folder: Path | None = None, output: IO[bytes] 
 
     if _ending:
         raise ToolError(f"{command[0]} is not started: the run ends")
-    try:
-        process = subprocess.Popen(
-            command, cwd=folder, stdin=subprocess.DEVNULL, stdout=output or subprocess.DEVNULL,
-            stderr=complaints or subprocess.DEVNULL, process_group=0 if os.name == "posix" else None,
-        )
-    except OSError as error:
-        raise ToolError(f"{command[0]} cannot be started: {error.strerror or error}") from error
-    _running.add(process)
+    with _held_back():
+        try:
+            process = subprocess.Popen(
+                command, cwd=folder, stdin=subprocess.DEVNULL, stdout=output or subprocess.DEVNULL,
+                stderr=complaints or subprocess.DEVNULL, process_group=0 if os.name == "posix" else None,
+            )
+        except OSError as error:
+            raise ToolError(f"{command[0]} cannot be started: {error.strerror or error}") from error
+        _running.add(process)
+        guardian.watch(process.pid)
+        if _ending:  # while it was being started
+            stop(process)
+            raise ToolError(f"{command[0]} is ended: the run ends")
     return process
+
+
+@contextmanager
+def _held_back() -> Iterator[None]:
+    """What ends the run waits until a tool that is being started is known: it would be left at work."""
+    global _starting, _due
+    main = threading.current_thread() is threading.main_thread()
+    _starting = _starting or main
+    try:
+        yield
+    finally:
+        if main:
+            _starting = False
+            due, _due = _due, None
+            if due is not None:
+                raise due
+
+
+def end_with(error: BaseException) -> None:
+    """Ends every tool and raises the error, as soon as no tool is being started; for handlers of signals."""
+    global _due
+    stop_all()
+    if _starting:
+        _due = error
+    else:
+        raise error
 
 
 def ended(process: subprocess.Popen[bytes], limit: float) -> int:
@@ -81,7 +119,9 @@ def stop(process: subprocess.Popen[bytes]) -> None:
     if process.poll() is None:
         _kill(process)
         process.wait()
-    _running.discard(process)
+    if process in _running:
+        _running.discard(process)
+        guardian.forget(process.pid)
 
 
 def stop_all() -> None:

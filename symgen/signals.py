@@ -51,5 +51,4 @@ class _Ending:
         if now - self._last < _SAME_MOMENT:
             return
         self._last = now
-        processes.stop_all()
-        raise EndedError(number)
+        processes.end_with(EndedError(number))

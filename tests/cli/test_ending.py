@@ -100,6 +100,39 @@ def test_a_signal_ends_compilers_and_says_what_was_written(tmp_path: Path, numbe
         assert not (tmp_path / "out/hanging").exists()
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
+def test_a_run_that_is_killed_leaves_no_compiler(tmp_path: Path) -> None:
+    marks = tmp_path / "marks"
+    compiler = odd_compiler(tmp_path, HANGING.format(name="hanging", marks=marks))
+    command = [sys.executable, "-m", "symgen", str(model(tmp_path, "hanging")), "--quiet", "--out", str(tmp_path)]
+    environment = {**os.environ, "CC": str(compiler), "TMPDIR": str(tmp_path)}
+    started = subprocess.Popen(command, env=environment, start_new_session=True)
+    while not marks.exists() or len(marks.read_text().split()) < 4:
+        assert started.poll() is None
+        time.sleep(0.02)
+    started.kill()
+    started.wait()
+    assert not any(map(runs, map(int, marks.read_text().split())))
+
+
+def test_the_guardian_lets_groups_that_have_ended_alone() -> None:
+    # of two groups the one that was forgotten goes on when the watching process ends
+    script = (
+        "import os, subprocess\nfrom symgen import guardian\n"
+        "quiet = {'stdout': subprocess.DEVNULL, 'process_group': 0}\n"
+        "groups = [subprocess.Popen(['sleep', '30'], **quiet) for _ in range(2)]\n"
+        "for group in groups:\n    guardian.watch(group.pid)\n"
+        "guardian.forget(groups[0].pid)\nprint(*(group.pid for group in groups), flush=True)\nos._exit(0)\n"
+    )
+    told = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, check=True)
+    forgotten, watched = map(int, told.stdout.split())
+    try:
+        assert not runs(watched)
+        assert runs(forgotten)
+    finally:
+        os.kill(forgotten, signal.SIGKILL)
+
+
 def test_a_hangup_that_is_ignored_stays_ignored() -> None:
     script = (
         "import os, signal, sys\nfrom symgen.signals import signals_end_the_run\n"
