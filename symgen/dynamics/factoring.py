@@ -46,8 +46,9 @@ class Factoring:
         if multiplier is None:
             multiplier = Multiplier(self.graph, lambda node: node in kept or self.fixed(node))
             self._multipliers[kept] = multiplier
-        shorter = refactored(self.graph, share_angles(self.graph, outputs), multiplier, self.fixed)
-        same_values("multiplying out and factoring", outputs, shorter)
+        shared = share_angles(self.graph, outputs)
+        shorter = refactored(self.graph, shared, multiplier, self.fixed)
+        same_values("multiplying out and factoring", shared, shorter)
         return tuple(shorter)
 
     def cancelled(self, scalar: Scalar) -> Scalar:

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from symgen.diagnostics import SymgenBug
-from symgen.graph.exact import exact_values
+from symgen.graph.exact import ExactValues, Value
 from symgen.graph.scalar import Scalar
 
 # Points at which identities are looked at until none of the values given is divided by 0.
@@ -46,8 +46,15 @@ def same_values(rule: str, before: Sequence[Scalar], after: Sequence[Scalar]) ->
     for seed in range(POINTS):
         if not differ:
             return
-        values = exact_values([scalar for pair in differ for scalar in pair], seed)
-        pairs = list(zip(values[::2], values[1::2], strict=True))
+        pairs = [(_value(one, seed), _value(other, seed)) for one, other in differ]
         if wrong := [k for k, (one, other) in enumerate(pairs) if one is not None and one != other]:
             raise SymgenBug(f"{rule}: changes the value of {len(wrong)} of {len(before)} scalars")
         differ = [pair for pair, (one, _) in zip(differ, pairs, strict=True) if one is None]
+
+
+def _value(scalar: Scalar, seed: int) -> Value:
+    """The value at a point; what is known there stays with the graph, as most scalars are met again."""
+    points = scalar.graph.points
+    if seed not in points:
+        points[seed] = ExactValues(seed)
+    return points[seed]([scalar])[0]

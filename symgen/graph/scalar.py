@@ -11,10 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 from math import isqrt
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from symgen.graph.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
 from symgen.graph.products import Products
+
+if TYPE_CHECKING:
+    from symgen.graph.exact import ExactValues
 
 Number: TypeAlias = "Scalar | int | Fraction"
 
@@ -93,6 +96,8 @@ class Graph:
         # every scalar at the place of its serial number
         self.nodes: list[Scalar] = []
         self.products = Products(self)
+        # by seeds: values of the scalars at points, as far as they have been needed
+        self.points: dict[int, ExactValues] = {}
         self._by_value: dict[int, Scalar] = {}
         self._stand_ins = 0
         self._angles: dict[int, tuple[int, int]] = {}

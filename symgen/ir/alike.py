@@ -7,6 +7,7 @@ from symgen.dynamics.catalogue import Derived
 from symgen.graph.angles import share_angles
 from symgen.graph.traverse import topological
 from symgen.ir.kernel import Argument, Block, Kernel
+from symgen.ir.lifted import Lifted, Meant, same_kernel
 from symgen.ir.writer import Writer, angles_among, angles_of
 
 
@@ -35,7 +36,7 @@ def alike_kernel(derived: Derived, alike: Alike, arguments: tuple[Argument, ...]
             blocks.append(Block(tuple(writer.instance(alike.function, operands, results)), ()))
     outputs = regular[len(given) :]
     blocks.append(Block(tuple(writer.write(outputs)), ()))
-    return Kernel(
+    kernel = Kernel(
         name=derived.name,
         arguments=arguments,
         loads=writer.loads(),
@@ -45,3 +46,5 @@ def alike_kernel(derived: Derived, alike: Alike, arguments: tuple[Argument, ...]
         remark=derived.remark,
         alike=tuple(together),
     )
+    same_kernel(f"bodies side by side in {derived.name}", Meant(derived.outputs, (), ()), Lifted(kernel))
+    return kernel

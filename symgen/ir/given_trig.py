@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import lru_cache
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, OperationName, Statement, Status
+from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.split import names_in
 from symgen.records import dataclass
 
@@ -45,7 +46,9 @@ def given_trig(kernel: Kernel) -> GivenTrig | None:
     blocks = tuple(rewriter.block(block) for block in kernel.blocks)
     changed = replace(kernel, loads=(*kernel.loads, *rewriter.loads), blocks=blocks)
     changed = replace(changed, outputs=tuple(map(rewriter.operand, kernel.outputs)))
-    return GivenTrig(_pruned(changed), tuple(given))
+    pruned = _pruned(changed)
+    same_kernel(f"sines and cosines given to {kernel.name}", Lifted(kernel), Lifted(pruned))
+    return GivenTrig(pruned, tuple(given))
 
 
 def _sums(kernel: Kernel, coordinates: Mapping[str, Load]) -> dict[Operand, Sum]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from symgen.ir.kernel import Block, Kernel, Local, Program, Status
+from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.split import names_in, names_of_blocks
 
 
@@ -17,7 +18,9 @@ def _without_range_tests(kernel: Kernel) -> Kernel:
     sizes = {name for block in kernel.blocks for name in _sizes(block)}
     blocks = tuple(map(_without_checks, kernel.blocks))
     unused = sizes - names_of_blocks(blocks) - names_in(kernel.outputs)
-    return replace(kernel, blocks=tuple(_without_statements(block, unused) for block in blocks))
+    changed = replace(kernel, blocks=tuple(_without_statements(block, unused) for block in blocks))
+    same_kernel(f"leaving out range tests of {kernel.name}", Lifted(kernel), Lifted(changed))
+    return changed
 
 
 def _sizes(block: Block) -> set[str]:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.ir.kernel import Kernel, Literal, Load, Local, Program, Statement
+from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.split import Split, names_in, names_of_blocks, split
 from symgen.records import dataclass
 
@@ -41,7 +42,11 @@ def prepare(program: Program, names: Collection[str]) -> Prepared | None:
         return None
     shared = _Shared({load.local for kernel, _ in chosen for load in kernel.loads if load.argument == "p"})
     kernels = tuple(shared.kernel(kernel, parts) for kernel, parts in chosen)
-    return Prepared(tuple(shared.loads.values()), tuple(shared.statements), tuple(shared.values), kernels)
+    prepared = Prepared(tuple(shared.loads.values()), tuple(shared.statements), tuple(shared.values), kernels)
+    for (given, _), kernel in zip(chosen, kernels, strict=True):
+        whole = Lifted(kernel, prepared.loads, prepared.statements, prepared.values)
+        same_kernel(f"preparing parameters of {kernel.name}", Lifted(given), whole)
+    return prepared
 
 
 def _worthwhile(kernel: Kernel, parts: Split) -> bool:

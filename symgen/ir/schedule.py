@@ -30,6 +30,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
+from symgen.ir.lifted import Kind, Lifted, Meant, same_kernel
 from symgen.ir.order import REGISTERS, relaxed, waits
 from symgen.ir.sincos import angle_limit, sincos
 from symgen.ir.writer import ANGLE, Test, Writer, angles_among, angles_of
@@ -171,11 +172,11 @@ def _side_by_side(mechanics: Mechanics, derived: Derived) -> Kernel | None:
 
 def _ordered_kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
     """The kernel in which fewest values wait; what only a failure needs is computed there if registers run out."""
-    kernel = relaxed(_kernel(mechanics, derived, limits))
+    kernel = _kernel(mechanics, derived, limits)
     waiting = waits(kernel)
     if waiting < REGISTERS or not any(check.first for block in kernel.blocks for check in block.checks):
         return kernel
-    apart = relaxed(_kernel(mechanics, derived, limits, apart=True))
+    apart = _kernel(mechanics, derived, limits, apart=True)
     return apart if waits(apart) < waiting else kernel
 
 
@@ -202,7 +203,7 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, apart: bool
         blocks.append(Block(tuple(statements), (writer.check(test, image),)))
     blocks += writer.late_angles(outputs, computed)
     blocks.append(Block(tuple(writer.write(outputs)), ()))
-    return Kernel(
+    written = Kernel(
         name=derived.name,
         arguments=_arguments(mechanics, derived.name),
         loads=writer.loads(),
@@ -211,6 +212,22 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, apart: bool
         shape=derived.shape,
         remark=derived.remark,
     )
+    kernel = relaxed(written)
+    same_kernel(f"writing the statements of {derived.name}", _meant(outputs, tests, image), Lifted(kernel))
+    return kernel
+
+
+def _meant(outputs: Sequence[Node], tests: Sequence[Test], image: Mapping[Node, Node]) -> Meant[Node]:
+    """What a kernel is to compute and to test."""
+    kinds: list[Kind] = []
+    compared: list[Node] = []
+    stack = [(test, 0) for test in reversed(tests)]
+    while stack:
+        test, depth = stack.pop()
+        kinds.append((test.status, False, depth))
+        compared += [image[test.size], image[test.limit]]
+        stack += [(cause, depth + 1) for cause in reversed(test.first)]
+    return Meant(tuple(outputs), tuple(kinds), tuple(compared))
 
 
 def _arguments(mechanics: Mechanics, quantity: str) -> tuple[Argument, ...]:

@@ -67,6 +67,7 @@ class Problem:
         fixed = self._mechanics.factoring.fixed
         if kept not in self._multipliers:
             self._multipliers[kept] = Multiplier(self.graph, lambda node: node in kept)
-        found = refactored(self.graph, share_angles(self.graph, values), self._multipliers[kept], fixed)
-        same_values("multiplying sums of parameters out", values, found)
+        shared = share_angles(self.graph, values)
+        found = refactored(self.graph, shared, self._multipliers[kept], fixed)
+        same_values("multiplying sums of parameters out", shared, found)
         return found
