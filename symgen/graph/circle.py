@@ -79,10 +79,12 @@ class Field:
         fifteen = (two * three + two) * quarter % self.prime, (two * three - two) * quarter % self.prime
         for point in self._points():
             small = self.multiple(point, (self.prime + 1) // STEPS)
-            for power in range(1, STEPS, 2):
-                candidate = self.multiple(small, power)
-                if self.multiple(candidate, STEPS // 24) == fifteen:
-                    return candidate
+            turned = whole = self.multiple(small, STEPS // 24)
+            # a power that is prime to 6 keeps the order
+            for power in range(1, 24):
+                if turned == fifteen:
+                    return self.multiple(small, power)
+                turned = self.sum(turned, whole)
         raise AssertionError("there is a point of order 864 on every circle")
 
     def turn(self, half_turns: Fraction) -> Pair | None:
@@ -98,5 +100,7 @@ class Field:
 
 
 LAST = Field(2**107 - 1, None)
-INNER = Field(STEPS * 13 * LAST.prime - 1, LAST)
-FIELD = Field(STEPS * 22 * INNER.prime - 1, INNER)
+# Primes in which all primes up to 47 are squares: fractions of small numbers have the sign that they have.
+INNERMOST = Field(STEPS * 56304 * LAST.prime - 1, LAST)
+INNER = Field(STEPS * 93380 * INNERMOST.prime - 1, INNERMOST)
+FIELD = Field(STEPS * 191000 * INNER.prime - 1, INNER)

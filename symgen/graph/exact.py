@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from math import isqrt
+from operator import mul
 from typing import TypeAlias
 
 from symgen.graph.circle import FIELD, Field
@@ -23,52 +25,62 @@ from symgen.graph.traverse import topological
 
 # a, or a + b i where b is not 0
 Element: TypeAlias = int | tuple[int, int]
-# None where something is divided by 0, or where nothing is known of an angle
+# None where something is divided by 0, or where nothing is known of an angle: of the fourth inside of angles
 Value: TypeAlias = Element | None
 
-# A constant is b + n pi / WHOLE with a decimal b and a small n wherever it is written with pi.
-WHOLE = 12 * 10**6
-DIGITS = 10**70
-# Decimals of models are shorter than this, constants with pi longer.
+# A constant that is written with pi is m / WHOLE + n pi / WHOLE + ... with whole m and n.
+WHOLE = 12 * 10**12
+# Denominators of models are smaller than this, those of constants with pi larger.
 LONGEST = 10**30
+MOST_DEGREE = 6
 
 
 _RING = frozenset({"add", "sub", "mul"})
+_SIGNS = {"add": (1, 1), "sub": (1, -1), "neg": (-1,)}
 
 
 def _parts(a: Element) -> tuple[int, int]:
     return (a, 0) if isinstance(a, int) else a
 
 
-def half_turns(value: Fraction) -> Fraction:
-    """How many times pi a constant holds: t of b + t pi, as it was written with the PI of graphs."""
-    if value.denominator <= LONGEST:
-        return Fraction(0)
-    # what divides neither power of ten nor its multiples belongs to fractions such as 22/7
-    rest = value.denominator
-    for factor in (2, 5):
-        while rest % factor == 0:
-            rest //= factor
-    whole = WHOLE * rest
-    digits, common = (PI * DIGITS).numerator, DIGITS
-    scaled, odd = divmod((value * whole * DIGITS).numerator, digits & -digits)
-    if odd or rest > LONGEST or (value * whole * DIGITS).denominator != 1:
-        return Fraction(0)
-    common, digits = common // (digits & -digits), digits // (digits & -digits)
-    found = scaled * pow(digits, -1, common) % common
-    found = found - common if 2 * found > common else found
-    return Fraction(found, whole) if abs(found) < LONGEST else Fraction(0)
+def half_turns(value: Fraction) -> Fraction | None:
+    """How many times pi a constant holds: t of b + t pi + ..., as it was written with the PI of graphs and its powers.
+
+    None where that is not to be seen.
+    """
+    turns = Fraction(0)
+    while value.denominator > LONGEST:
+        # what divides no power of ten belongs to fractions such as 22/7
+        rest = value.denominator
+        for factor in (2, 5):
+            while rest % factor == 0:
+                rest //= factor
+        whole, degree = WHOLE * rest, 1
+        while (scaled := value * whole * PI.denominator**degree).denominator != 1 and degree < MOST_DEGREE:
+            degree += 1
+        # modulo the denominator of pi nothing is left but its highest power
+        count = scaled.numerator * pow(PI.numerator, -degree, PI.denominator) % PI.denominator
+        count = count - PI.denominator if 2 * count > PI.denominator else count
+        if scaled.denominator != 1 or abs(count) > LONGEST or not count:
+            return None
+        value -= Fraction(count, whole) * PI**degree
+        turns += Fraction(count, whole) if degree == 1 else 0
+    return turns
 
 
 class ExactValues:
-    """The point of a seed: values of scalars, each worked out once, of any graphs with the same symbols."""
+    """The point of a seed: values of scalars, each worked out once, of any graphs with the same symbols.
 
-    def __init__(self, seed: int = 0, field: Field = FIELD) -> None:
-        self._field, self._seed = field, seed
+    With `signs` a sign is that of the value, and a wrong one passes at half of the points; else |x| and copysign(x, y)
+    are random numbers as other functions are.
+    """
+
+    def __init__(self, seed: int = 0, field: Field = FIELD, signs: bool = True) -> None:
+        self._field, self._seed, self._signs = field, seed, signs
         self._known: dict[Scalar, Value] = {}
         # inside of angles, numbers are those of the field of angles
-        self._inside = None if field.angles is None else ExactValues(seed, field.angles)
-        self._turns: dict[Scalar, Fraction] = {}
+        self._inside = None if field.angles is None else ExactValues(seed, field.angles, signs)
+        self._turns: dict[Scalar, Fraction | None] = {}
         self._pairs: dict[Scalar, tuple[int, int] | None] = {}
 
     def __call__(self, outputs: Sequence[Scalar]) -> list[Value]:
@@ -119,24 +131,34 @@ class ExactValues:
                 return self._over(first, second)
             case "ratio_or_zero":
                 return 0 if second == 0 else self._over(first, second)
-            case "sqrt" if isinstance(first, int):
-                return self._root(first, node.args[0].constant is not None)
-            case "abs" if isinstance(first, int):
-                return first if self._field.positive(first) else self._minus(first)
-            case "copysign" if isinstance(first, int) and isinstance(second, int):
-                same = self._field.positive(first) == self._field.positive(second)
-                return first if same else self._minus(first)
-            case "abs":
-                return self._opaque("abs", self._either(first))
+            case "sqrt":
+                return self._root(first, node.args[0].constant)
+            case "abs" if self._signs:
+                return first if self._positive(first, node.args[0].constant) else self._minus(first)
+            case "copysign" if self._signs:
+                magnitude, sign = (self._positive(x, a.constant) for x, a in zip(args, node.args, strict=True))
+                return first if magnitude == sign else self._minus(first)
             case _:
                 return self._opaque(node.op, node.payload, *args)
 
-    def _root(self, a: int, number: bool) -> Element:
-        """The positive root, which has a root in turn; i times one, or any, of what is negative."""
+    def _positive(self, a: Element, number: Fraction | None) -> bool:
+        """Whether the scalar, which may be a number, stands for a positive one; of a and -a one does."""
+        if number is not None:
+            return number >= 0
+        x, y = _parts(a)
+        return self._field.positive(y if x == 0 else x)
+
+    def _root(self, a: Element, number: Fraction | None) -> Element:
+        """The positive root; of what is negative here, and of multiples of i, any positive one."""
         field = self._field
-        if field.positive(a):
+        if isinstance(a, int) and number is not None:
+            root = Fraction(isqrt(max(0, number.numerator)), isqrt(number.denominator))
+            if root * root == number:
+                return field.number(root) or 0
+            return field.root(a) if field.positive(a) else (0, field.root(-a))
+        if isinstance(a, int) and field.positive(a):
             return field.root(a)
-        return (0, field.root(-a)) if number else pow(self._opaque("sqrt", a), 2, field.prime)
+        return pow(self._opaque("sqrt", a), 2, field.prime)
 
     def _whole(self, a: int, b: int) -> Element:
         p = self._field.prime
@@ -162,48 +184,38 @@ class ExactValues:
         scale = pow(norm, -1, self._field.prime)
         return self._times(a, self._whole(z * scale, -w * scale))
 
-    def _either(self, a: Element) -> Element:
-        """The same for a and -a."""
-        return min(a, self._minus(a), key=_parts)
-
     def _pair(self, angle: Scalar) -> tuple[int, int] | None:
         if angle not in self._pairs:
             inside = self._inside
-            self._pairs[angle] = self._drawn(angle) if inside is None else self._turned(angle, inside._known[angle])
+            self._pairs[angle] = None if inside is None else self._turned(angle, inside._known[angle])
         return self._pairs[angle]
 
     def _turned(self, angle: Scalar, value: Value) -> tuple[int, int] | None:
         """The point of an angle that is a number of the field of angles, and of the multiple of pi beside it."""
         field, turns = self._field, self._turns[angle]
         assert field.angles is not None
+        if not isinstance(value, int) or turns is None:
+            return None
         beside, turned = field.angles.number(turns * PI), field.turn(turns)
-        if not isinstance(value, int) or beside is None or turned is None:
+        if beside is None or turned is None:
             return None
         return field.sum(turned, field.multiple(field.unit, (value - beside) % field.angles.prime))
-
-    def _drawn(self, angle: Scalar) -> tuple[int, int] | None:
-        """Any point of the circle for any value of an angle; the opposite one for the opposite value."""
-        value = self._known[angle]
-        if value is None or value == 0:
-            return None if value is None else (1, 0)
-        same = self._either(value)
-        cosine, sine = self._field.point(self._opaque("angle", same))
-        return cosine, sine if value == same else -sine % self._field.prime
 
     def _add_turns(self, angles: Sequence[Scalar]) -> None:
         """The multiples of pi that are added in sums and in multiples of them; what stands in products is a number."""
         found = self._turns
         for node in topological(angles, found):
-            args = node.args
             if node.constant is not None:
                 found[node] = half_turns(node.constant)
-            elif node.op == "add":
-                found[node] = found[args[0]] + found[args[1]]
-            elif node.op == "sub":
-                found[node] = found[args[0]] - found[args[1]]
-            elif node.op == "neg":
-                found[node] = -found[args[0]]
-            elif node.op == "mul" and (number := args[0].constant) is not None:
-                found[node] = found[args[1]] * number
+                continue
+            turns = [found[a] for a in node.args]
+            known = [t for t in turns if t is not None]
+            if node.op in _SIGNS:
+                signs = _SIGNS[node.op]
+                found[node] = sum(map(mul, signs, known), Fraction(0)) if len(known) == len(turns) else None
+            elif node.op == "mul" and (number := node.args[0].constant) is not None:
+                found[node] = None if turns[1] is None else number * turns[1]
+            elif node.op == "div" and (number := node.args[1].constant):
+                found[node] = None if turns[0] is None else turns[0] / number
             else:
                 found[node] = Fraction(0)

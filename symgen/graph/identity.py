@@ -14,8 +14,8 @@ from symgen.diagnostics import SymgenBug
 from symgen.graph.exact import ExactValues, Value
 from symgen.graph.scalar import Scalar
 
-# Points at which identities are looked at until none of the values given is divided by 0.
-POINTS = 3
+# Points at which signs are right, half of them by chance.
+POINTS = 12
 
 
 class _Thoroughly:
@@ -43,18 +43,16 @@ def same_values(rule: str, before: Sequence[Scalar], after: Sequence[Scalar]) ->
         for one, other in zip(before, after, strict=True)
         if (one.value != other.value or _Thoroughly.on) and one is not other
     ]
-    for seed in range(POINTS):
-        if not differ:
-            return
-        pairs = [(_value(one, seed), _value(other, seed)) for one, other in differ]
-        if wrong := [k for k, (one, other) in enumerate(pairs) if one is not None and one != other]:
+    differ = [pair for pair in differ if (value := _value(pair[0], 0)) is None or value != _value(pair[1], 0)]
+    for seed in range(1, 1 + POINTS if differ else 1):
+        values = [(_value(one, seed), _value(other, seed)) for one, other in differ]
+        if wrong := [k for k, (one, other) in enumerate(values) if one is not None and one != other]:
             raise SymgenBug(f"{rule}: changes the value of {len(wrong)} of {len(before)} scalars")
-        differ = [pair for pair, (one, _) in zip(differ, pairs, strict=True) if one is None]
 
 
 def _value(scalar: Scalar, seed: int) -> Value:
     """The value at a point; what is known there stays with the graph, as most scalars are met again."""
     points = scalar.graph.points
     if seed not in points:
-        points[seed] = ExactValues(seed)
+        points[seed] = ExactValues(seed, signs=seed > 0)
     return points[seed]([scalar])[0]
