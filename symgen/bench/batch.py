@@ -20,7 +20,6 @@ from symgen.emit.render import render
 from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.verify.python_module import PythonModule
 
 # The flags of `compile()` in the generated module, for all: vectors of this machine, at their full width.
@@ -117,7 +116,7 @@ def _library(folder: Path, model: Model, program: Program) -> ctypes.CDLL:
     for path, text in files.items():
         (folder / Path(path).name).write_text(text, encoding="utf-8")
     sources = [str(folder / Path(path).name) for path in files if path.endswith(".c")]
-    target = folder / f"{file_stem(model.name)}_many{SUFFIX[program.scalar]}.so"
+    target = folder / f"{model.c_name}_many{SUFFIX[program.scalar]}.so"
     gcc([*FLAGS, "-shared", "-fPIC", "-o", str(target), *sources, "-lm"], "symgen's batch kernels")
     return ctypes.CDLL(str(target))
 
@@ -130,7 +129,7 @@ def _batches(
     ways = []
     for scalar, program in programs.items():
         (kernel,) = program.kernels
-        function = _library(folder, model, program)[f"{model.name}_{kernel.name}_batch{SUFFIX[scalar]}"]
+        function = _library(folder, model, program)[f"{model.c_name}_{kernel.name}_batch{SUFFIX[scalar]}"]
         rows = [np.ascontiguousarray(part.T, dtype=scalar) for part in _arguments(kernel, parts)]
         result = np.empty((len(kernel.outputs), STREAMED), dtype=scalar)
         run = _call(function, [*rows, np.array([*parameters, 0.0], dtype=scalar), result], (STREAMED,), (None,))

@@ -22,7 +22,6 @@ from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.verify.python_module import PythonModule
 
 PORTABLE, LIBRARY = "portable", "libm"
@@ -100,10 +99,10 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
     kernel = program.kernels[0]
     files = emit_c(model, program)
     suffix = SUFFIX[program.scalar]
-    stem = file_stem(model.name) + suffix
-    function = f"{model.name}_{kernel.name}{suffix}"
+    stem = model.c_name + suffix
+    function = f"{model.c_name}_{kernel.name}{suffix}"
     entry = f"symgen_{way}_{trig}_{program.scalar}".replace("-", "_").replace(" ", "_")
-    defaults = f"{model.name}_default_params{suffix}"  # every variant brings its own
+    defaults = f"{model.c_name}_default_params{suffix}"  # every variant brings its own
     headers = {f"{stem}.h": str(files[f"c/{stem}.h"])}
     source = str(files[f"c/{stem}.c"])
     if any(a.name in ("qdd", "u") and a.length for a in kernel.arguments):
@@ -117,6 +116,6 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
         )
         kept = CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"})
         units = (kept, CUnit(adaptor, is_adaptor=True))
-    functions = (function, *cause_names(kernel, function), *sorted(pair_names(model.name, suffix)))
+    functions = (function, *cause_names(kernel, function), *sorted(pair_names(model.c_name, suffix)))
     operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}
     return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, functions, operations)

@@ -31,7 +31,7 @@ from symgen.emit.surroundings import (
 )
 from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
 from symgen.model.model import Model
-from symgen.naming import file_stem
+from symgen.naming import macro_name
 from symgen.records import dataclass
 
 _WITHOUT_LIBRARY = frozenset({"add", "sub", "mul", "div", "neg", "ratio_or_zero", "min", "max"})
@@ -90,7 +90,7 @@ def emit_c(model: Model, program: Program) -> dict[str, str]:
 
 def status_name(model: Model, status: Status) -> str:
     """The enumerator of a status."""
-    return f"{model.name.upper()}_{status.name}"
+    return f"{macro_name(model.c_name)}_{status.name}"
 
 
 def c_members(model: Model, program: Program) -> dict[str, str]:
@@ -104,11 +104,11 @@ def c_names(model: Model, program: Program) -> Names:
 
 
 def _own_names(model: Model, program: Program) -> set[str]:
-    prefix, suffix = model.name, SUFFIX[program.scalar]
-    stem = file_stem(model.name) + suffix
+    prefix, suffix = model.c_name, SUFFIX[program.scalar]
+    stem = model.c_name + suffix
     own = {f"{prefix}_{name}{suffix}" for name in ("params", "default_params")}
     own |= pair_names(prefix, suffix) | surrounding_names(prefix, suffix)
-    own |= {f"{prefix}_status", f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"}
+    own |= {f"{prefix}_status", f"{macro_name(stem)}_H", f"{macro_name(prefix)}_STATUS_DEFINED"}
     own |= {status_name(model, status) for status in Status}
     for kernel in program.kernels:
         function = f"{prefix}_{kernel.name}{suffix}"
@@ -117,11 +117,11 @@ def _own_names(model: Model, program: Program) -> set[str]:
 
 
 def _view(model: Model, program: Program) -> CView:
-    prefix, suffix = model.name, SUFFIX[program.scalar]
-    stem = file_stem(model.name) + suffix
+    prefix, suffix = model.c_name, SUFFIX[program.scalar]
+    stem = model.c_name + suffix
     status_type, parameters_type = f"{prefix}_status", f"{prefix}_params{suffix}"
     default_function = f"{prefix}_default_params{suffix}"
-    guard, status_guard = f"{stem.upper()}_H", f"{prefix.upper()}_STATUS_DEFINED"
+    guard, status_guard = f"{macro_name(stem)}_H", f"{macro_name(prefix)}_STATUS_DEFINED"
     names = c_names(model, program)
     functions = tuple(_kernel(model, program, kernel, names, parameters_type) for kernel in program.kernels)
     return CView(
@@ -181,11 +181,11 @@ def _kernel(model: Model, program: Program, kernel: Kernel, names: Names, parame
     size = len(kernel.outputs)
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {parameters_type} *p", f"{scalar} {output}[{size}]"]
-    function = f"{model.name}_{kernel.name}{SUFFIX[program.scalar]}"
+    function = f"{model.c_name}_{kernel.name}{SUFFIX[program.scalar]}"
     comment = c_comment_lines(f"{meaning(kernel)}; {shape_text(kernel)}")
     return FunctionView(
         comment,
-        f"{model.name}_status {function}({', '.join(arguments)})",
+        f"{model.c_name}_status {function}({', '.join(arguments)})",
         kernel_body(model, program, kernel, names, function),
         kernel_causes(model, program, kernel, names, function, {"p": f"const {parameters_type} *p"}),
     )
@@ -196,7 +196,7 @@ def kernel_causes(
 ) -> tuple[CauseView, ...]:
     """What tells the causes of failures apart beside the body of `function`; `types` declares what is no array."""
     printer = _printer(model, program, kernel, names, ())
-    declared = {"": f"static {apart_name(model.name, SUFFIX[program.scalar])} {model.name}_status", **types}
+    declared = {"": f"static {apart_name(model.c_name, SUFFIX[program.scalar])} {model.c_name}_status", **types}
     return tuple(cause_view(cause, kernel, names, printer, declared) for cause in causes_of(kernel, function))
 
 
@@ -210,10 +210,10 @@ def _printer(model: Model, program: Program, kernel: Kernel, names: Names, cause
         program.scalar,
         names.locals,
         used_locals(kernel),
-        None if program.sincos is None else f"{model.name}_sincos{suffix}",
+        None if program.sincos is None else f"{model.c_name}_sincos{suffix}",
         lambda status: status_name(model, status),
-        both_name(model.name, suffix),
-        rare_name(model.name, suffix),
+        both_name(model.c_name, suffix),
+        rare_name(model.c_name, suffix),
         call if causes else None,
     )
 
@@ -224,7 +224,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names, fu
     causes = causes_of(kernel, function)
     printer = _printer(model, program, kernel, names, causes)
     used, group = printer.used, () if program.sincos is None else leading_group(kernel)
-    rare = rare_name(model.name, suffix)
+    rare = rare_name(model.c_name, suffix)
     loads = [load for load in kernel.loads if load.local in used]
     loaded = {load.argument for load in loads}
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
@@ -244,7 +244,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names, fu
             continue
         if (loop := loops.get(number)) is not None:
             lines += due(operand for row in loop.given for operand in row)
-            lines += loop_lines(loop, printer, each_name(model.name, suffix))
+            lines += loop_lines(loop, printer, each_name(model.c_name, suffix))
             waiting |= results_of(loop, program.scalar, names.locals)
             behind = loop.last
             continue
@@ -253,7 +253,7 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names, fu
                 if statement is group[0]:
                     lines += due(operand for pair in group for operand in pair.operands)
                     angles = [printer.operand(pair.operands[0]) for pair in group]
-                    lines += group_lines(program.scalar, f"{model.name}_sincos_group{suffix}", angles)
+                    lines += group_lines(program.scalar, f"{model.c_name}_sincos_group{suffix}", angles)
                     waiting |= _read_back(group, scalar, names)
                 continue
             if statement.operation == "sincos":

@@ -20,7 +20,7 @@ from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
 from symgen.ir.split import names_in, names_of_blocks, split, without_first
 from symgen.model.model import Model
-from symgen.naming import file_stem
+from symgen.naming import macro_name
 from symgen.records import dataclass
 
 # States a block: local arrays of rows of this length; a multiple of every vector length in use.
@@ -88,12 +88,12 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     if not kernels:
         return {}
     suffix = SUFFIX[program.scalar]
-    plain = file_stem(model.name)
+    plain = model.c_name
     stem = f"{plain}_batch{suffix}"
-    pair, ratio = f"{model.name}_sincos{suffix}", f"{model.name}_ratio{suffix}"
-    inline = f"{stem.upper()}_INLINE"
-    own = {f"{model.name}_{kernel.name}{tail}{suffix}" for kernel in program.kernels for tail in ("", "_batch")}
-    own |= {pair, ratio, inline, f"{stem.upper()}_H", f"{model.name}_params{suffix}", *_OWN_NAMES}
+    pair, ratio = f"{model.c_name}_sincos{suffix}", f"{model.c_name}_ratio{suffix}"
+    inline = f"{macro_name(stem)}_INLINE"
+    own = {f"{model.c_name}_{kernel.name}{tail}{suffix}" for kernel in program.kernels for tail in ("", "_batch")}
+    own |= {pair, ratio, inline, f"{macro_name(stem)}_H", f"{model.c_name}_params{suffix}", *_OWN_NAMES}
     own |= {status_name(model, status) for status in Status}
     own |= {f"{argument.name}_one" for kernel in kernels for argument in kernel.arguments}
     # the members of the parameter struct are those of the other header
@@ -104,9 +104,9 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     angle, body = ("", ()) if own_pair is None else pair_body(program.scalar, own_pair, pair)
     view = BatchFileView(
         stem=stem,
-        guard=f"{stem.upper()}_H",
+        guard=f"{macro_name(stem)}_H",
         plain_stem=f"{plain}{suffix}",
-        model=model.name,
+        model=model.c_name,
         scalar=C_TYPE[program.scalar],
         lane="int64_t" if program.scalar == "float64" else "int32_t",
         zero="0.0" if program.scalar == "float64" else "0.0f",
@@ -130,11 +130,11 @@ def _function(
     model: Model, program: Program, kernel: Kernel, names: Names, private: tuple[str, str], suffix: str
 ) -> BatchView:
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
-    single = f"{model.name}_{kernel.name}{suffix}"
+    single = f"{model.c_name}_{kernel.name}{suffix}"
     arguments = tuple(ArgumentView(a.name, a.length) for a in array_arguments(kernel))
     given = ["size_t count", "size_t stride", *(f"const {scalar} *{a.name}" for a in arguments)]
-    given += [f"const {model.name}_params{suffix} *p", f"{scalar} *{output}", "unsigned char *status"]
-    name = f"{model.name}_{kernel.name}_batch{suffix}"
+    given += [f"const {model.c_name}_params{suffix} *p", f"{scalar} *{output}", "unsigned char *status"]
+    name = f"{model.c_name}_{kernel.name}_batch{suffix}"
     flat = without_first(kernel)
     parts = split(flat)
     pair, ratio = private

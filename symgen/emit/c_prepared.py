@@ -19,7 +19,7 @@ from symgen.emit.surroundings import LibraryPair, apart_macro, library_pair, rar
 from symgen.ir.kernel import Block, Kernel, Program, Status
 from symgen.ir.prepare import Prepared, prepare
 from symgen.model.model import Model
-from symgen.naming import file_stem
+from symgen.naming import macro_name
 from symgen.records import dataclass
 
 
@@ -50,32 +50,32 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     if prepared is None:
         return {}
     suffix = SUFFIX[program.scalar]
-    plain = file_stem(model.name)
+    plain = model.c_name
     stem = f"{plain}_prepared{suffix}"
     once = Kernel("prepare", (), prepared.loads, (Block(prepared.statements, ()),), prepared.values, ())
     whole = replace(program, kernels=(*prepared.kernels, once))
     # the functions of one angle at a time are those that the lines of `prepare` call
-    pairs = pairs_view(model.name, suffix, whole)
+    pairs = pairs_view(model.c_name, suffix, whole)
     if pairs is not None and any(statement.operation == "sincos" for statement in prepared.statements):
-        pairs = replace(pairs, single=f"{model.name}_sincos{suffix}")
+        pairs = replace(pairs, single=f"{model.c_name}_sincos{suffix}")
     names = _names(model, program, whole, prepared, suffix)
-    struct = f"{model.name}_prepared{suffix}"
+    struct = f"{model.c_name}_prepared{suffix}"
     stated = replace(program, kernels=prepared.kernels)
     view = PreparedView(
         stem=stem,
-        guard=f"{stem.upper()}_H",
+        guard=f"{macro_name(stem)}_H",
         plain_stem=plain + suffix,
         scalar=C_TYPE[program.scalar],
         struct=struct,
         size=len(prepared.values),
-        prepare=f"{struct} {model.name}_prepare{suffix}(const {model.name}_params{suffix} *p)",
+        prepare=f"{struct} {model.c_name}_prepare{suffix}(const {model.c_name}_params{suffix} *p)",
         prepare_body=_prepare_body(model, program, prepared, names, suffix),
         functions=tuple(_function(model, program, kernel, names, struct, suffix) for kernel in prepared.kernels),
         pairs=pairs,
-        both=library_pair(model.name, stated),
-        rare=rare_macro(model.name, stated),
-        each=each_macro(model.name, stated),
-        apart=apart_macro(model.name, stated),
+        both=library_pair(model.c_name, stated),
+        rare=rare_macro(model.c_name, stated),
+        each=each_macro(model.c_name, stated),
+        apart=apart_macro(model.c_name, stated),
         includes_math=uses_library(whole),
     )
     return {
@@ -87,10 +87,10 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
 def _names(model: Model, program: Program, whole: Program, prepared: Prepared, suffix: str) -> Names:
     own = {"prepared"}
     for kernel in prepared.kernels:
-        function = f"{model.name}_{kernel.name}_prepared{suffix}"
+        function = f"{model.c_name}_{kernel.name}_prepared{suffix}"
         own |= {function, *cause_names(kernel, function)}
-    own |= {f"{model.name}_{name}{suffix}" for name in ("prepared", "prepare", "params")}
-    own |= pair_names(model.name, suffix) | surrounding_names(model.name, suffix)
+    own |= {f"{model.c_name}_{name}{suffix}" for name in ("prepared", "prepare", "params")}
+    own |= pair_names(model.c_name, suffix) | surrounding_names(model.c_name, suffix)
     own |= {status_name(model, status) for status in Status}
     members = {f"value[{k}]": f"value[{k}]" for k in range(len(prepared.values))}
     # the members of the parameter struct are those of the other header
@@ -99,7 +99,7 @@ def _names(model: Model, program: Program, whole: Program, prepared: Prepared, s
 
 def _prepare_body(model: Model, program: Program, prepared: Prepared, names: Names, suffix: str) -> tuple[str, ...]:
     scalar = C_TYPE[program.scalar]
-    sincos = None if program.sincos is None else f"{model.name}_sincos{suffix}"
+    sincos = None if program.sincos is None else f"{model.c_name}_sincos{suffix}"
     targets = {target for statement in prepared.statements for target in statement.targets}
     printer = CStatements(program.scalar, names.locals, targets, sincos)
     lines = [] if prepared.loads else ["(void)p;"]
@@ -107,7 +107,7 @@ def _prepare_body(model: Model, program: Program, prepared: Prepared, names: Nam
         f"const {scalar} {names.locals[load.local]} = p->{names.members[load.member]};" for load in prepared.loads
     ]
     lines += [line for statement in prepared.statements for line in printer.statement(statement)]
-    lines.append(f"{model.name}_prepared{suffix} prepared;")
+    lines.append(f"{model.c_name}_prepared{suffix} prepared;")
     lines += [f"prepared.value[{k}] = {printer.operand(value)};" for k, value in enumerate(prepared.values)]
     return (*lines, "return prepared;")
 
@@ -116,10 +116,10 @@ def _function(model: Model, program: Program, kernel: Kernel, names: Names, stru
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [f"const {struct} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
-    name = f"{model.name}_{kernel.name}_prepared{suffix}"
+    name = f"{model.c_name}_{kernel.name}_prepared{suffix}"
     (plain,) = (k for k in program.kernels if k.name == kernel.name)
     now, before = (count_operations(k.statements).total for k in (kernel, plain))
     comment = c_comment_lines(f"{meaning(kernel)}; {now} operations instead of {before}")
     body = kernel_body(model, program, kernel, names, name)
     causes = kernel_causes(model, program, kernel, names, name, {"p": f"const {struct} *p"})
-    return FunctionView(comment, f"{model.name}_status {name}({', '.join(arguments)})", body, causes)
+    return FunctionView(comment, f"{model.c_name}_status {name}({', '.join(arguments)})", body, causes)

@@ -17,7 +17,7 @@ from symgen.emit.surroundings import LibraryPair, apart_macro, library_pair, rar
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.model.model import Model
-from symgen.naming import file_stem
+from symgen.naming import macro_name
 from symgen.records import dataclass
 
 
@@ -46,30 +46,30 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
     if not given:
         return {}
     suffix = SUFFIX[program.scalar]
-    plain = file_stem(model.name)
-    stem, struct = f"{plain}_sc{suffix}", f"{model.name}_trig{suffix}"
+    plain = model.c_name
+    stem, struct = f"{plain}_sc{suffix}", f"{model.c_name}_trig{suffix}"
     whole = replace(program, kernels=tuple(made.kernel for made in given))
     own = {"sc", struct}
     for kernel in whole.kernels:
-        function = f"{model.name}_{kernel.name}_sc{suffix}"
+        function = f"{model.c_name}_{kernel.name}_sc{suffix}"
         own |= {function, *cause_names(kernel, function)}
-    own |= pair_names(model.name, suffix) | surrounding_names(model.name, suffix)
+    own |= pair_names(model.c_name, suffix) | surrounding_names(model.c_name, suffix)
     own |= {status_name(model, status) for status in Status}
     # the members of the parameter struct are those of the other header
     names = replace(names_of(model, whole, own), members=c_names(model, program).members)
     view = GivenTrigView(
         stem=stem,
-        guard=f"{stem.upper()}_H",
+        guard=f"{macro_name(stem)}_H",
         plain_stem=plain + suffix,
         scalar=C_TYPE[program.scalar],
         struct=struct,
         members=_members(model, given),
         functions=tuple(_function(model, program, kernel, names, struct, suffix) for kernel in whole.kernels),
-        pairs=pairs_view(model.name, suffix, whole),
-        both=library_pair(model.name, whole),
-        rare=rare_macro(model.name, whole),
-        each=each_macro(model.name, whole),
-        apart=apart_macro(model.name, whole),
+        pairs=pairs_view(model.c_name, suffix, whole),
+        both=library_pair(model.c_name, whole),
+        rare=rare_macro(model.c_name, whole),
+        each=each_macro(model.c_name, whole),
+        apart=apart_macro(model.c_name, whole),
         includes_math=uses_library(whole),
     )
     return {f"c/{stem}.h": render("c/sc.h.jinja", view), f"c/{stem}.c": render("c/sc.c.jinja", view)}
@@ -89,12 +89,12 @@ def _function(model: Model, program: Program, kernel: Kernel, names: Names, stru
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = [f"const {struct} *sc"]
     arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
-    arguments += [f"const {model.name}_params{suffix} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
-    function = f"{model.name}_{kernel.name}_sc{suffix}"
-    types = {"sc": f"const {struct} *sc", "p": f"const {model.name}_params{suffix} *p"}
+    arguments += [f"const {model.c_name}_params{suffix} *p", f"{scalar} {output}[{len(kernel.outputs)}]"]
+    function = f"{model.c_name}_{kernel.name}_sc{suffix}"
+    types = {"sc": f"const {struct} *sc", "p": f"const {model.c_name}_params{suffix} *p"}
     return FunctionView(
         c_comment_lines(meaning(kernel)),
-        f"{model.name}_status {function}({', '.join(arguments)})",
+        f"{model.c_name}_status {function}({', '.join(arguments)})",
         kernel_body(model, program, kernel, names, function),
         kernel_causes(model, program, kernel, names, function, types),
     )

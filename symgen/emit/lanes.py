@@ -14,6 +14,7 @@ from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Block, Kernel, Local, Operand, Program, Scalar, Statement
 from symgen.ir.split import names_in, names_of_blocks
+from symgen.naming import macro_name
 from symgen.records import dataclass
 
 _LANE, _GIVEN, _FOUND = "lane", "given", "found"
@@ -50,7 +51,7 @@ def each_macro(name: str, program: Program) -> str:
 
 def each_name(name: str, suffix: str) -> str:
     """The macro before loops over lanes, of a file whose names begin with `name`."""
-    return f"{name}_each{suffix}".upper()
+    return macro_name(name) + f"_each{suffix}".upper()
 
 
 def lane_names(program: Program) -> set[str]:

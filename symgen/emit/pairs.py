@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from symgen.emit.scalars import C_TYPE
 from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Block, Function, Kernel, Literal, Program, Scalar, Statement
-from symgen.naming import c_identifiers
+from symgen.naming import c_identifiers, macro_name
 from symgen.records import dataclass
 
 # Values in a vector of 16 bytes, which every 64-bit processor has.
@@ -59,10 +59,10 @@ def pairs_view(name: str, suffix: str, program: Program) -> PairsView | None:
         body=body,
         single=f"{name}_sincos{suffix}" if single else "",
         group=f"{name}_sincos_group{suffix}" if groups else "",
-        inline=f"{name}_inline{suffix}".upper(),
-        lanes=f"{name}_lanes{suffix}".upper(),
-        kind=f"{name}_group{suffix}".upper(),
-        unroll=f"{name}_unroll{suffix}".upper(),
+        inline=macro_name(name) + f"_inline{suffix}".upper(),
+        lanes=macro_name(name) + f"_lanes{suffix}".upper(),
+        kind=macro_name(name) + f"_group{suffix}".upper(),
+        unroll=macro_name(name) + f"_unroll{suffix}".upper(),
         count=LANES[program.scalar],
     )
 
@@ -70,7 +70,8 @@ def pairs_view(name: str, suffix: str, program: Program) -> PairsView | None:
 def pair_names(name: str, suffix: str) -> set[str]:
     """Every name that `pairs_view` may give to a file."""
     functions = {f"{name}_{tail}{suffix}" for tail in ("pair", "sincos", "sincos_group")}
-    return functions | {f"{name}_{tail}{suffix}".upper() for tail in ("inline", "lanes", "group", "unroll")}
+    macros = (f"_{tail}{suffix}".upper() for tail in ("inline", "lanes", "group", "unroll"))
+    return functions | {macro_name(name) + macro for macro in macros}
 
 
 def pair_body(scalar: Scalar, function: Function, name: str) -> tuple[str, tuple[str, ...]]:

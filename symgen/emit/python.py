@@ -12,7 +12,7 @@ from symgen.emit.render import render
 from symgen.emit.statements import NumpyStatements
 from symgen.ir.kernel import Function, Kernel, Program, Status
 from symgen.model.model import Model
-from symgen.naming import c_identifiers, file_stem
+from symgen.naming import c_identifiers
 from symgen.records import dataclass
 
 _SINCOS = "_sincos"
@@ -67,8 +67,8 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
     own = program.sincos if "sincos" in operations else None
     parameter, body = ("", ()) if own is None else _sincos(own)
     view = PythonView(
-        model=model.name,
-        stem=file_stem(model.name),
+        model=model.c_name,
+        stem=model.c_name,
         about=_about(model, program),
         statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
         fields=_fields(model, names),
@@ -135,7 +135,7 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> FunctionView:
 
 def _c_files(model: Model, program: Program) -> tuple[str, ...]:
     """What `compile()` builds: the float64 kernels for one state and for many."""
-    stem = file_stem(model.name)
+    stem = model.c_name
     stems = (stem, f"{stem}_batch") if any(kernel.name in BATCHED for kernel in program.kernels) else (stem,)
     return tuple(name + ending for name in stems for ending in (".h", ".c"))
 

@@ -6,6 +6,7 @@ from symgen.emit.lanes import each_name
 from symgen.emit.locals import all_statements, used_locals
 from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Local, Program
+from symgen.naming import macro_name
 from symgen.records import dataclass
 
 
@@ -42,12 +43,12 @@ def library_pair(name: str, program: Program) -> LibraryPair | None:
 
 def rare_name(name: str, suffix: str) -> str:
     """The macro of a file whose names begin with `name`."""
-    return f"{name}_rarely{suffix}".upper()
+    return macro_name(name) + f"_rarely{suffix}".upper()
 
 
 def apart_name(name: str, suffix: str) -> str:
     """The macro before functions that only a failure calls, of a file whose names begin with `name`."""
-    return f"{name}_apart{suffix}".upper()
+    return macro_name(name) + f"_apart{suffix}".upper()
 
 
 def both_name(name: str, suffix: str) -> str:

@@ -13,6 +13,7 @@ from symgen.diagnostics import Notice, Span
 from symgen.model.assembly import Assembly
 from symgen.model.expression import Expression
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
+from symgen.naming import c_name
 from symgen.records import dataclass
 
 Range: TypeAlias = tuple[Fraction, Fraction]
@@ -229,6 +230,11 @@ class Model:
     allocation: Allocation | None = None
     trig_range: Literal["normal", "wide"] = "normal"
     assembly: Assembly | None = None
+
+    @property
+    def c_name(self) -> str:
+        """What its files, functions and types are called: its name, unless that clashes."""
+        return c_name(self.name)
 
     @property
     def n(self) -> int:

@@ -11,7 +11,7 @@ from symgen import __version__
 from symgen.emit.render import render
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
-from symgen.naming import file_stem
+from symgen.naming import macro_name
 from symgen.package.readme import readme
 from symgen.package.single_header import implementation_macro, single_headers
 
@@ -40,6 +40,7 @@ class PackageView:
     headers: tuple[str, ...]
     stems: tuple[str, ...]
     flags: tuple[str, ...]
+    implementation: str
 
 
 def emit_package(model: Model, programs: Sequence[Program], c_files: Mapping[str, str]) -> dict[str, str]:
@@ -47,11 +48,11 @@ def emit_package(model: Model, programs: Sequence[Program], c_files: Mapping[str
     headers = single_headers(c_files)
     if not headers or not any(program.kernels for program in programs):
         return {}
-    stem = file_stem(model.name)
+    stem = model.c_name
     description = " ".join((model.description or "constrained mechanical system").split())
     view = PackageView(
         name=stem,
-        upper=stem.upper(),
+        upper=macro_name(stem),
         version=__version__,
         description=description,
         quoted_description=json.dumps(description, ensure_ascii=False),
@@ -59,6 +60,7 @@ def emit_package(model: Model, programs: Sequence[Program], c_files: Mapping[str
         headers=tuple(headers),
         stems=tuple(name.removesuffix(".h") for name in headers),
         flags=FLAGS,
+        implementation=implementation_macro(next(iter(headers)).removesuffix(".h")),
     )
     files = {name: render(f"package/{template}", view) for name, template in _TEMPLATES.items()}
     files["library.json"] = _platformio(view)

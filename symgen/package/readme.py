@@ -15,6 +15,7 @@ from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.sincos import ANGLE_LIMIT
 from symgen.model.model import Model, Range
+from symgen.naming import macro_name
 from symgen.package.single_header import implementation_macro
 
 
@@ -45,12 +46,12 @@ def _use(model: Model, programs: Sequence[Program], stems: Sequence[str]) -> Ite
     yield ""
     yield "| build system | how |"
     yield "|---|---|"
-    yield f"| CMake | `add_subdirectory(package)`, `target_link_libraries(app PRIVATE symgen::{model.name})` |"
-    yield f"| ESP-IDF | copy the folder to `components/{model.name}` |"
-    yield f"| PlatformIO | copy it to `lib/{model.name}`, or `lib_deps = symlink://<path>` |"
-    yield f"| Arduino | copy it to `libraries/{model.name}` |"
-    yield f"| Zephyr | add its path to `EXTRA_ZEPHYR_MODULES`, set `CONFIG_SYMGEN_{model.name.upper()}=y` |"
-    yield f"| CMSIS-Pack | `Symgen.{model.name}.pdsc` |"
+    yield f"| CMake | `add_subdirectory(package)`, `target_link_libraries(app PRIVATE symgen::{model.c_name})` |"
+    yield f"| ESP-IDF | copy the folder to `components/{model.c_name}` |"
+    yield f"| PlatformIO | copy it to `lib/{model.c_name}`, or `lib_deps = symlink://<path>` |"
+    yield f"| Arduino | copy it to `libraries/{model.c_name}` |"
+    yield f"| Zephyr | add its path to `EXTRA_ZEPHYR_MODULES`, set `CONFIG_SYMGEN_{macro_name(model.c_name)}=y` |"
+    yield f"| CMSIS-Pack | `Symgen.{model.c_name}.pdsc` |"
     yield f"| none | copy `src/{stems[0]}.h`; `#define {implementation_macro(stems[0])}` before it in one file |"
     yield ""
     yield "Compile with `-ffp-contract=off -fno-math-errno` (the build files do), never with `-ffast-math`: results"
@@ -66,15 +67,15 @@ def _example(model: Model, program: Program) -> Iterator[str]:
     kernel = next((k for k in program.kernels if k.name == "inverse_dynamics"), program.kernels[0])
     suffix, kind = SUFFIX[program.scalar], C_TYPE[program.scalar]
     names = c_names(model, program)
-    yield f'#include "{model.name}{suffix}.h"'
+    yield f'#include "{model.c_name}{suffix}.h"'
     yield ""
-    yield f"{model.name}_params{suffix} p = {model.name}_default_params{suffix}();"
+    yield f"{model.c_name}_params{suffix} p = {model.c_name}_default_params{suffix}();"
     for argument in array_arguments(kernel):
         yield f"{kind} {argument.name}[{argument.length}] = {{0}}; /* {_order(model, argument.name)} */"
     output = names.outputs[kernel.name]
     yield f"{kind} {output}[{len(kernel.outputs)}];"
     arguments = ", ".join([*(argument.name for argument in array_arguments(kernel)), "&p", output])
-    yield f"if ({model.name}_{kernel.name}{suffix}({arguments}) != {status_name(model, Status.OK)}) {{"
+    yield f"if ({model.c_name}_{kernel.name}{suffix}({arguments}) != {status_name(model, Status.OK)}) {{"
     yield f"    /* {output} is as it was: hold the last command, or stop */"
     yield "}"
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import PurePosixPath
 
+from symgen.naming import macro_name
+
 # Loops over many states are for workstations; firmware computes one state at a time.
 _HOST_ONLY = ("_batch.h", "_batch_f.h")
 
@@ -23,7 +25,7 @@ def single_headers(c_files: Mapping[str, str]) -> dict[str, str]:
 
 def implementation_macro(stem: str) -> str:
     """The macro that brings the definitions of a single header."""
-    return f"{stem.upper()}_IMPLEMENTATION"
+    return f"{macro_name(stem)}_IMPLEMENTATION"
 
 
 def _merged(stem: str, header: str, source: str) -> str:

@@ -12,7 +12,6 @@ from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Load, Local, Program, Scalar, Status
 from symgen.model.model import Model, Range
-from symgen.naming import file_stem
 from symgen.proof.box import box, loaded_angles
 from symgen.proof.intervals import enclose
 from symgen.proof.slices import slices
@@ -70,12 +69,12 @@ class EvaView:
 def emit_eva(model: Model, program: Program) -> dict[str, str]:
     """`proof/<model>_eva.c` (float32: `_f_eva.c`) with one entry function for each kernel."""
     suffix = SUFFIX[program.scalar]
-    stem = file_stem(model.name) + suffix
+    stem = model.c_name + suffix
     kind = C_TYPE[program.scalar]
     members = c_members(model, program)
     view = EvaView(
         stem=stem,
-        model=model.name,
+        model=model.c_name,
         suffix=suffix,
         scalar=kind,
         interval=f"Frama_C_{kind}_interval",

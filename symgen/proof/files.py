@@ -8,7 +8,6 @@ from dataclasses import replace
 from symgen.emit.locals import array_arguments
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.proof.box import box
 from symgen.proof.eva import MOST_RUNS, emit_eva
 from symgen.proof.fuzz import emit_fuzz
@@ -40,7 +39,7 @@ def _only(program: Program, names: Collection[str]) -> Program:
 
 
 def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> Iterator[str]:
-    stem = file_stem(model.name)
+    stem = model.c_name
     yield f"# Proofs about {model.name}"
     yield ""
     yield "All of them speak of the C as it is, over the ranges of the model file, with the portable sine and cosine."

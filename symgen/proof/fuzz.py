@@ -17,7 +17,6 @@ from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
 from symgen.model.model import Model, Range
-from symgen.naming import file_stem
 from symgen.proof.box import box
 
 ARRAYS = ("q", "qd", "qdd", "u")
@@ -75,10 +74,10 @@ def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
     sizes = (*((name, len(ranges[name])) for name in ARRAYS), ("sc", len(trig)))
     named = [(f"{name}[{index}]", pair) for name in (*ARRAYS, "p") for index, pair in enumerate(ranges[name])]
     forms = {PLAIN: program.kernels, PREPARED: ready, GIVEN: tuple(made.kernel for made in given)}
-    stem = file_stem(model.name)
+    stem = model.c_name
     view = FuzzView(
         stem=stem,
-        model=model.name,
+        model=model.c_name,
         units=tuple(stem + _ENDING[form] for form, kernels in forms.items() if kernels),
         sizes=sizes,
         longest=max(1, *(size for _, size in sizes)),

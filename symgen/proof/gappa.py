@@ -19,7 +19,6 @@ from symgen.emit.locals import array_arguments
 from symgen.emit.render import render
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
 from symgen.model.model import Model, Range
-from symgen.naming import file_stem
 from symgen.proof.box import box
 from symgen.proof.intervals import Interval, enclose
 
@@ -61,7 +60,7 @@ def emit_gappa(model: Model, program: Program) -> dict[str, str]:
     kernel = next((kernel for kernel in program.kernels if kernel.name == QUANTITY), None)
     if program.scalar != "float32" or kernel is None or obstacle(model, kernel):
         return {}
-    stem = f"{file_stem(model.name)}_f"
+    stem = f"{model.c_name}_f"
     view = _view(model, kernel, stem)
     return {
         f"proof/{stem}_{QUANTITY}.gappa": render("proof/bound.gappa.jinja", view),
@@ -116,10 +115,10 @@ def _measurement(model: Model, program: Program, kernel: Kernel) -> ErrorView:
     arrays = array_arguments(kernel)
     entries = [(f"{a.name}[{i}]", ranges[a.name][i]) for a in arrays for i in range(a.length)]
     entries += [(f"p.{members[p.name]}", pair) for p, pair in zip(model.parameters, ranges["p"], strict=True)]
-    stem = file_stem(model.name)
+    stem = model.c_name
     return ErrorView(
         stem=stem,
-        model=model.name,
+        model=model.c_name,
         quantity=kernel.name,
         points=POINTS,
         arrays=tuple((a.name, a.length) for a in arrays),
@@ -173,7 +172,7 @@ def _view(model: Model, kernel: Kernel, stem: str) -> GappaView:
     )
     return GappaView(
         stem=stem,
-        model=model.name,
+        model=model.c_name,
         quantity=kernel.name,
         definitions=tuple(lines),
         hypotheses=tuple(dict.fromkeys(hypotheses)),

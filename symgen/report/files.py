@@ -8,7 +8,6 @@ from typing import Any
 from symgen.closedform.limits import TooLargeError
 from symgen.diagnostics import Notice
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.report.compose import compose
 from symgen.report.facts import Facts, ReportFiles
 from symgen.report.gather import gather, path_charts, with_measurements
@@ -36,7 +35,7 @@ def report_files(model: Model, receive: Callable[[], Any], measured: bool) -> Re
         for row in report.integrability
         if row.verdict == "integrable"
     )
-    document, stem = compose(report), file_stem(model.name)
+    document, stem = compose(report), model.c_name
     files: dict[str, str | bytes] = {
         f"report/{stem}.html": render_html(document),
         f"report/{stem}.tex": render_latex(document),

@@ -64,7 +64,7 @@ class Runner:
             for scalar, compilation in compilations.items():
                 library = compilation.library()
                 for kernel in self._programs[scalar].kernels:
-                    self._functions[scalar, kernel.name] = CFunction(library, model.name, kernel, scalar)
+                    self._functions[scalar, kernel.name] = CFunction(library, model.c_name, kernel, scalar)
         finally:
             for compilation in compilations.values():
                 compilation.cancel()

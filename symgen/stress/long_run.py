@@ -15,7 +15,6 @@ import numpy as np
 from symgen import processes
 from symgen.emit.render import render
 from symgen.model.model import Model, Path
-from symgen.naming import file_stem
 from symgen.paths.path_equations import PathError
 from symgen.paths.trajectory import solve_path
 from symgen.processes import ToolError
@@ -75,11 +74,11 @@ def _table(model: Model, path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.
 
 def _built(model: Model, path: Path, kernels: Kernels, folder: FilePath) -> FilePath:
     assert kernels.compiler is not None
-    stem = file_stem(model.name)
+    stem = model.c_name
     period = float(path.duration)
     view = {
         "stem": stem,
-        "model": model.name,
+        "model": model.c_name,
         "n": model.n,
         "m": model.m,
         "r": model.r,

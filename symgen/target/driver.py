@@ -12,7 +12,6 @@ from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Argument, Scalar
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.target.entries import Entries, Entry
 from symgen.verify.reference import State
 
@@ -131,15 +130,15 @@ def _group(model: Model, entries: Entries) -> GroupView:
         Argument("q", model.n), Argument("qd", model.n), Argument("qdd", model.n), Argument("u", model.m),
         OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
     )
-    units = dict.fromkeys([f"{file_stem(model.name)}{suffix}", *(entry.unit for entry in entries.functions)])
+    units = dict.fromkeys([f"{model.c_name}{suffix}", *(entry.unit for entry in entries.functions)])
     return GroupView(
         headers=tuple(f"{unit}.h" for unit in units),
         type=kind,
-        params=f"{model.name}_params{suffix}",
-        defaults=f"{model.name}_default_params{suffix}",
-        prepared=f"{model.name}_prepared{suffix}" if entries.prepared else "",
-        prepare=f"{model.name}_prepare{suffix}",
-        trig=f"{model.name}_trig{suffix}" if entries.given else "",
+        params=f"{model.c_name}_params{suffix}",
+        defaults=f"{model.c_name}_default_params{suffix}",
+        prepared=f"{model.c_name}_prepared{suffix}" if entries.prepared else "",
+        prepare=f"{model.c_name}_prepare{suffix}",
+        trig=f"{model.c_name}_trig{suffix}" if entries.given else "",
         given=tuple(
             (f"{half}_{model.coordinates[index].name}", 2 * index + place)
             for index in entries.given

@@ -12,7 +12,6 @@ from symgen.ir.given_trig import given_trig
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.prepare import prepare
 from symgen.model.model import Model
-from symgen.naming import file_stem
 
 PREPARED, GIVEN = "_prepared", "_sc"
 
@@ -79,9 +78,9 @@ def with_companions(model: Model, entries: Entries, program: Program) -> Entries
 
 def _entry(model: Model, scalar: Scalar, kernel: Kernel, plain: Kernel, form: str) -> Entry:
     kind, suffix = C_TYPE[scalar], SUFFIX[scalar]
-    function = f"{model.name}_{kernel.name}{form}{suffix}"
+    function = f"{model.c_name}_{kernel.name}{form}{suffix}"
     arguments = [f"&sc_{kind}"] if form == GIVEN else []
     arguments += [f"row_{kind}.{argument.name}" for argument in array_arguments(kernel)]
     arguments += [f"&ready_{kind}" if form == PREPARED else f"&p_{kind}", f"y_{kind}"]
     call = f"{function}({', '.join(arguments)})"
-    return Entry(kernel, plain, form, function, call, f"{file_stem(model.name)}{form}{suffix}")
+    return Entry(kernel, plain, form, function, call, f"{model.c_name}{form}{suffix}")

@@ -14,7 +14,6 @@ from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.render import render
 from symgen.ir.kernel import Program, Scalar
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.package.files import emit_package
 from symgen.target.build import Workshop
 from symgen.target.cores import Core
@@ -69,7 +68,7 @@ def build_package(package: Package, core: Core, folder: Path) -> Path:
     """The image for a core, linked by CMake; raises ToolError where CMake, the compiler or the linker refuses."""
     chain = toolchain(core.family)
     flags = " ".join((*chain.specs, *core.gcc))
-    view = ProjectView(file_stem(package.model.name), core.family, f"{chain.prefix}gcc", flags, BUILD_TYPE)
+    view = ProjectView(package.model.c_name, core.family, f"{chain.prefix}gcc", flags, BUILD_TYPE)
     shop = Workshop(folder, core)
     shop.write({
         "driver.c": package.driver,

@@ -41,10 +41,10 @@ def run_given_trig(
 ) -> dict[str, list[Outcome]]:
     """Outcomes of the kernels that the header names."""
     suffix = SUFFIX[scalar]
-    named = re.findall(rf"\b{model.name}_(\w+)_sc{suffix}\(", header)
+    named = re.findall(rf"\b{model.c_name}_(\w+)_sc{suffix}\(", header)
     outcomes: dict[str, list[Outcome]] = {}
     for kernel in (kernel for kernel in kernels if kernel.name in named):
-        function = library[f"{model.name}_{kernel.name}_sc{suffix}"]
+        function = library[f"{model.c_name}_{kernel.name}_sc{suffix}"]
         function.restype = ctypes.c_int
         kind = C_TYPES[scalar] * math.prod(kernel.shape)
         outcomes[kernel.name] = []

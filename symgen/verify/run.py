@@ -16,7 +16,6 @@ import symgen
 from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
-from symgen.naming import file_stem
 from symgen.verify.batch import run_batch
 from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, Fault, InvariantRecord
 from symgen.verify.comparison import Results, check_laws, compare, faults_of
@@ -160,7 +159,7 @@ def _same(made: Results, others: Results) -> bool:
 def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[dict[Scalar, CSource], str | None]:
     """C sources by scalar type, and the Python source, among the files of a model (paths relative to its folder)."""
     texts = {path: content if isinstance(content, str) else content.decode() for path, content in files.items()}
-    stem = file_stem(model.name)
+    stem = model.c_name
     c_sources = {
         scalar: CSource(
             stem + suffix,
@@ -212,7 +211,7 @@ def _run_c(
         except CompilationError as refusal:
             faults.append(Fault(f"{target} does not compile: {str(refusal)[:LONGEST_EXCERPT]}"))
             continue
-        functions = [CFunction(library, model.name, kernel, scalar) for kernel in kernels]
+        functions = [CFunction(library, model.c_name, kernel, scalar) for kernel in kernels]
         outcomes: dict[str, list[Outcome]] = {kernel.name: [] for kernel in kernels}
         for sample in samples[scalar]:
             state = sample.state
@@ -222,8 +221,8 @@ def _run_c(
                 outcomes[kernel.name].append(function(arrays, parameters))
         results[target] = (scalar, outcomes)
         companions = dict(sources[scalar].companions)
-        given = library, model.name, kernels, scalar, samples[scalar], outcomes
-        stem, suffix = file_stem(model.name), SUFFIX[scalar]
+        given = library, model.c_name, kernels, scalar, samples[scalar], outcomes
+        stem, suffix = model.c_name, SUFFIX[scalar]
         others = {}
         if f"{stem}_batch{suffix}.h" in companions:
             others["batch"] = run_batch(*given)
@@ -277,7 +276,7 @@ def _hashes(model: Model, c_sources: Mapping[Scalar, CSource], python_source: st
         for name, text in source.companions:
             yield f"c/{name}", _hash(text)
     if python_source is not None:
-        yield f"python/{file_stem(model.name)}.py", _hash(python_source)
+        yield f"python/{model.c_name}.py", _hash(python_source)
 
 
 def _hash(text: str) -> str:

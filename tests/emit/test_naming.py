@@ -8,7 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symgen.naming import PYTHON_KEYWORDS, RESERVED, c_identifiers, file_stem
+from symgen.naming import c_identifiers, c_name, macro_name
+from symgen.reserved import PYTHON_KEYWORDS, is_reserved
+
+
+def words(text: str) -> list[str]:
+    return text.split()
+
 
 TRICKY = st.sampled_from(["I", "I_", "I__", "F", "y1", "y1_", "double", "L", "B1", "PI", "template", "x", "p"])
 
@@ -18,7 +24,8 @@ def test_injective_and_never_reserved(names: list[str], taken: frozenset[str]) -
     mapping = c_identifiers(names, taken)
     assert list(mapping) == list(dict.fromkeys(names))
     assert len(set(mapping.values())) == len(mapping)
-    assert not set(mapping.values()) & (RESERVED | taken)
+    assert not set(mapping.values()) & taken
+    assert not any(map(is_reserved, mapping.values()))
 
 
 def test_a_free_name_stays_and_a_clash_moves_around_it() -> None:
@@ -26,13 +33,24 @@ def test_a_free_name_stays_and_a_clash_moves_around_it() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["I", "F", "B1", "PI", "y0", "jn", "min", "errno", "NULL", "EOF", "abs", "round", "and"]
+    "name",
+    words(
+        """I F B1 B0 B110 PI y0 jn min errno NULL EOF abs round and BIG_ENDIAN DBL_EPSILON EPERM EIO linux unix major
+    minor NAN INFINITY isnan complex word A3 TIM2 ADC1 PB0 CS10 PIND DDRB M_PIf M_1_PI PRIu32 htobe16 st_mtime
+    si_addr noreturn atomic_load signals TRUE MASS KELVIN_0"""
+    ),
 )
 def test_known_clashes(name: str) -> None:
     assert c_identifiers([name])[name] == f"{name}_"
 
 
-@pytest.mark.parametrize("name", ["L", "m_1", "e", "N", "lam", "theta", "q1", "G"])
+@pytest.mark.parametrize(
+    "name",
+    words(
+        """L m_1 e N lam theta q1 G M M_1 N_1 J_C I_1 Ixx IXX K_P EI GJ D1 R2 C1 T_2 CM COM sigma size arm MASS_ Mass a1
+    b0 pin port adc tim"""
+    ),
+)
 def test_ordinary_names_stay(name: str) -> None:
     assert c_identifiers([name])[name] == name
 
@@ -41,7 +59,35 @@ def test_python_keywords_are_complete() -> None:
     assert set(keyword.kwlist) == PYTHON_KEYWORDS
 
 
-def test_files_hide_no_header_or_module() -> None:
-    assert file_stem("math") == "math_model"
-    assert file_stem("numpy") == "numpy_model"
-    assert file_stem("front_car") == "front_car"
+@pytest.mark.parametrize(
+    "name",
+    words(
+        """math numpy queue test random servo m c help kernel aux COM1 hal x rob_f Rob_F rob_batch rob_sc_f
+        rob_minimal"""
+    ),
+)
+def test_names_that_clash_get_an_ending(name: str) -> None:
+    assert c_name(name) == f"{name}_model"
+
+
+@pytest.mark.parametrize("name", ["front_car", "rob", "Rob", "robot_model", "sc", "batch", "leg_force"])
+def test_others_keep_theirs(name: str) -> None:
+    assert c_name(name) == name
+
+
+PARTS = st.sampled_from(words("rob Rob ROB f F batch sc prepared model math x minimal default"))
+
+
+@given(st.lists(st.lists(PARTS, min_size=1, max_size=4).map("_".join), unique=True, max_size=6))
+def test_models_share_no_file_and_no_macro(names: list[str]) -> None:
+    """Files on one disk, macros in one program: endings and kinds never make one name out of two."""
+    kinds = [kind + scalar for kind in ("", "_batch", "_prepared", "_sc") for scalar in ("", "_f")]
+    stems = [c_name(name) + kind for name in names for kind in kinds]
+    assert len(set(stems)) == len(stems)
+    macros = [macro_name(stem) + tail for stem in stems for tail in ("_H", "_IMPLEMENTATION")]
+    assert len(set(macros)) == len(macros)
+
+
+def test_macros_of_small_letters_are_in_capitals() -> None:
+    assert macro_name("front_car_sc_f") == "FRONT_CAR_SC_F"
+    assert [macro_name(name) for name in ("Rob", "ROB", "ROB_f")] == ["Rob", "rob", "rob_F"]

@@ -20,7 +20,6 @@ from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.finite import rests
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.library_trig import with_library_trig
-from symgen.naming import file_stem
 
 
 def only(name: str, scalar: Scalar, quantity: str) -> Program:
@@ -77,7 +76,7 @@ def test_both_halves_have_the_bits_of_sine_and_cosine(
     model, program = shipped.model("rear_car"), with_library_trig(only("rear_car", "float64", "inverse_dynamics"))
     for path, text in emit_c(model, program).items():
         (tmp_path / Path(path).name).write_text(text, encoding="utf-8")
-    stem = file_stem(model.name)
+    stem = model.c_name
     found = []
     for kind, flags in (("gnu", ()), ("other", ("-D__UCLIBC__",))):
         target = tmp_path / f"{kind}.so"
