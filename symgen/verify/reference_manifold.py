@@ -107,6 +107,17 @@ def _step(residual: Any, jacobian: Any, damping: float) -> Any:
         return None
 
 
+def admissible(
+    system: System, q: Sequence[Any], shift: Sequence[float], parameters: Sequence[Any], literals: Sequence[Any]
+) -> list[Any]:
+    """The part of a shift that leaves the geometric rows as they are to first order; rows may depend on each other."""
+    jacobian = system.geometry(column(q).entries(), parameters, literals)[1].mid()
+    units = _units(jacobian)
+    moved = column(shift)
+    step = _step(units * jacobian * moved, units * jacobian, 1e-25)
+    return list((moved if step is None else moved - step).mid().entries())
+
+
 def _units(jacobian: Any) -> Any:
     """Diagonal of factors for rows."""
     sizes = [max((abs(float(entry)) for entry in row), default=0.0) for row in jacobian.tolist()]

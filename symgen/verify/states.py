@@ -12,7 +12,7 @@ from typing import Any
 
 from symgen.ir.kernel import Scalar
 from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_manifold import exceeds, onto_manifold, starts
+from symgen.verify.reference_manifold import admissible, exceeds, onto_manifold, starts
 from symgen.verify.reference_quantities import NEED_GRADIENTS
 from symgen.verify.reference_system import ParameterValues, default_parameters
 from symgen.verify.reference_tape import precision
@@ -110,12 +110,18 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
     least = _least_measures(reference, points[:TYPICAL_POINTS], usual)
     last: list[Any] | None = None
     kept = {True: 0, False: 0}
-    for index, point in enumerate(points):
+    for index in range(2 * len(points)):
+        if index >= len(points) and (sum(kept.values()) >= FEWEST_STATES or not system.r_geometric):
+            return
         exact = _parameters(varied, generator, vary=index > 0)
         parameters = [float(x) for x in exact]
-        start = point
-        if last is not None and index % 4 and system.r_geometric:
+        if index >= len(points):
+            # most of V are other branches or singular: along the one that is meant
+            start = _along(reference, last or _known(reference, points[0], index), exact, generator)
+        elif last is not None and index % 4 and system.r_geometric:
             start = _step(reference, last, generator)
+        else:
+            start = points[index]
         # lengths that others follow from are rounded afterwards: a linkage may close for their exact values alone
         q = onto_manifold(system, start, exact, literals, rounded=reference.ranks.rounded)
         if q is None or exceeds(system, reference.ranks, q, exact, literals):
@@ -130,6 +136,23 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
         last = q
         kept[in_range] += 1
         yield regular, in_range
+
+
+def _known(reference: Reference, start: Sequence[float], index: int) -> Sequence[float]:
+    """One of the configurations that loading found."""
+    known = reference.model.assembly
+    return start if known is None else known.places[index % len(known.places)].q
+
+
+def _along(
+    reference: Reference, q: Sequence[Any], parameters: Sequence[Any], generator: random.Random
+) -> Sequence[float]:
+    """A start off q in a direction that the geometric constraints allow, up to a fifth of the ranges away."""
+    widths = [float(c.range[1] - c.range[0]) for c in reference.model.coordinates]
+    reach = 0.2 * generator.random()
+    shift = [reach * generator.gauss(0, 1) * width for width in widths]
+    allowed = admissible(reference.system, q, shift, parameters, reference.literals())
+    return [float(x) + float(a) for x, a in zip(q, allowed, strict=True)]
 
 
 def _row_lengths(reference: Reference, points: Sequence[Sequence[float]], parameters: Sequence[float]) -> list[float]:

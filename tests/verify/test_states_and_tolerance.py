@@ -8,8 +8,10 @@ from random import Random
 
 import pytest
 from flint import arb
+from linkages import row_of_four_bars
 from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 
+from symgen.model.load import load_text
 from symgen.verify.reference import Reference, State
 from symgen.verify.reference_linear import column, norm
 from symgen.verify.reference_tape import precision
@@ -126,3 +128,12 @@ def test_distance_is_exact_where_floats_cancel() -> None:
     assert expectation.in_units(expectation.distance(nearest)) < 1
     worse = [nearest[0] * (1 + 2.0**-40), *nearest[1:]]
     assert expectation.in_units(expectation.distance(worse)) > 16
+
+
+def test_states_are_found_where_most_branches_hold_the_drive() -> None:
+    """Of eight four-bars in a row each may lie on a branch that stops those before it."""
+    model = load_text(row_of_four_bars(8), "row.yaml")
+    reference = Reference(model)
+    found = sample_states(reference, ("inverse_dynamics",), 12)
+    assert len(found) == 12
+    assert all(sample.measures[1] > 0 for sample in found)
