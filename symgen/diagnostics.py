@@ -19,11 +19,15 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """One mistake of the user: what is wrong, where, and what to do."""
+    """One mistake of the user: what is wrong, where, and what to do.
+
+    `about` is the name in both texts by which this mistake differs from the same one made elsewhere.
+    """
 
     message: str
     remedy: str
     span: Span | None = None
+    about: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,19 +60,26 @@ class ModelError(Exception):
         alike: dict[tuple[str, str, str], list[Mistake]] = {}
         for mistake in self.mistakes:
             file = mistake.span.file if mistake.span is not None else ""
-            alike.setdefault((file, mistake.message, mistake.remedy), []).append(mistake)
+            alike.setdefault((file, *_unnamed(mistake)), []).append(mistake)
         return "\n".join(self._rendered(file, mistakes) for (file, _, _), mistakes in alike.items())
 
     def _rendered(self, file: str, mistakes: list[Mistake]) -> str:
         first, *others = mistakes
-        places = list(dict.fromkeys(m.span for m in others if m.span is not None and m.span != first.span))
-        if places:
-            listed = [f"{span.line}:{span.column}" for span in places[:MOST_PLACES]]
-            if len(places) > MOST_PLACES:
-                listed.append(f"{len(places) - MOST_PLACES} more places")
+        places = dict.fromkeys((m.about, m.span) for m in others if m.span is not None and m.span != first.span)
+        listed = [f"`{about}` at {s.line}:{s.column}" if about else f"{s.line}:{s.column}" for about, s in places]
+        if len(listed) > MOST_PLACES:
+            listed[MOST_PLACES:] = [f"{len(listed) - MOST_PLACES} more places"]
+        if listed:
             among = listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} and {listed[-1]}"
-            first = Mistake(f"{first.message} (also at {among})", first.remedy, first.span)
+            first = Mistake(f"{first.message} (also {'' if first.about else 'at '}{among})", first.remedy, first.span)
         return render_mistake(file or self.file, self.texts[file] if file else self.text, first)
+
+
+def _unnamed(mistake: Mistake) -> tuple[str, str]:
+    """Message and remedy without the name they are about."""
+    if not mistake.about:
+        return mistake.message, mistake.remedy
+    return mistake.message.replace(mistake.about, "\0"), mistake.remedy.replace(mistake.about, "\0")
 
 
 class SymgenBug(Exception):

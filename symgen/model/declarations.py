@@ -11,7 +11,7 @@ from symgen.model.expression import Expression, Number
 from symgen.model.joint_forms import JointCoordinate, declare_joints
 from symgen.model.mechanism import component, is_component
 from symgen.model.model import AppliedForce, ConstraintRow, Definition, Parameter, Range
-from symgen.model.names import QUOTING, did_you_mean, is_name
+from symgen.model.names import MOST_LISTED, QUOTING, did_you_mean, is_name
 from symgen.model.parser import parse_expression
 from symgen.model.reading import description_of, entries, member, text_of
 from symgen.model.scope import CONFIGURATION, PARAMETERS, STATE, Kind, Scope
@@ -179,8 +179,13 @@ def is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:
     """Whether the key names a coordinate; a mistake where it does not."""
     if scope.kinds.get(key.value) == "coordinate":
         return True
+    if key.value not in scope.kinds and scope.is_attempted(key.value):
+        return False
     coordinates = [name for name, kind in scope.kinds.items() if kind == "coordinate"]
-    remedy = did_you_mean(key.value, coordinates, "forces act on coordinates; name one of them")
+    listed = f": {', '.join(coordinates)}" if 0 < len(coordinates) <= MOST_LISTED else ""
+    remedy = did_you_mean(key.value, coordinates, f"forces act on coordinates; name one of them{listed}")
+    if key.value in scope.moved_by:
+        remedy = f"name the coordinate of that joint: {' or '.join(f'`{one}`' for one in scope.moved_by[key.value])}"
     if not is_name(key.value):
         remedy = QUOTING
     scope.wrong(f"`{key.value}` in {where} is no coordinate", remedy, key.span)

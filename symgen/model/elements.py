@@ -109,4 +109,7 @@ def _stretch(scope: Scope, key: ScalarNode, node: Node, what: str) -> tuple[Expr
     known = [owner for owner in owners if owner is not None]
     if len(known) != 2:
         return None, None
+    if known[0] == known[1]:
+        scope.wrong(f"{what} is attached to `{known[0]}` at both ends", "name two different points", key.span)
+        return None, None
     return distance(known[0], known[1]), negated(shortening(known))

@@ -145,9 +145,13 @@ def _check_masses(
         names = [f"`{c.name}`" for c in mechanics.coordinates if c.name in still]
         alone = len(names) == 1
         moving = f"{names[0]} does" if alone else f"{', '.join(names) or 'the coordinates'} move together"
+        each = not alone and all(_alone(mechanics, regular, name) for name in still)
+        if each:
+            moving = f"{', '.join(names[:-1])} or {names[-1]} does"
+        which = "it" if alone else "each" if each else "one of them"
         yield Mistake(
             f"the accelerations are undetermined: no mass moves where {moving}, which the constraints allow",
-            f"give {'it' if alone else 'one of them'} a mass or inertia in `kinetic_energy` or `bodies`",
+            f"give {which} a mass or inertia in `kinetic_energy` or `bodies`",
             span,
         )
 
@@ -203,6 +207,12 @@ def _negative_energy(mechanics: Mechanics, where: str, span: Span | None) -> Mis
         "check signs: xy, xz, yz are elements of the tensor, the negatives of CAD's products of inertia",
         inertia_span(body) or span,
     )
+
+
+def _alone(mechanics: Mechanics, regular: list[tuple[list[float], Rows]], name: str) -> bool:
+    """Whether the coordinate moves by itself, and no mass with it."""
+    index = [c.name for c in mechanics.coordinates].index(name)
+    return all(not any(row[index] for row in b) and not any(mechanics.mass_matrix(q)[index]) for q, b in regular)
 
 
 def _without_mass(mechanics: Mechanics, jacobian: Rows, mass: Rows) -> set[str]:

@@ -72,6 +72,8 @@ def point_name(scope: Scope, node: Node | None, what: str) -> str | None:
         scope.used.add(name)
         return name
     kind = scope.kinds.get(name)
+    if kind is None and scope.is_attempted(name):
+        return None
     if kind is not None:
         remedy = "name one of `points`, or a frame for its origin"
         scope.wrong(f"`{name}` is {a_kind(kind)}, but {what} names a point", remedy, node.span)

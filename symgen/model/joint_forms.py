@@ -59,6 +59,10 @@ def declare_joints(scope: Scope, tree: MappingNode) -> tuple[JointCoordinate, ..
         scope.declare(child if isinstance(child, ScalarNode) else key, "frame")
         units = JOINTS.get(text_of(member(node, "type")) or "", ())
         named = _coordinates(node)
+        for moved in (key.value, text_of(member(node, "child")) or key.value):
+            scope.moved_by[moved] = tuple(item.value for item in named)
+        if len(named) != len(units):
+            scope.attempted |= {item.value for item in named}
         if units and len(named) != len(units):
             message = f"the joint `{key.value}` has {len(named)} coordinates, {len(units)} are due"
             remedy = "give `coordinate: name`, or `coordinates: [...]`: lengths first, then the angle or the quaternion"

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from symgen.diagnostics import Mistake, ModelError, Span
+from symgen.model.attempts import attempted_names
 from symgen.model.model import Model
 from symgen.model.resolve import resolve
 from symgen.model.schema import MODEL
@@ -34,7 +35,8 @@ def load_text(text: str, file: str) -> Model:
     tree, mistakes = read_tree(text)
     if tree is None:
         raise ModelError(file, text, mistakes)
-    scope = Scope(mistakes=[*mistakes, *check_shape(MODEL, tree, "the model")])
+    found = [*mistakes, *check_shape(MODEL, tree, "the model")]
+    scope = Scope(mistakes=found, attempted=attempted_names(tree, found))
     beside: dict[str, str] = {}
     if tree.get("urdf") is not None:
         if scope.mistakes:

@@ -60,6 +60,10 @@ class Rows:
             known = [owner for owner in owners if owner is not None]
             if len(known) != 2:
                 continue
+            if known[0] == known[1]:
+                remedy = "name two different ones; the second is what the first is attached to"
+                self._scope.wrong(f"{what} joins `{known[0]}` with itself", remedy, between[1].span)
+                continue
             yield from self._named(key, self._closing(kind, known[0], known[1], node, what))
 
     def _are_points(self, between: Iterable[Node], kind: str, what: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from symgen.diagnostics import Mistake
@@ -14,6 +14,7 @@ if TYPE_CHECKING:  # the command line corrects misspelt options too, and needs n
     from symgen.model.source import ScalarNode
 
 MAXIMUM_NAME = 40
+MOST_LISTED = 10  # names in a remedy
 NAME_PATTERN = "[A-Za-z][A-Za-z0-9_]*"
 QUOTING = "inside { } and [ ] quote an expression or text that has a comma, colon, bracket or #, or use block style"
 _NAME = re.compile(NAME_PATTERN, re.ASCII)
@@ -57,6 +58,8 @@ def name_mistake(node: ScalarNode, what: str) -> Mistake | None:
         remedy = "names start with a letter and go on with letters a-z, A-Z, digits and _"
         if set(name) & set("()[]+*, "):
             remedy = QUOTING
+        if _NAME.fullmatch(joined := re.sub("[ .-]+", "_", name.strip())):
+            remedy = f"write it in one word, such as `{joined}`"
         return Mistake(message, remedy, node.span)
     if len(name) > MAXIMUM_NAME:
         message = f"the name `{shown}` has {len(name)} characters, at most {MAXIMUM_NAME} are allowed"
@@ -71,7 +74,15 @@ def name_mistake(node: ScalarNode, what: str) -> Mistake | None:
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
     """The remedy for an unknown name: the nearest known one, else `otherwise`."""
-    candidates = sorted(known)
-    near = [candidate for candidate in candidates if candidate.lower() == name.lower()]
-    near = near or difflib.get_close_matches(name, candidates, 1, 0.6)
-    return f"did you mean `{near[0]}`?" if near else otherwise
+    near = nearest(name, sorted(known))
+    return f"did you mean `{near}`?" if near else otherwise
+
+
+def nearest(name: str, candidates: Sequence[str]) -> str:
+    """The nearest of the candidates: other capitals, one that begins the other, or a few letters apart; else empty."""
+    same = [one for one in candidates if one.lower() == name.lower()]
+    long = [one for one in candidates if min(len(one), len(name)) > 2]
+    begun = [one for one in long if one.startswith(name) or name.startswith(one)]
+    near = same or sorted(begun, key=lambda one: abs(len(one) - len(name)))
+    near = near or difflib.get_close_matches(name, candidates, 1, 0.65)
+    return near[0] if near else ""

@@ -6,7 +6,6 @@ so that no text can exhaust time, memory or the stack of a later stage.
 
 from __future__ import annotations
 
-import difflib
 from fractions import Fraction
 from typing import cast
 
@@ -24,7 +23,7 @@ from symgen.model.expression import (
     Pi,
     Power,
 )
-from symgen.model.names import QUOTING
+from symgen.model.names import QUOTING, nearest
 from symgen.model.source import ScalarNode
 from symgen.model.tokens import ExpressionError, Token, tokenize
 
@@ -225,9 +224,9 @@ class _Parser:
 
 
 def _unknown_function(name: Token) -> ExpressionError:
-    near = difflib.get_close_matches(name.text, FUNCTION_ARITY, 1)
+    near = nearest(name.text, list(FUNCTION_ARITY))
     known = ", ".join(FUNCTION_ARITY)
-    remedy = f"did you mean `{near[0]}`?" if near else f"the functions are {known}; write `*` for a product"
+    remedy = f"did you mean `{near}`?" if near else f"the functions are {known}; write `*` for a product"
     return ExpressionError(f"`{name.text}` is no function of the language", remedy, name.offset, len(name.text))
 
 

@@ -33,11 +33,12 @@ from symgen.model.loops import Rows
 from symgen.model.mechanics import default_values
 from symgen.model.mechanism import Mechanism, Quaternion
 from symgen.model.model import Model
-from symgen.model.names import did_you_mean, name_mistake
+from symgen.model.names import did_you_mean, name_mistake, nearest
 from symgen.model.paths import read_paths
 from symgen.model.published import read_published
 from symgen.model.quantities import QUANTITIES
 from symgen.model.reading import entries, items, member, one_line, text_of
+from symgen.model.schema import MODEL
 from symgen.model.scope import CONFIGURATION, STATE, Scope
 from symgen.model.source import MappingNode, Node, ScalarNode
 
@@ -114,6 +115,10 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
 
 def _check_mass(scope: Scope, tree: MappingNode) -> None:
     """Something must move, and have mass."""
+    known = {field.key for field in MODEL.fields}
+    needed = ("coordinates", "joints", "kinetic_energy", "bodies")
+    if any(key.value not in known and nearest(key.value, sorted(known)) in needed for key, _ in tree.entries):
+        return  # the key is misspelt, which is told
     if tree.get("coordinates") is None and tree.get("joints") is None:
         span = Span(tree.span.line, tree.span.column, tree.span.column + 1)
         remedy = "add `coordinates`: the generalized coordinates, in the order of q; the rate of x is x_dot"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
@@ -48,6 +49,24 @@ _REMEDIES: dict[Kind, str] = {
 }
 
 
+NO_NUMBERS = frozenset({"nan", "inf", "infinity"})
+_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
+
+
+def words_of(text: str) -> set[str]:
+    """The names that stand in a text."""
+    return set(_WORD.findall(text))
+
+
+def _rate_meant(name: str, visible: Iterable[str]) -> str:
+    """The remedy where a rate is written in another way, such as dx, xd or x_d."""
+    for rate in sorted(visible):
+        own = rate.removesuffix("_dot")
+        if own != rate and name in (f"d{own}", f"d_{own}", f"dot_{own}", f"{own}d", f"{own}_d", f"{own}dot", f"{own}p"):
+            return f"the rate of `{own}` is `{rate}`"
+    return ""
+
+
 def a_kind(kind: Kind) -> str:
     """The kind with its article."""
     return "the time" if kind == "time" else f"{'an' if kind[0] in 'ai' else 'a'} {kind}"
@@ -63,13 +82,19 @@ class Scope:
     place_definitions: set[str] = field(default_factory=set)
     used: set[str] = field(default_factory=set)
     faulty: set[str] = field(default_factory=set)
+    moved_by: dict[str, tuple[str, ...]] = field(default_factory=dict)  # coordinates by joints and their frames
+    attempted: set[str] = field(default_factory=set)  # words of declarations that could not be read
     mistakes: list[Mistake] = field(default_factory=list)
     notices: list[Notice] = field(default_factory=list)
     efforts: Notice | None = None  # limits of a robot's drives; what can be done with them is known at the end
 
-    def wrong(self, message: str, remedy: str, span: Span | None) -> None:
-        """Records a mistake."""
-        self.mistakes.append(Mistake(message, remedy, span))
+    def wrong(self, message: str, remedy: str, span: Span | None, about: str = "") -> None:
+        """Records a mistake; `about` is the name that tells it from the same one made elsewhere."""
+        self.mistakes.append(Mistake(message, remedy, span, about))
+
+    def is_attempted(self, name: str) -> bool:
+        """Whether an unknown name follows from a mistake in a declaration, which is enough to be told."""
+        return name in self.attempted or name.removesuffix("_ddot").removesuffix("_dot") in self.attempted
 
     def inner(self, **kinds: Kind) -> Scope:
         """A scope for further names that shares everything else with this one."""
@@ -80,6 +105,7 @@ class Scope:
         mistake = name_mistake(node, kind)
         if mistake is not None:
             self.mistakes.append(mistake)
+            self.attempted |= words_of(node.value)
             return False
         name = node.value
         if kind == "frame" and name == WORLD:
@@ -109,6 +135,9 @@ class Scope:
         declared before it.  None where there is a mistake (recorded) or nothing to read (the shape's mistake)."""
         if not isinstance(node, ScalarNode) or not node.value.strip():
             return None
+        if node.value.strip().lower().lstrip("+-.") in NO_NUMBERS and node.value.strip().lstrip("+-").startswith("."):
+            self.wrong(f"{where} is not finite: `{node.value.strip()}`", "give a finite number", node.span)
+            return None
         parsed = parse_expression(node)
         if isinstance(parsed, Mistake):
             self.mistakes.append(parsed)
@@ -126,10 +155,16 @@ class Scope:
         if is_component(name):
             return self._component(name, span, where, allowed)
         kind = self.kinds.get(name, "time" if name == "t" else None)
+        if kind is None and self.is_attempted(name):
+            return False
+        if kind is None and name.lower() in NO_NUMBERS:
+            self.wrong(f"{where} is not finite: `{name}`", "give a finite number", span)
+            return False
         if kind is None:
             visible = [other for other, its in self.kinds.items() if its in allowed]
             declared = "declare it under `coordinates`, `parameters` or `definitions`"
-            self.wrong(f"unknown name `{name}` in {where}", did_you_mean(name, visible, declared), span)
+            remedy = _rate_meant(name, visible) or did_you_mean(name, visible, declared)
+            self.wrong(f"unknown name `{name}` in {where}", remedy, span)
             return False
         self.used.add(name)
         if kind not in allowed:
@@ -151,6 +186,8 @@ class Scope:
         """Whether `owner.what` is known here."""
         owner, _, what = name.partition(".")
         kind = self.kinds.get(owner)
+        if kind is None and owner in self.attempted:
+            return False
         if kind not in ("point", "frame"):
             owners = [other for other, its in self.kinds.items() if its in ("point", "frame")]
             remedy = did_you_mean(owner, owners, "declare it under `points` or `frames`")

@@ -7,12 +7,11 @@ from collections.abc import Iterator
 from typing import TypeAlias
 
 from symgen.diagnostics import Mistake, Span
-from symgen.model.names import NAME_PATTERN, QUOTING, did_you_mean, is_name
+from symgen.model.names import MOST_LISTED, NAME_PATTERN, QUOTING, did_you_mean, is_name
 from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
 from symgen.records import dataclass
 
 MAXIMUM_TEXT = 2000
-MOST_LISTED = 10
 JsonSchema: TypeAlias = dict[str, object]
 
 

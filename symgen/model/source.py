@@ -19,6 +19,8 @@ MAXIMUM_DEPTH = 24
 MAXIMUM_NODES = 100_000
 PLAIN_REMEDY = "write the value out, or name it under `parameters` or `definitions`"
 
+QUOTED = "quote a text that has a comma, colon, bracket or #"
+
 START = Span(1, 1, 2)
 
 _EventLoader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -217,15 +219,41 @@ def _syntax_mistake(text: str, error: yaml.YAMLError) -> Mistake:
     if not isinstance(error, yaml.MarkedYAMLError):
         return Mistake("this is not YAML", "check brackets, quotes and indentation", START)
     mark = error.problem_mark or error.context_mark
-    span = Span(mark.line + 1, mark.column + 1, mark.column + 2) if mark else START
+    span = _at(mark) if mark else START
     problem = " ".join(str(part) for part in (error.problem, error.context) if part)
-    return Mistake(f"this is not YAML: {problem}", _syntax_remedy(problem), span)
-
-
-def _syntax_remedy(problem: str) -> str:
+    begun = error.context_mark
     if "'\\t'" in problem:
-        return "indent with spaces, not with tabs"
-    return "check indentation, brackets and quotes; quote a text that has a comma, colon, bracket or #"
+        return Mistake("a tab where YAML wants spaces", "indent with spaces, not with tabs", span)
+    if "quoted scalar" in problem and begun is not None:
+        return Mistake("a quotation mark that is never closed", "close it at the end of the text", _at(begun))
+    if "parsing a flow" in problem and begun is not None:
+        where = "" if begun.line + 1 == span.line else f" in line {begun.line + 1}"
+        return Mistake(f"the bracket opened{where} at column {begun.column + 1} is not closed before this",
+                       "close it, separate entries by commas, and quote a text that has a comma, colon, bracket or #",
+                       span)  # fmt: skip
+    if "expected <block end>" in problem:
+        message = "this line does not belong to its block: it begins further right or left, or has no name"
+        return Mistake(message, "indent all entries of a block alike, each `name: value`", span)
+    if problem.startswith("mapping values are not allowed"):
+        return _without_colon(text, span) or Mistake("a second `:` in one line", QUOTED, span)
+    return Mistake(f"this is not YAML: {problem}", f"check indentation, brackets and quotes; {QUOTED}", span)
+
+
+def _at(mark: yaml.Mark) -> Span:
+    return Span(mark.line + 1, mark.column + 1, mark.column + 2)
+
+
+def _without_colon(text: str, span: Span) -> Mistake | None:
+    """The mistake at the line before, where its name has no colon, which only shows at the next one."""
+    lines = text.splitlines()
+    for number in range(span.line - 1, 0, -1):
+        line = lines[number - 1].split("#")[0].rstrip()
+        if line.strip():
+            if ":" in line or line.lstrip().startswith("-"):
+                return None
+            start = len(line) - len(line.lstrip()) + 1
+            return Mistake("a name without a colon", "write `name: value`", Span(number, start, len(line) + 1))
+    return None
 
 
 def _character_mistake(text: str, position: int) -> Mistake:

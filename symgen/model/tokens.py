@@ -15,6 +15,7 @@ _TOKEN = re.compile(
     r"|(?P<operator>\*\*|//|[-+*/(),.])|(?P<end>$))",
     re.ASCII,
 )
+_ELEMENTWISE = re.compile(r"\.[*/^]")
 _SPACE = re.compile(r"\s*", re.ASCII)
 _LOOKALIKES = {
     "−": "-", "–": "-", "—": "-", "‐": "-", "·": "*", "×": "*", "∙": "*", "⋅": "*", "÷": "/", "∕": "/", "²": "**2",
@@ -68,6 +69,11 @@ def tokenize(text: str) -> list[Token]:
         if kind == "end":
             return tokens
         position = match.end()
+        if elementwise := _ELEMENTWISE.match(text, match.end()):
+            raise ExpressionError(
+                f"`{elementwise.group()}` is no operator", f"write `{elementwise.group()[1:].replace('^', '**')}`",
+                elementwise.start(), 2,
+            )  # fmt: skip
         if kind == "number" and text[position : position + 1].isidentifier():
             shown = match.group(kind)
             raise ExpressionError(

@@ -148,7 +148,7 @@ def _friction(scope: Scope, tree: MappingNode, joints: list[UrdfJoint], names: N
                     "add the rate at which it has 76 % of its full size: `urdf: {file: ..., friction_width: 0.01}`, "
                     f"or an entry `{name}` under `friction` of the model file, which replaces that of the URDF"
                 )
-                scope.wrong(message, remedy, given["friction"].span)
+                scope.wrong(message, remedy, given["friction"].span, joint.name)
                 continue
             parts += [(_text("coulomb", joint.span), given["friction"].node), (_text("width", joint.span), width)]
         yield _text(name, joint.span), MappingNode(tuple(parts), joint.span, True)

@@ -53,6 +53,9 @@ def _ends(robot: Robot) -> Iterator[Mistake]:
             if name and name not in robot.links:
                 remedy = did_you_mean(name, robot.links, "name a link of this file")
                 yield Mistake(f"the {end} `{name}` of the joint `{joint.name}` is no link", remedy, joint.span)
+        if joint.parent == joint.child and joint.child in robot.links:
+            message = f"the joint `{joint.name}` joins the link `{joint.child}` with itself"
+            yield Mistake(message, "name two links, `parent` and `child`", joint.span)
         if joint.child in holders:
             message = f"the link `{joint.child}` hangs on two joints, `{holders[joint.child]}` and `{joint.name}`"
             remedy = "a robot description is a tree; close loops with `loops` in the model file"

@@ -76,7 +76,7 @@ def _enter(scope: Scope, taken: dict[str, str], name: str, span: Span, of: tuple
     if mistake is not None:
         better = _suggestion(own, taken)
         remedy = f"name it in the model file: `urdf: {{file: ..., {block}: {{{better}: {own}}}}}`"
-        scope.mistakes.append(Mistake(mistake.message, remedy, span))
+        scope.mistakes.append(Mistake(mistake.message, remedy, span, own))
     taken.setdefault(name, owner)
 
 

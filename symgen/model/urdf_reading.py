@@ -47,7 +47,7 @@ class _Reading:
         self.left_out: dict[str, list[str]] = {}
 
     def wrong(self, message: str, remedy: str, span: Span) -> None:
-        self.mistakes.append(Mistake(message, remedy, span))
+        self.mistakes.append(Mistake(message, remedy, span, self.owner if f"`{self.owner}`" in message else ""))
 
     def robot(self, root: Element) -> Robot:
         if root.tag != "robot":

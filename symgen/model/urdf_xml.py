@@ -86,6 +86,12 @@ def parse_xml(text: str, file: str) -> Element | Mistake:
         return reading.mistake
     except expat.ExpatError as error:
         line, column = max(1, error.lineno), error.offset + 1
+        if not text.strip():
+            return Mistake("the file is empty", "give a URDF file", Span(1, 1, 2, file))
+        if error.code == expat.errors.codes[expat.errors.XML_ERROR_NO_ELEMENTS] and reading.unclosed:
+            tag, span = reading.unclosed.tag, reading.unclosed.span
+            ends = f"the file ends inside of `{tag}`, which begins here"
+            return Mistake(ends, f"close it with </{tag}>, or give the whole file", span)
         message = f"this is not XML: {expat.ErrorString(error.code)}"
         return Mistake(message, "check brackets, quotes and closing tags", Span(line, column, column + 1, file))
 
@@ -105,6 +111,11 @@ class _Reading:
         self._parser.EndElementHandler = self._end
         self._parser.CharacterDataHandler = self._characters
         self._parser.StartDoctypeDeclHandler = self._document_type
+
+    @property
+    def unclosed(self) -> Element | None:
+        """The innermost element that is still open."""
+        return self._open[-1] if self._open else None
 
     def root(self) -> Element:
         """The root; raises _RefusedError with a mistake noted, and expat's error."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from first_models import FIRST
+
 HEAD = """\
 model: carriage
 coordinates:
@@ -449,6 +451,7 @@ ELEMENTS = {
 }
 
 GROUPS = {
+    "first": FIRST,
     "yaml": YAML,
     "shape": SHAPE,
     "expressions": EXPRESSIONS,

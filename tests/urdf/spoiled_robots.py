@@ -115,7 +115,11 @@ PARTS: dict[str, Case] = {
     "no_mass": changed('<mass value="2"/>', ""),
     "no_inertia_element": changed(' iyz="0" izz="0.05"', ' izz="0.05"'),
     "negative_mass": changed('value="2"', 'value="-2"'),
-    "one_attribute_at_every_joint": changed('<axis xyz="0 0 1"/>', '<axis xyz="0 0 1" stiffness="3"/>'),
+    "dry_friction_at_every_joint": (
+        ARM.replace('<dynamics damping="0.1"/>', "").replace("<axis", '<dynamics friction="2"/> <axis'),
+        HEAD,
+    ),
+    "one_attribute_at_every_joint": (ARM.replace("<axis", '<axis spring="3"'), HEAD),
     "impossible_inertia": changed('izz="0.04"', 'izz="-0.4"'),
 }
 GROUPS = {"hostile": HOSTILE, "paths": PATHS, "tree": TREE, "joints": JOINTS, "parts": PARTS}
