@@ -19,7 +19,8 @@ LEGAL = (
     "size_t", "assert_", "defined", "pragma", "main", "memcpy", "setup", "loop", "delay", "millis", "e", "pi_", "d1",
     "OK", "NOT_FINITE", "CONSTRAINT_RANK", "det", "rank", "k", "h", "g", "nan", "inf", "object", "id", "map", "array",
 )  # fmt: skip
-ILLEGAL = ("int", "class", "lambda", "def", "while", "namespace", "register", "t", "sin", "pi")
+# reserved by the language of models, and nothing that Python could not read
+ILLEGAL = ("int", "namespace", "register", "short", "template", "volatile", "t", "sin")
 
 
 class Namer:
@@ -33,7 +34,8 @@ class Namer:
         """A new name, `plain` unless it is taken or another hurts more."""
         if self._dice.chance(self._hurt):
             free = [name for name in LEGAL if name not in self._taken and f"{name}_dot" not in self._taken]
-            plain = self._dice.choice(free)
+            # what is reserved is refused, and that must be told, too
+            plain = self._dice.choice(free if not self._dice.chance(0.01) else ILLEGAL)
         name, count = plain, 1
         while name in self._taken:
             count += 1
