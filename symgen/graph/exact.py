@@ -131,6 +131,9 @@ class ExactValues:
                 return self._over(first, second)
             case "ratio_or_zero":
                 return 0 if second == 0 else self._over(first, second)
+            case "rounded":
+                # what is told to be rounded first is the same number
+                return first
             case "sqrt":
                 return self._root(first, node.args[0].constant)
             case "abs" if self._signs:

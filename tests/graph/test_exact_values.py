@@ -201,3 +201,12 @@ def test_sharing_angles_is_an_identity(forest: list[object]) -> None:
     outputs = [_built(graph, tree) for tree in forest]
     with every_identity_evaluated():
         same_values("sharing", outputs, share_angles(graph, outputs))
+
+
+def test_what_is_rounded_first_is_the_same_number() -> None:
+    graph = Graph()
+    x, y = graph.symbol("x"), graph.symbol("y")
+    total = x + y
+    same_values("writing", [graph.rounded(total) * y], [total * y])
+    with pytest.raises(SymgenBug, match="writing: changes the value of 1 of 1 scalars"):
+        same_values("writing", [graph.rounded(total) * y], [total * x])
