@@ -45,6 +45,13 @@ class Draft:
         choice = self.choice(quantity)
         return f"{choice.form} along {choice.way}" if choice.form not in ("", choice.way) else choice.way
 
+    def taken(self, quantity: str) -> Alternative:
+        """The way a quantity takes, as it stands."""
+        derivations = self.derivations
+        derived = next(one for one in derivations.quantities if one.name == quantity)
+        form = derivations.form if quantity == "inverse_dynamics" else dict(derivations.named).get(quantity)
+        return Alternative(self.choice(quantity), derivations.mechanics, derived, form)
+
     def kernels(self, quantity: str) -> dict[Scalar, Kernel]:
         """The kernels of a quantity by scalar type."""
         found = ((scalar, kernel) for scalar, program in self.programs.items() for kernel in program.kernels)
@@ -65,6 +72,8 @@ class Draft:
             form = alternative.form
         elif alternative.form is not None:
             named[name] = alternative.form
+        else:
+            named.pop(name, None)
         derivations = replace(
             derivations,
             quantities=tuple(alternative.derived if q.name == name else q for q in derivations.quantities),

@@ -7,17 +7,21 @@ at others: it is taken only where no other way keeps a margin.  Where no way pas
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any, TypeAlias
 
 from symgen.draft import Draft
-from symgen.dynamics.alternatives import Alternative, Alternatives
-from symgen.dynamics.select import Choice, Rejection
+from symgen.dynamics.alternatives import TIERS, Alternative, Alternatives
+from symgen.dynamics.catalogue import scalars
+from symgen.dynamics.select import Rejection
+from symgen.graph.traverse import cost
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.records import dataclass
 from symgen.results import AUTO, Options
-from symgen.verify.certificate import Fault, LeftOut
+from symgen.verify.certificate import Certificate, ErrorRecord, Fault, LeftOut
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import measured, wrong_exactly
 from symgen.verify.tolerance import FACTOR
@@ -26,17 +30,19 @@ REJECTED = "verification rejects it"
 WRONG = "; wrong in exact arithmetic too: a fault of symgen, please report it"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
+# What keeping a margin may cost, in operations.
+MARGIN_WORTH = Fraction(1, 2)
 Kernels: TypeAlias = Mapping[Scalar, Kernel]
 
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
-    """A way with its kernels and its largest error in `scalars`, where it passes; without `other` the way taken."""
+    """A way with its kernels and its largest error in `scalars`, where it passes."""
 
     largest: float
     scalars: tuple[Scalar, ...]
-    other: Alternative | None = None
-    kernels: Kernels | None = None
+    way: Alternative
+    kernels: Kernels
 
 
 class Fallback:
@@ -46,34 +52,41 @@ class Fallback:
         self._options = options
         self._progress = progress
         self._alternatives: Alternatives | None = None
-        self._left: dict[str, Iterator[Alternative]] = {}
-        self._passing: dict[str, list[_Candidate]] = {}
-        self._tried: dict[str, list[tuple[str, str]]] = {}
-        self._kernels: dict[str, list[Kernels]] = {}
+        self._left: dict[tuple[str, int], Iterator[Alternative]] = {}
+        self._passing: defaultdict[str, list[_Candidate]] = defaultdict(list)
+        self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
+        self._kernels: defaultdict[str, list[Kernels]] = defaultdict(list)
+        self._weighed: set[str] = set()
 
-    def settle(self, draft: Draft, rejected: Mapping[str, Sequence[Fault]], expected: Expected) -> Draft:
-        """The draft with every rejected quantity along its next way that passes, or without it."""
+    def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
+        """The draft with other ways for what is rejected, or for what keeps no margin; None where nothing is better."""
         if self._alternatives is None:
             derivations = draft.derivations
             self._alternatives = Alternatives(draft.model, derivations.generic, derivations.inverse)
-        for quantity, faults in rejected.items():
-            draft = self._replaced(draft, quantity, faults, expected)
-        return draft
+        made = draft
+        for quantity, faults in certificate.rejected.items():
+            made = self._replaced(made, quantity, faults, expected)
+        if not certificate.faults:
+            worst = {one.quantity: one for one in sorted(certificate.errors, key=lambda record: record.largest)}
+            for record in worst.values():
+                if record.largest > MARGIN and record.quantity not in self._weighed:
+                    made = self._with_margin(made, record, expected)
+        return None if made is draft else made
 
     def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:
-        tried, passing = self._tried.setdefault(quantity, []), self._passing.setdefault(quantity, [])
-        known = len(tried)
-        kernels = draft.kernels(quantity)
+        """The draft with a rejected quantity along its next way that passes, or without it."""
+        tried, passing = self._tried[quantity], self._passing[quantity]
+        known, kernels = len(tried), draft.kernels(quantity)
+        self._weighed.add(quantity)
         wrong = wrong_exactly(kernels["float64"], expected)
         tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})" + WRONG * wrong))
-        self._kernels.setdefault(quantity, []).append(kernels)
-        failing = {fault.scalar for fault in faults}
-        if "float64" not in failing:
-            passing.append(_Candidate(0.0, ("float64",)))
+        self._kernels[quantity].append(kernels)
+        if all(fault.scalar == "float32" for fault in faults):
+            passing.append(_Candidate(0.0, ("float64",), draft.taken(quantity), kernels))
         found = self._next(draft, quantity, expected)
         draft = draft.rejecting(tuple(Rejection(quantity, way, why) for way, why in tried[known:]))
-        if found is not None and found.other is not None and found.kernels is not None:
-            draft = draft.along(found.other, found.kernels)
+        if found is not None:
+            draft = draft.along(found.way, found.kernels)
         passed = () if found is None else found.scalars
         without = tuple(scalar for scalar in kernels if scalar not in passed)
         if not without:
@@ -85,32 +98,51 @@ class Fallback:
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> _Candidate | None:
         """The next way that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
-        for other in self._others(quantity, draft.choice(quantity)):
-            self._progress(f"another way to {quantity}, {other.choice.way}")
-            kernels = draft.kernels_along(other, needed)
-            if kernels in self._kernels[quantity]:
-                continue
-            self._kernels[quantity].append(kernels)
-            one = self._measured(draft, other, kernels, expected)
-            if one.scalars == needed and one.largest <= MARGIN:
-                return one
-            if "float64" in one.scalars:
-                passing.append(one)
+        for tier in range(TIERS):
+            for one in self._candidates(draft, quantity, tier, expected):
+                if one.scalars == needed and one.largest <= MARGIN:
+                    return one
+                if "float64" in one.scalars:
+                    passing.append(one)
         if not passing:
             return None
         best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
         passing.remove(best)
         return best
 
-    def _others(self, quantity: str, taken: Choice) -> Iterator[Alternative]:
-        if self._options.forms.get(quantity, AUTO) != AUTO or self._alternatives is None:
-            return iter(())
-        if quantity not in self._left:
-            self._progress(f"other ways to {quantity}")
-            self._left[quantity] = self._alternatives.of(quantity, taken)
-        return self._left[quantity]
+    def _with_margin(self, draft: Draft, record: ErrorRecord, expected: Expected) -> Draft:
+        """The draft with a quantity that passes narrowly along a way with half of its error, where that is not long."""
+        quantity = record.quantity
+        self._weighed.add(quantity)
+        taken, kernels = draft.taken(quantity), draft.kernels(quantity)
+        here = _Candidate(record.largest, tuple(kernels), taken, kernels)
+        self._kernels[quantity].append(kernels)
+        most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
+        for one in self._candidates(draft, quantity, 0, expected):
+            if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.way.cost <= most:
+                self._passing[quantity].append(here)
+                why = f"error {record.largest:.3g} times d + eps |y*| of {FACTOR:g} ({record.target}) leaves no margin"
+                self._tried[quantity].append((draft.way(quantity), why))
+                return draft.along(one.way, one.kernels).rejecting((Rejection(quantity, draft.way(quantity), why),))
+            if "float64" in one.scalars:
+                self._passing[quantity].append(one)
+        return draft
 
-    def _measured(self, draft: Draft, other: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
+    def _candidates(self, draft: Draft, quantity: str, tier: int, expected: Expected) -> Iterator[_Candidate]:
+        """The ways of a tier that are left, measured; what fails is noted."""
+        if self._options.forms.get(quantity, AUTO) != AUTO or self._alternatives is None:
+            return
+        if (quantity, tier) not in self._left:
+            self._progress(f"other ways to {quantity}")
+            self._left[quantity, tier] = iter(self._alternatives.of(quantity, draft.choice(quantity), tier))
+        for way in self._left[quantity, tier]:
+            self._progress(f"another way to {quantity}, {way.choice.way}")
+            kernels = draft.kernels_along(way, tuple(draft.kernels(quantity)))
+            if kernels not in self._kernels[quantity]:
+                self._kernels[quantity].append(kernels)
+                yield self._measured(draft, way, kernels, expected)
+
+    def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: list[Scalar] = []
         worst = 0.0
@@ -123,10 +155,10 @@ class Fallback:
                 passed.append(scalar)
                 worst = max(worst, largest)
                 continue
-            self._tried[other.choice.quantity].append((other.choice.way, f"{fault.what} ({fault.target})"))
+            self._tried[way.choice.quantity].append((way.choice.way, f"{fault.what} ({fault.target})"))
             if scalar == "float64":
                 break  # float32 alone is of no use: the other type is what Python and the report are made of
-        return _Candidate(worst, tuple(passed), other, kernels)
+        return _Candidate(worst, tuple(passed), way, kernels)
 
     def _remedy(self, quantity: str, without: Sequence[Scalar]) -> str:
         asked = self._options.forms.get(quantity, AUTO)

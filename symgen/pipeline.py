@@ -73,14 +73,16 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 reporting.send(_facts(draft))
             files = _code(draft, options)
             certificate, expected = _verified(draft, files, options, progress, expected)
-            if certificate is None or expected is None or not certificate.rejected:
-                return _finished(path, draft, options, files, certificate, reporting, progress)
-        # without what was rejected, again: with other ways, or in the end without these quantities
-        if fallback is None:
-            from symgen.fallback import Fallback
+            other = None
+            if certificate is not None and expected is not None:
+                from symgen.fallback import Fallback
 
-            fallback = Fallback(options, progress)
-        draft = fallback.settle(draft, certificate.rejected, expected)
+                fallback = fallback or Fallback(options, progress)
+                other = fallback.other(draft, certificate, expected)
+            if other is None or certificate is None:
+                return _finished(path, draft, options, files, certificate, reporting, progress)
+        # again: with other ways for what was rejected, or in the end without these quantities
+        draft = other
         if not draft.program.kernels:
             return _result(draft, options, {}, replace(certificate, left_out=draft.left_out))
 
@@ -383,7 +385,7 @@ def _replaced(draft: Draft) -> tuple[Notice, ...]:
             continue
         tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
         if tried:
-            found.append(Notice(f"{choice.quantity} takes {choice.way}: verification rejects {', '.join(tried)}"))
+            found.append(Notice(f"{choice.quantity} takes {choice.way}: verification speaks against {', '.join(tried)}"))
     return tuple(found)
 
 

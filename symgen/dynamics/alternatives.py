@@ -5,8 +5,6 @@ Each is derived on a graph of its own, so that it depends neither on what was de
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from symgen.dynamics.catalogue import BY_NAME, Derived, derive, scalars
 from symgen.dynamics.compared import MOTIONS, quantities_by
 from symgen.dynamics.forms.motions import BY_FRAMES
@@ -21,7 +19,8 @@ from symgen.records import dataclass
 # Those of a tier come before any of the next.  The second ones square the condition of B, or are long.
 INPUTS = (AUTOMATIC, ("printed", "weighted", "kkt"))
 MOTION = (("minor", "schur_qr", "nullspace", BY_FRAMES), ("schur_ldl", "shifted", "kkt"))
-OTHERS = (("minors", "householder", "blocks"),)
+OTHERS = (("minors", "householder", "blocks"), ())
+TIERS = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +47,14 @@ class Alternatives:
         self._inverse = inverse
         self._motions: dict[str, tuple[Mechanics, tuple[Derived, ...]]] = {}
 
-    def of(self, quantity: str, taken: Choice) -> Iterator[Alternative]:
-        """Every way to a quantity but the one taken that is valid at all regular states.
+    def of(self, quantity: str, taken: Choice, tier: int) -> tuple[Alternative, ...]:
+        """The ways of a tier to a quantity, but the one taken, that are valid at all regular states.
 
-        Tier by tier, the one that counts least first; those of a tier are derived when the first of them is asked for.
+        The one that counts least comes first.
         """
         same = taken.form if taken.way in ("minors", "householder", taken.form) else ""
-        for tier in _tiers(quantity):
-            found = [self._named(quantity, name) for name in tier if name not in (taken.way, same)]
-            yield from sorted((one for one in found if one is not None), key=lambda one: one.cost)
+        named = (self._named(quantity, name) for name in _tiers(quantity)[tier] if name not in (taken.way, same))
+        return tuple(sorted((one for one in named if one is not None), key=lambda one: one.cost))
 
     def named(self, quantity: str, name: str) -> Alternative | None:
         """One way to a quantity by its name; None where the system does not have it."""
