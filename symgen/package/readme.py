@@ -54,8 +54,9 @@ def _use(model: Model, programs: Sequence[Program], stems: Sequence[str]) -> Ite
     yield f"| CMSIS-Pack | `Symgen.{model.c_name}.pdsc` |"
     yield f"| none | copy `src/{stems[0]}.h`; `#define {implementation_macro(stems[0])}` before it in one file |"
     yield ""
-    yield "Compile with `-ffp-contract=off -fno-math-errno` (the build files do), never with `-ffast-math`: results"
-    yield "then have the same bits on every machine."
+    yield "Compile with `-ffp-contract=off -fno-math-errno` (the build files do), never with `-ffast-math`, and for x86"
+    yield "of 32 bits with `-msse2 -mfpmath=sse`: results then have the same bits on every machine. What would change"
+    yield "them (`-ffast-math`, x87, in float64 kernels `-fsingle-precision-constant`) is refused at compile time."
     yield ""
     yield "```c"
     yield from _example(model, programs[0])
