@@ -111,7 +111,7 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
     last: list[Any] | None = None
     kept = {True: 0, False: 0}
     for index in range(2 * len(points)):
-        if index >= len(points) and (sum(kept.values()) >= FEWEST_STATES or not system.r_geometric):
+        if index == len(points) and (sum(kept.values()) >= FEWEST_STATES or not system.r_geometric):
             return
         exact = _parameters(varied, generator, vary=index > 0)
         parameters = [float(x) for x in exact]

@@ -131,8 +131,8 @@ def test_distance_is_exact_where_floats_cancel() -> None:
 
 
 def test_states_are_found_where_most_branches_hold_the_drive() -> None:
-    """Of eight four-bars in a row each may lie on a branch that stops those before it."""
-    model = load_text(row_of_four_bars(8), "row.yaml")
+    """Of twelve four-bars in a row each may lie on a branch that stops those before it."""
+    model = load_text(row_of_four_bars(12), "row.yaml")
     reference = Reference(model)
     found = sample_states(reference, ("inverse_dynamics",), 12)
     assert len(found) == 12
