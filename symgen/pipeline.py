@@ -385,7 +385,8 @@ def _replaced(draft: Draft) -> tuple[Notice, ...]:
             continue
         tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
         if tried:
-            found.append(Notice(f"{choice.quantity} takes {choice.way}: verification speaks against {', '.join(tried)}"))
+            others = ", ".join(tried)
+            found.append(Notice(f"{choice.quantity} takes {choice.way}: verification speaks against {others}"))
     return tuple(found)
 
 
