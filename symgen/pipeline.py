@@ -324,6 +324,7 @@ def _result(
         certificate=None if certificate is None else certificate.to_json(),
         failures=() if certificate is None else certificate.failures,
         left_out=draft.left_out,
+        programs=draft.programs,
     )
 
 

@@ -13,6 +13,7 @@ from symgen.model.model import Model
 from symgen.records import dataclass
 
 if TYPE_CHECKING:
+    from symgen.ir.kernel import Program
     from symgen.verify.certificate import LeftOut
 
 Part: TypeAlias = Literal["c", "python", "report", "package", "proof"]
@@ -86,7 +87,8 @@ class Result:
     """All files of one model in memory (paths relative to its folder), and what to tell the user.
 
     `failures` are verification failures: with any, nothing is written and the exit code is 1.  `left_out` are
-    quantities that verification rejects in every way: the rest is written, the exit code is 1.
+    quantities that verification rejects in every way: the rest is written, the exit code is 1.  `programs` are what
+    the files hold.
     """
 
     model: Model
@@ -96,3 +98,4 @@ class Result:
     certificate: Mapping[str, Any] | None = None
     failures: tuple[str, ...] = field(default=())
     left_out: tuple[LeftOut, ...] = ()
+    programs: Mapping[Scalar, Program] = field(default_factory=dict)

@@ -13,16 +13,21 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean
-from symgen.results import WrongUseError
+from symgen.pipeline import generate
+from symgen.results import Options, Part, Result, WrongUseError
 from symgen.simulate.animation import animation
 from symgen.simulate.integrate import Motion, consistent_start, integrate
-from symgen.simulate.plant import Plant, PlantError
+from symgen.simulate.plant import QUANTITIES, Plant, PlantError
 from symgen.simulate.scene import scene
 from symgen.simulate.tables import motion_chart, motion_csv
+from symgen.stress.kernels import Runner
+from symgen.verify.compile import find_compiler
+from symgen.verify.tolerance import FACTOR
 from symgen.write import write_files
 
 Progress = Callable[[str], None]
 STILL = 1e-9
+ACCELERATIONS = "forward_dynamics"
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +42,8 @@ class Request:
 
 def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress: Progress) -> int:
     """Writes simulation.csv, .svg and, for a model with frames, .html into OUT/<model>/; 0, or 1 where it stopped.
+
+    What is integrated has been verified as generated code is; what verification rejects is not integrated.
 
     Raises ModelError for mistakes in the file and WrongUseError for names that the model does not have.
     """
@@ -54,9 +61,12 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
     times = [request.duration * k / count for k in range(count + 1)]
     mechanics = Mechanics(model)
     parameters = parameter_values(mechanics)
-    progress("deriving")
+    verified = _verified(path, progress)
+    if verified is None:
+        return 1
     with tempfile.TemporaryDirectory(prefix="symgen-simulate-") as folder:
-        plant = Plant(model, tuple(parameters[p.name] for p in model.parameters), Path(folder))
+        runner = Runner(model, {"float64": verified.programs["float64"]}, Path(folder))
+        plant = Plant(model, tuple(parameters[p.name] for p in model.parameters), runner)
         try:
             start = _start(plant, mechanics, q, qd, chosen=bool(request.start or declared))
         except PlantError as fault:
@@ -72,11 +82,44 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
     progress("")
     written = write_files(out / model.name, files)
     if not quiet:
-        print(*_summary(model, motion), "written:", *(f"  {file}" for file in written), "", sep="\n")
+        told = [*_summary(model, motion), _checked(verified), "written:"]
+        print(*told, *(f"  {file}" for file in written), "", sep="\n")
     if motion.stopped is not None:
         print(f"{path}: stopped {motion.stopped}", file=sys.stderr)
         return 1
     return 0
+
+
+def _verified(path: Path, progress: Progress) -> Result | None:
+    """The kernels that are integrated, as `symgen` makes and verifies them; None, told why, where one is rejected.
+
+    Without a C compiler the Python is verified, whose bits are those of the interpreter that runs then.
+    """
+    part: Part = "c" if find_compiler() is not None else "python"
+    result = generate(path, Options(outputs=QUANTITIES, scalars=("float64",), parts=(part,)), progress)
+    kernels = {kernel.name for kernel in result.programs["float64"].kernels}
+    found: list[str] = []
+    if result.failures or result.left_out:
+        found.append("verification rejects what would be integrated")
+        found += [f"  {failure}" for failure in result.failures]
+        for one in result.left_out:
+            found += [f"  {one.quantity}, {way}: {why}" for way, why in one.tried]
+            found.append(f"  {one.quantity}: remedy: {one.remedy}")
+    elif ACCELERATIONS not in kernels:
+        # other quantities may be missing: a system without constraints has no violations of them
+        found += [notice.message for notice in result.notices if notice.message.startswith(ACCELERATIONS)]
+    if not found:
+        return result
+    progress("")
+    print(f"{path}: not simulated: {found[0]}", *found[1:], sep="\n", file=sys.stderr)
+    return None
+
+
+def _checked(result: Result) -> str:
+    """What was verified, for the summary."""
+    errors = [error.error for error in result.summary.errors]
+    states = 0 if result.certificate is None else result.certificate["states"]
+    return f"  verified at {states} states, off by {max(errors, default=0.0):.2g} units of {FACTOR} allowed"
 
 
 def _start(

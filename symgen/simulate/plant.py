@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from typing import Protocol
 
-from symgen.ir.kernel import Status
+from symgen.ir.kernel import Scalar, Status
 from symgen.model.model import Model
-from symgen.stress.kernels import Kernels
+from symgen.verify.compile import Outcome
 from symgen.verify.reference import State
 
 QUANTITIES = ("forward_dynamics", "admissible_velocity", "projected_configuration", "constraint_residual", "energy")
@@ -24,11 +24,18 @@ class PlantError(Exception):
     """A kernel has no result at a state; says where and why."""
 
 
+class Runs(Protocol):
+    """What runs kernels, by name."""
+
+    def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
+        """One kernel at one state."""
+
+
 class Plant:
     """Accelerations, projections and energies of a model at q, q_dot under inputs u."""
 
-    def __init__(self, model: Model, parameters: Sequence[float], folder: Path) -> None:
-        self._kernels = Kernels(model, folder, QUANTITIES)
+    def __init__(self, model: Model, parameters: Sequence[float], kernels: Runs) -> None:
+        self._kernels = kernels
         self._parameters = tuple(parameters)
         self.model = model
 

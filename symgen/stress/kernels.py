@@ -53,10 +53,10 @@ class Runner:
             self.files |= emit_c(model, program)
         self.names = tuple(kernel.name for kernel in programs["float64"].kernels)
         self.compiler = find_compiler()
-        self._kernels = {(s, k.name): k for s in SCALARS for k in self._programs[s].kernels}
+        self._kernels = {(s, k.name): k for s, program in programs.items() for k in program.kernels}
         self._functions: dict[tuple[Scalar, str], CFunction] = {}
         if self.compiler is None:
-            self._interpreters = {s: Interpreter(self._programs[s].sincos, s) for s in SCALARS}
+            self._interpreters = {s: Interpreter(program.sincos, s) for s, program in programs.items()}
             return
         sources, _ = generated_sources(model, dict(self.files))
         compilations = {s: Compilation(self.compiler, source, folder) for s, source in sources.items()}

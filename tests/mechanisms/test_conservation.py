@@ -13,7 +13,8 @@ from symgen.graph.evaluate import Evaluator
 from symgen.model.load import load_model
 from symgen.model.mechanics import default_values
 from symgen.simulate.integrate import Motion, consistent_start, integrate
-from symgen.simulate.plant import Plant
+from symgen.simulate.plant import QUANTITIES, Plant
+from symgen.stress.kernels import Kernels
 
 MODELS = {name: ROOT / "models" / f"{name}.yaml" for name in ("rolling_disc", "gough_stewart")}
 MODELS["floating_body"] = Path(__file__).parent / "floating_body.yaml"
@@ -21,7 +22,7 @@ MODELS["floating_body"] = Path(__file__).parent / "floating_body.yaml"
 
 def free_motion(name: str, folder: Path, duration: float, rates: dict[str, float]) -> Motion:
     model = load_model(MODELS[name])
-    plant = Plant(model, tuple(default_values(model.parameters).values()), folder)
+    plant = Plant(model, tuple(default_values(model.parameters).values()), Kernels(model, folder, QUANTITIES))
     q = [float(dict(model.configuration).get(c.name, 0)) for c in model.coordinates]
     start = consistent_start(plant, q, [rates.get(c.name, 0.0) for c in model.coordinates])
     times = np.linspace(0, duration, 11).tolist()

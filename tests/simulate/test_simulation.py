@@ -12,7 +12,11 @@ from pathlib import Path
 import pytest
 from shipped import ROOT
 
+from symgen import pipeline
 from symgen.cli import main
+from symgen.emit.c import emit_c
+from symgen.ir.kernel import Program
+from symgen.model.model import Model
 from symgen.simulate.animation import animation
 from symgen.simulate.scene import Scene
 
@@ -74,6 +78,37 @@ def test_a_start_at_a_singularity_is_refused(out: Path, capsys: pytest.CaptureFi
     assert code == 1
     assert "no consistent start" in capsys.readouterr().err
     assert not (out / "locked").exists()
+
+
+def test_kernels_that_verification_rejects_are_not_integrated(
+    out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def wrong(model: Model, program: Program) -> dict[str, str]:
+        return {path: text.replace(" - ", " + ") for path, text in emit_c(model, program).items()}
+
+    monkeypatch.setattr(pipeline, "emit_c", wrong)
+    assert run(str(MODELS / "skate.yaml"), "--duration", "0.1", "--out", str(out)) == 1
+    told = capsys.readouterr().err
+    assert "skate.yaml: not simulated: verification rejects what would be integrated" in told
+    assert "forward_dynamics" in told
+    assert not list(out.iterdir())
+
+
+def test_what_was_verified_is_told(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = ("--duration", "0.1", "--start", "x_dot=1", "--out", str(out))
+    assert main(["simulate", str(MODELS / "skate.yaml"), *options]) == 0
+    assert re.search(r"verified at 64 states, off by [0-9.]+ units of 16", capsys.readouterr().out)
+
+
+def test_without_a_compiler_the_interpreter_runs_what_python_verified(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out: Path
+) -> None:
+    options = ("--duration", "0.2", "--start", "x_dot=1,phi_dot=1")
+    assert run(str(MODELS / "skate.yaml"), *options, "--out", str(out / "c")) == 0
+    monkeypatch.setenv("CC", "")
+    monkeypatch.setenv("PATH", "")
+    assert run(str(MODELS / "skate.yaml"), *options, "--out", str(tmp_path / "interpreted")) == 0
+    assert rows(out / "c", "skate") == rows(tmp_path / "interpreted", "skate")
 
 
 def test_unknown_names_have_a_remedy(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
