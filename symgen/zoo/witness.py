@@ -213,6 +213,8 @@ class Witness:
         if "preload" in block:
             along = internal_force(at, weights)
             u = [x + values["preload"] * z for x, z in zip(u, along, strict=True)]
+        # where the inputs reach nothing, u is a plain 0
+        u = [x + 0 * one for x in u]
         return Truth(u, min((*parts.pivots, *pivots), default=1.0))
 
     def _rows_are_known(self) -> bool:
