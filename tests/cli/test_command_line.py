@@ -99,8 +99,9 @@ def test_check_compares_and_writes_nothing(
 
 
 def test_verify_writes_the_certificate_of_what_is_on_disk(
-    asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str], tool: Callable[[str], str]
 ) -> None:
+    tool("cc")
     assert code("verify", SKATE) == 1
     assert "run symgen again" in capsys.readouterr().err
     assert not (tmp_path / "generated/skate/certificate.json").exists()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 import shipped
 
@@ -21,7 +23,8 @@ def verified(flags: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> Certifi
     return verify(model, kernels, c_sources, None, STATES)
 
 
-def test_every_level_gives_the_same_errors(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_level_gives_the_same_errors(monkeypatch: pytest.MonkeyPatch, tool: Callable[[str], str]) -> None:
+    tool("cc")
     usual = compiling.FLAGS
     assert "-O1" in usual
     first = verified(usual, monkeypatch)

@@ -6,6 +6,7 @@ and the headers of Pinocchio and Eigen; mechanisms whose frames are no tree of s
 
 from __future__ import annotations
 
+import atexit
 import subprocess
 import tempfile
 from collections.abc import Sequence
@@ -93,7 +94,10 @@ def _program() -> Path | str:
 
 @lru_cache(maxsize=1)
 def _folder() -> tempfile.TemporaryDirectory[str]:
-    return tempfile.TemporaryDirectory(prefix="symgen-bench-")
+    """The program is built once and goes with this process."""
+    folder = tempfile.TemporaryDirectory(prefix="symgen-bench-")
+    atexit.register(folder.cleanup)
+    return folder
 
 
 class _Tree:
