@@ -18,6 +18,8 @@ from symgen.diagnostics import SymgenBug
 Answer = TypeVar("Answer")
 Receive: TypeAlias = Callable[[], Any]
 _PR_SET_PDEATHSIG = 1  # sys/prctl.h
+# Keeps a pool of threads once it has typeset something: a fork has the pool without its threads, and waits for ever.
+_THREADED = "typst"
 
 
 class Background(Generic[Answer]):
@@ -31,7 +33,7 @@ class Background(Generic[Answer]):
         self._work = work
         self._process = None
         self._messages: list[Any] = []
-        if sys.platform.startswith("linux"):
+        if sys.platform.startswith("linux") and _THREADED not in sys.modules:
             context = multiprocessing.get_context("fork")
             self._pipe, far = context.Pipe()
             self._process = context.Process(target=_child, args=(work, far, self._pipe, os.getpid()), daemon=True)
@@ -59,12 +61,13 @@ class Background(Generic[Answer]):
         """Waits for the end of the work; a fault of it is a SymgenBug with its traceback."""
         if self._process is None:
             waiting = iter(self._messages)
-            return self._work(lambda: next(waiting))
-        try:
-            fault, answer = self._pipe.recv()
-        except EOFError as error:
-            raise SymgenBug("the background process ended without an answer") from error
-        self._process.join()
+            fault, answer = _outcome(self._work, lambda: next(waiting))
+        else:
+            try:
+                fault, answer = self._pipe.recv()
+            except EOFError as error:
+                raise SymgenBug("the background process ended without an answer") from error
+            self._process.join()
         if fault is not None:
             raise SymgenBug(f"in the background process:\n{fault}")
         result: Answer = answer
@@ -87,17 +90,18 @@ def _child(
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_DFL)
-    outcome: tuple[str | None, Answer | None]
+    with contextlib.suppress(EOFError, ConnectionError):
+        pipe.send(_outcome(work, pipe.recv))
+
+
+def _outcome(work: Callable[[Receive], Answer], receive: Receive) -> tuple[str | None, Any]:
+    """The traceback of a fault, or the answer."""
     try:
-        try:
-            outcome = (None, work(pipe.recv))
-        except (EOFError, ConnectionError):
-            return
-        except Exception:
-            outcome = (traceback.format_exc(), None)
-        pipe.send(outcome)
-    except BrokenPipeError:
-        return
+        return None, work(receive)
+    except (EOFError, ConnectionError):
+        raise
+    except Exception:
+        return traceback.format_exc(), None
 
 
 def _end_with(parent: int) -> None:

@@ -29,6 +29,19 @@ with Background(work):
     time.sleep(60)
 """
 
+TYPESET_BEFORE = """
+import typst
+from symgen.background import Background
+
+def work(receive):
+    return len(typst.compile(receive(), format="pdf"))
+
+typst.compile(b"before", format="pdf")
+with Background(work) as background:
+    background.send(b"after")
+    assert background.answer() > 0
+"""
+
 
 def test_messages_go_in_and_the_answer_comes_out() -> None:
     def work(receive: Receive) -> int:
@@ -46,6 +59,10 @@ def test_a_fault_comes_back_with_its_traceback() -> None:
 
     with Background(work) as background, pytest.raises(SymgenBug, match="disk on fire"):
         background.answer()
+
+
+def test_what_was_typeset_before_does_not_keep_the_work_waiting() -> None:
+    subprocess.run([sys.executable, "-c", TYPESET_BEFORE], check=True, timeout=60)
 
 
 @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
