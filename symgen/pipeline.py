@@ -369,12 +369,21 @@ def _notices(draft: Draft, options: Options, certificate: Certificate | None) ->
     """Quantities asked for by name that this model does not have, and what could not be verified."""
     asked = options.outputs or draft.model.outputs
     left_out = {one.quantity for one in draft.left_out}
-    told = [(n, why) for n, why in draft.derivations.absent if n in asked and n not in left_out]
-    absent = [Notice(f"{n} is not generated: {why}") for n, why in told]
+    known = [(n, why) for n, why in draft.derivations.absent if n in asked and n not in left_out]
+    absent = [Notice(f"{n} is not generated: {why}") for n, why in known]
     kernels = {kernel.name for kernel in draft.program.kernels}
     idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
     unverified = () if certificate is None else certificate.notes
-    return (*absent, *_replaced(draft), *_short(draft), *_size(draft, options), *idle, *map(Notice, unverified))
+    told = (*absent, *_replaced(draft), *_short(draft), *_size(draft, options), *idle, *map(Notice, unverified))
+    return (*_renamed(draft.model), *told)
+
+
+def _renamed(model: Model) -> tuple[Notice, ...]:
+    """That files and functions are not called as the model."""
+    if model.c_name == model.name:
+        return ()
+    why = f"`{model.name}` clashes with a header, a library, a macro or what another model's files are called"
+    return (Notice(f"its files and functions are called {model.c_name}: {why}"),)
 
 
 def _replaced(draft: Draft) -> tuple[Notice, ...]:

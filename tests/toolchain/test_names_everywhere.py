@@ -226,6 +226,17 @@ def test_models_live_in_one_program(tool: Callable[[str], str], neighbours: Path
     compiled(tool, compiler, surroundings(neighbours), user)
 
 
+def test_a_model_that_is_called_otherwise_is_told_so(tmp_path: Path) -> None:
+    told = {}
+    for name in ("rob", "rob_f"):
+        (tmp_path / f"{name}.yaml").write_text(places_text(name, words("alpha beta gain share lift push")))
+        result = generate(tmp_path / f"{name}.yaml", Options(parts=("c",), verify=False), lambda _: None)
+        told[name] = [notice.message for notice in result.notices]
+    assert told["rob"] == []
+    (message,) = told["rob_f"]
+    assert "rob_f_model" in message
+
+
 def test_files_of_models_differ_but_for_capitals(neighbours: Path) -> None:
     """A disk without capitals holds `rob` or `Rob`, in folders of their own anyway."""
     stems = {name: {file.stem for file in (neighbours / name / "c").glob("*.h")} for name in SIDE_BY_SIDE}
