@@ -73,7 +73,9 @@ def partials(graph: Graph, node: Scalar) -> tuple[Scalar, ...]:
         case "cosh":
             return (graph.function("sinh", args),)
         case "tanh":
-            return (1 - node * node,)
+            # 1 - tanh^2 loses every digit where tanh is near 1
+            small = graph.function("exp", (-2 * graph.function("abs", args),))
+            return (4 * small / ((1 + small) * (1 + small)),)
         case _:
             raise SymgenBug(f"calculus: no derivative for {node.op}")
 

@@ -68,3 +68,15 @@ def test_a_ratio_stands_still_where_it_is_set_to_zero() -> None:
     assert slopes({"x": 3.0, "y": 0.0}) == [0.0, 0.0]
     assert slopes({"x": 3.0, "y": 2.0}) == pytest.approx([1.5, -2.25])
     assert all(map(math.isfinite, slopes({"x": 0.0, "y": 0.0})))
+
+
+@pytest.mark.parametrize("place", [-800.0, -30.0, -2.5, 0.0, 2.5, 18.0, 30.0, 800.0])
+def test_the_slope_of_tanh_keeps_its_digits(place: float) -> None:
+    graph = Graph()
+    (slope,) = gradient(graph, made(graph, "tanh"), [graph.symbol("x")])
+    (curve,) = gradient(graph, slope, [graph.symbol("x")])
+    # in powers of e^(-2|x|), which do not overflow
+    small = math.exp(-2 * abs(place))
+    expected = 4 * small / (1 + small) ** 2
+    assert value(slope, x=place) == pytest.approx(expected, rel=1e-13)
+    assert value(curve, x=place) == pytest.approx(-2 * math.tanh(place) * expected, rel=1e-13)
