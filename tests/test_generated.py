@@ -26,11 +26,14 @@ def test_generated_files_are_current(path: Path) -> None:
     costlier = grown(result.model.name, recorded, json.loads(result.files["derivation.json"]))
     assert not costlier, "kernels grew beyond the counts of derivation.json:\n" + "\n".join(costlier)
     assert compare(folder, result.files) == (), "run `make generated` and look at the change"
+    found = {path.relative_to(folder).as_posix() for path in outputs() if folder in path.parents}
+    assert found <= set(result.files), "remove what is no longer generated"
 
 
 def outputs() -> list[Path]:
     """The files but those of measurements, which git ignores."""
-    return [path for path in (ROOT / "generated").rglob("*") if path.is_file() and not is_measured(path.name)]
+    paths = (path for path in (ROOT / "generated").rglob("*") if "__pycache__" not in path.parts)
+    return [path for path in paths if path.is_file() and not is_measured(path.name)]
 
 
 def test_every_folder_has_its_model() -> None:
