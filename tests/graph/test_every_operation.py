@@ -10,7 +10,7 @@ import pytest
 
 from symgen.dynamics.guards import magnitude
 from symgen.graph.calculus import derivative_along, gradient
-from symgen.graph.evaluate import Evaluator
+from symgen.graph.evaluate import FUNCTIONS, Evaluator
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import rebuild
 from symgen.ir.kernel import OperationName
@@ -21,7 +21,9 @@ STEP = 1e-6
 
 
 def operations() -> list[str]:
-    return sorted({name for op in get_args(OperationName) for name in (("sin", "cos") if op == "sincos" else (op,))})
+    """Those of kernels, and those of graphs that are no statements."""
+    kernels = {name for op in get_args(OperationName) for name in (("sin", "cos") if op == "sincos" else (op,))}
+    return sorted(kernels | set(FUNCTIONS))
 
 
 def made(graph: Graph, op: str) -> Scalar:
