@@ -23,6 +23,7 @@ LONGEST_SECONDS = 20.0
 REGULAR = 1e-3
 SAMPLING_BITS = 128
 DRIFT = 1e-3
+REST = 1e-25
 TYPICAL_POINTS = 8
 
 
@@ -127,7 +128,7 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
         if q is None or exceeds(system, reference.ranks, q, exact, literals):
             continue
         in_range = _in_ranges(reference, q)
-        place = [float(x) for x in q]
+        place = _settled(q, [c.range for c in reference.model.coordinates])
         # what lies outside is rarely needed
         needed = _measured(reference) if in_range else ()
         regular = _regular(reference, place, parameters, typical, least, kept[in_range], generator, needed)
@@ -266,7 +267,10 @@ def _sample(reference: Reference, quantities: Sequence[str], regular: _Regular) 
         if missing := [name for name in _measured(reference) if name not in values]:
             values = values | _values(reference, state, missing)
         if regular.admissible:
-            state = replace(state, qd=values["admissible_velocity"], qdd=values["admissible_acceleration"])
+            coordinates = reference.model.coordinates
+            rates = _settled(values["admissible_velocity"], [c.rate_range for c in coordinates])
+            accelerations = _settled(values["admissible_acceleration"], [c.acceleration_range for c in coordinates])
+            state = replace(state, qd=tuple(rates), qdd=tuple(accelerations))
         if regular.shares:
             scale = 2 * max(1.0, *(abs(x) for x in values["inverse_dynamics"]))
             state = replace(state, u=tuple(scale * share for share in regular.shares))
@@ -277,6 +281,12 @@ def _sample(reference: Reference, quantities: Sequence[str], regular: _Regular) 
         return None
     first, second = values["singularity"]
     return Sample(state, regular.admissible, (first, second))
+
+
+def _settled(values: Sequence[Any], ranges: Sequence[tuple[Any, Any]]) -> list[float]:
+    """Floats, with 0 for what searches and projections leave of it: squares of such rests underflow in float32."""
+    pairs = zip(map(float, values), ranges, strict=True)
+    return [0.0 if abs(x) < REST * float(high - low) else x for x, (low, high) in pairs]
 
 
 def _floats(matrix: Any) -> tuple[float, ...]:

@@ -99,3 +99,31 @@ def test_the_mean_over_subsets_of_rows_is_found_without_them() -> None:
                     entries[i][j] = entry
             mean += arb_mat(5, 6, [entry for row in entries for entry in row])
         assert norm(right_pseudoinverse(matrix, 3) - mean * (1 / total)) < 1e-40
+
+
+GUIDES = """\
+model: drawer_on_two_rails
+joints: {drawer: {type: planar, coordinates: [x, y, tilt]}}
+bodies: {drawer: {mass: 4, com: [0.1, 0, 0], inertia: {zz: 0.3}}}
+gravity: [0, -9.81, 0]
+frames:
+  left: {parent: drawer, translation: [0.1, 0.2, 0]}
+  right: {parent: drawer, translation: [0.1, -0.2, 0]}
+  left_rail: {translation: [0, 0.2, 0]}
+  right_rail: {translation: [0, -0.2, 0]}
+loops:
+  one: {type: prismatic, axis: x, between: [left, left_rail]}
+  two: {type: prismatic, axis: x, between: [right, right_rail]}
+inputs: {pull: {unit: N, joint: x}}
+configuration: {tilt: 0.01}
+"""
+
+
+def test_what_a_search_leaves_of_coordinates_and_rates_that_are_held_is_nothing() -> None:
+    reference = Reference(load_text(GUIDES, "drawer.yaml"))
+    assert reference.ranks.constraints == 2
+    for sample in sample_states(reference, ["forward_dynamics"], 8):
+        _, y, tilt = sample.state.q
+        assert y == tilt == 0
+        if sample.admissible:
+            assert sample.state.qd[1:] == sample.state.qdd[1:] == (0, 0)
