@@ -67,8 +67,10 @@ def _quantities(mechanics: Mechanics, generic: Genericity, space: NullSpace, nam
     found: tuple[Derived, ...] = ()
     if motion_name := _motion_name(generic, space, name):
         # equal functions are one node of a graph: what a form does not need must not be on it
-        inertia = Derivation(mechanics, generic, space).inertia if motion_name == "nullspace" else None
-        found = _of_motion(generic, motion(motion_name, mechanics, space, inertia))
+        derivation = Derivation(mechanics, generic, space)
+        own = motion_name in ("schur_qr", "minor", "nullspace")
+        made = derivation.motion(motion_name) if own else motion(motion_name, mechanics, space)
+        found = _of_motion(generic, made)
     if r and name in ("minor", "householder"):
         found += (Derived("nullspace_projector", (n, n), flatten(space.projector), space.guards),)
     return found
@@ -86,6 +88,6 @@ def _motion_name(generic: Genericity, space: NullSpace, name: str) -> MotionName
     if known is None or (known == "minor" and known not in candidates(generic, space)):
         return None
     # the others need independent rows, or any rows at all
-    if generic.rank < generic.r and known not in ("nullspace", "shifted"):
+    if generic.rank < generic.r and known not in ("schur_qr", "nullspace", "shifted"):
         return None
     return None if generic.r == 0 and known in ("nullspace", "shifted") else known

@@ -111,24 +111,25 @@ class Derivation:
             if self.generic.rank == self.r and few_minors(self.generic):
                 # where the constraints carry a load, what is left of it along a motion cancels in the minors only
                 names = ("minor", *names)
-        return {name: self._motion(name) for name in names}
+        return {name: self.motion(name) for name in names}
 
-    def _motion(self, name: MotionName) -> Motion:
-        """One form; `schur_qr` is worked out in absolute angles, in which G keeps the inertias of bodies apart.
+    def motion(self, name: MotionName) -> Motion:
+        """One form; `schur_qr` and `minor` are worked out in absolute angles.
 
-        It is so on a graph of its own and brought here as it stands: all it computes is rational, and beside minors
-        equal functions of these would take the place of its steps.
+        There G keeps the inertias of bodies apart, and a crank does not feel what the links behind it carry.  They are
+        so on a graph of their own and brought here as they stand: beside each other equal functions are one node.
         """
-        if name != "schur_qr":
+        if name not in ("schur_qr", "minor"):
             return motion(name, self.mechanics, self.space, self.inertia)
-        own = self.mechanics
+        own, rank = self.mechanics, self.generic.rank
         apart = own.apart() if own.change is not None else in_absolute_angles(own.model) or own.apart()
-        made = schur_qr(Problem(apart, ()))
+        problem = Problem(apart, ())
+        made = schur_qr(problem, rank) if name == "schur_qr" else minor_motion(problem).motion
         # symbols of absolute angles stay where these are the coordinates of this derivation
-        back = apart if own.change is None else None
-        made = motion_brought_back(self.graph, back, made)
-        ranks = self.space.guards if self.r <= LONGEST_PRODUCT else ()
-        return replace(made, guards=(*ranks, *made.guards), name=name)
+        made = motion_brought_back(self.graph, apart if own.change is None else None, made)
+        # `schur_qr` measures ranks itself where rows are many, or depend on each other
+        measured = name == "schur_qr" and self.r > min(rank, LONGEST_PRODUCT)
+        return replace(made, guards=(*(() if measured else self.space.guards), *made.guards), name=name)
 
     @cached_property
     def acceleration(self) -> Motion:

@@ -91,15 +91,18 @@ class RowForms:
         self.forms = [wedge_all(unit(graph), [rows[k] for k in subset]) for subset in self.subsets]
         self.square = graph.sum(square(graph, form) for form in self.forms)
 
-    def beside_their_lengths(self, squares: Sequence[Scalar]) -> Scalar:
-        """The sum of |omega_I|^2 / prod |b_k|^2 from the `squares` of the rows' lengths; a row of zeros adds nothing.
+    def at_one_length(self, squares: Sequence[Scalar]) -> Scalar:
+        """The sum of |omega_I|^2 with the lengths of the rows left out, by their `squares`; at most prod |b_k|^2 C.
 
         Where one long row follows from others, what the sum of |omega_I|^2 is of its own bound says nothing of ranks.
         """
-        graph = self.graph
-        lengths = (graph.product(squares[k] for k in subset) for subset in self.subsets)
-        pairs = zip((square(graph, form) for form in self.forms), lengths, strict=True)
-        return graph.sum(graph.function("ratio_or_zero", pair) for pair in pairs)
+        terms = zip((square(self.graph, form) for form in self.forms), self.lengths_left_out(squares), strict=True)
+        return self.graph.sum(a * b for a, b in terms)
+
+    def lengths_left_out(self, squares: Sequence[Scalar]) -> list[Scalar]:
+        """For each row subset the product of the squared lengths of the other rows."""
+        every = range(len(self.rows))
+        return [self.graph.product(squares[k] for k in every if k not in subset) for subset in self.subsets]
 
     @property
     def minors(self) -> frozenset[Scalar]:
@@ -198,10 +201,9 @@ class ActuationForms:
             for subset, product in zip(self.subsets, family, strict=True)
         )
 
-    def beside_rows(self, squares: Sequence[Scalar]) -> Scalar:
-        """The same with the rows' own lengths taken out of each row subset's share, by their `squares`."""
+    def at_one_length(self, squares: Sequence[Scalar]) -> Scalar:
+        """The same with the lengths of the rows left out of each row subset, by their `squares`."""
         graph = self.graph
-        lengths = (graph.product(squares[k] for k in subset) for subset in self.rows.subsets)
         shares = (
             graph.sum(
                 square(graph, product) * self.importance(subset)
@@ -209,7 +211,7 @@ class ActuationForms:
             )
             for family in self.products
         )
-        return graph.sum(graph.function("ratio_or_zero", pair) for pair in zip(shares, lengths, strict=True))
+        return graph.sum(a * b for a, b in zip(shares, self.rows.lengths_left_out(squares), strict=True))
 
     def denominator(self) -> Scalar:
         """Delta itself when `single`, else the sum of squares."""

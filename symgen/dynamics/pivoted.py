@@ -1,8 +1,9 @@
 """The null space of B where rows depend on each other: Householder reflections that pivot by arithmetic.
 
-rho reflections, rho = the generic rank, each towards the row that is longest beside the directions already taken
-(Golub and Van Loan, 5.4; the selection is a product with 0 or 1 made by copysign, hence the same code for every
-state).  A fixed choice of rows would be a parametrisation; this one follows the configuration.  What is left of the
+rho reflections, rho = the generic rank, each towards the row of which most of its own length is left beside the
+directions already taken (Golub and Van Loan, 5.4; the selection is a product with 0 or 1 made by copysign, hence the
+same code for every state).  What rounding leaves of a long row that follows from others may be longer than a short row
+of its own.  A fixed choice of rows would be a parametrisation; this one follows the configuration.  What is left of the
 other rows, zero on V and of the size of the drift beside it, is dropped.  With B = L Q_1^T, L of full column rank,
 B^+ = Q_1 L^+ comes from a second factorisation, of L (complete orthogonal decomposition).
 """
@@ -32,7 +33,8 @@ class PivotedReflections(Reflections):
         squares = [dot(graph, row, row) for row in rows]
         self.lengths: list[Scalar] = []
         for k in range(rank):
-            chosen = _longest(graph, [dot(graph, row[k:], row[k:]) for row in remaining])
+            left = [dot(graph, row[k:], row[k:]) for row in remaining]
+            chosen = longest(graph, [graph.function("ratio_or_zero", pair) for pair in zip(left, squares, strict=True)])
             pairs = list(zip(chosen, remaining, strict=True))
             tail = tuple(graph.sum(c * row[i] for c, row in pairs) for i in range(k, n))
             self.lengths.append(graph.sum(c * square for c, square in zip(chosen, squares, strict=True)))
@@ -57,7 +59,7 @@ class PivotedReflections(Reflections):
         self.pivots.append(squared)
 
 
-def _longest(graph: Graph, sizes: Sequence[Scalar]) -> list[Scalar]:
+def longest(graph: Graph, sizes: Sequence[Scalar]) -> list[Scalar]:
     """1 for the largest of the sizes, the last one where several are equal, 0 for the others."""
     best = sizes[0]
     wins = [graph.one]

@@ -39,7 +39,8 @@ def solvable(
         graph.product(squares[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
     )
     if isinstance(space, MinorSpace) and generic.rank < len(space.rows):
-        return (Guard(status, forms.beside_rows(space.squares), 2, space.guards, scale),)
+        scale = scale * graph.product(space.lengths)
+        return (Guard(status, forms.at_one_length(space.lengths), 2, space.guards, scale),)
     if isinstance(space, MinorSpace):
         lengths = [_square(mechanics, row) for row in mechanics.constraint_jacobian]
         scale = scale * elementary_symmetric(graph, lengths, generic.rank)

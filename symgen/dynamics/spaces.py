@@ -7,6 +7,7 @@ symmetrically, the reflections take the rows as they come.  The reflections need
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from functools import cached_property
 from typing import Protocol
 
@@ -20,6 +21,8 @@ from symgen.ir.kernel import Status
 MINOR_LIMIT = 300
 # Up to this many squared pivots are multiplied as they are.
 LONGEST_PRODUCT = 6
+# Of the squared lengths of all rows together, what one of them is taken for at least: 1e-6 of their length.
+VANISHING = Fraction(1, 2**40)
 
 
 class NullSpace(Protocol):
@@ -86,14 +89,20 @@ class MinorSpace:
         if self.rank == 0:
             return ()
         if self.rank < len(self.rows):
-            measure = self.forms.beside_their_lengths(self.squares)
-            return (Guard(Status.CONSTRAINT_RANK, measure, 2, scale=self.graph.one),)
+            measure, bound = self.forms.at_one_length(self.lengths), self.graph.product(self.lengths)
+            return (Guard(Status.CONSTRAINT_RANK, measure, 2, scale=bound),)
         return (Guard(Status.CONSTRAINT_RANK, self.forms.square, 2, scale=self.size),)
 
     @cached_property
     def squares(self) -> list[Scalar]:
         """The squared lengths of the rows."""
         return [dot(self.graph, row, row) for row in self.rows]
+
+    @cached_property
+    def lengths(self) -> list[Scalar]:
+        """The same of rows that depend on each other, none of them 0: one that vanishes is missed by nothing."""
+        least = self.graph.sum(self.squares) * VANISHING
+        return [square + least for square in self.squares]
 
     @cached_property
     def size(self) -> Scalar:

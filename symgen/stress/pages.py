@@ -52,12 +52,21 @@ CLAIM = """## The paper's claim
 A formulation in chosen coordinates, or with a chosen partition of the inputs, loses its digits near the singularities
 of the choice, where nothing happens to the mechanism. The generated kernels make no choice.
 """
+RULE = """## The rule of statuses
+
+Status 0 means within 16 units, and a status means that a measure is below its threshold: of the ranks of B and of the
+inputs along the constraints, with rows of length 1, in the model's coordinates and in such as have equal inertias, or
+of the mass matrix along the constraints in these. Every model is taken towards each of its singular sets in half
+decades down to 1e-15, and each of its masses and lengths, and all of them at random, up to nine decades from what they
+are.
+
+"""
 
 
 def page(results: Sequence[str], charts: Mapping[str, Sequence[str]]) -> str:
     """The Markdown text; `results` are the texts of stress.json, `charts` the file names by model."""
     loaded = [json.loads(text) for text in results]
-    parts = [HEAD, CLAIM, *_claim(charts), _overview(loaded)]
+    parts = [HEAD, CLAIM, *_claim(charts), _overview(loaded), _rule(loaded)]
     for result in loaded:
         parts += _model(result, charts.get(result["model"], ()))
     return "\n".join(parts)
@@ -83,6 +92,22 @@ def _overview(results: Sequence[Mapping[str, Any]]) -> str:
         rows.append(cells)
     title = "## symgen's largest error, in units (16 are allowed), and of which quantity\n\n"
     return title + _table(["model", *kinds], rows)
+
+
+def _rule(results: Sequence[Mapping[str, Any]]) -> str:
+    """What was counted of the rule of statuses, of each model and scalar type."""
+    rows = []
+    for result in results:
+        for held in result.get("rule", ()):
+            counts = (held["states"], held["answered"], held["beyond"], held["states"] - held["answered"])
+            rows.append([
+                result["model"], SYMBOLS[held["quantity"]], held["scalar"], *map(str, counts),
+                str(held["unexplained"]), f"{_finite(held['largest']):.2g}",
+            ])
+    if not rows:
+        return ""
+    head = ["model", "", "", "states", "status 0", "beyond 16 units", "statuses", "unexplained", "largest, in units"]
+    return RULE + _table(head, rows)
 
 
 def _model(result: Mapping[str, Any], charts: Sequence[str]) -> list[str]:

@@ -59,6 +59,18 @@ class Held:
         """How many states have another status than 0."""
         return self.states - self.answered
 
+    def to_json(self) -> dict[str, Any]:
+        """The counts."""
+        return {
+            "quantity": self.quantity,
+            "scalar": self.scalar,
+            "states": self.states,
+            "answered": self.answered,
+            "largest": self.largest,
+            "beyond": len(self.beyond),
+            "unexplained": len(self.unexplained),
+        }
+
 
 def held_to_the_rule(
     model: Model,
@@ -78,24 +90,48 @@ def held_to_the_rule(
     kernels = Kernels(model, folder, quantities)
     found = search(reference) if searched is None else searched
     pushed = chain(towards_singular_sets(found, closest), far_apart(reference, states, decades))
-    return counted(reference, kernels, pushed, progress)
+    return counted(reference, kernels, pushed, quantities, progress)
 
 
 def counted(
-    reference: Reference, kernels: Kernels, pushed: Iterable[Pushed], progress: Callable[[str], None] = lambda _: None
+    reference: Reference,
+    kernels: Kernels,
+    pushed: Iterable[Pushed],
+    quantities: Sequence[str] = STRESSED,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Held, ...]:
-    """The rule at given states."""
-    counts = {(name, scalar): _Count() for scalar in SCALARS for name in kernels.names}
+    """The rule at given states, for those of the quantities that there are kernels of."""
+    names = tuple(name for name in quantities if name in kernels.names)
+    counts = {(name, scalar): _Count() for scalar in SCALARS for name in names}
     measures = ScaledMeasures(reference)
     for one in pushed:
         progress(one.where)
         for scalar in SCALARS:
-            for name, case in _cases(reference, kernels, measures, one, scalar):
+            for name, case in _cases(reference, kernels, names, measures, one, scalar):
                 counts[name, scalar].add(case)
     return tuple(
         Held(name, scalar, c.states, c.answered, c.largest, tuple(c.beyond), tuple(c.unexplained))
         for (name, scalar), c in counts.items()
     )
+
+
+def breaches(held: Sequence[Held]) -> tuple[str, ...]:
+    """In words, what breaks the rule worst in each kernel."""
+    found = []
+    for one in held:
+        if one.beyond:
+            worst = max(one.beyond, key=lambda case: case.units)
+            found.append(
+                f"{one.quantity}, {one.scalar}: {len(one.beyond)} of {one.answered} results of status 0 are beyond the "
+                f"tolerance, at most {worst.units:.2g} units: {worst.where}"
+            )
+        if one.unexplained:
+            case = one.unexplained[0]
+            found.append(
+                f"{one.quantity}, {one.scalar}: {len(one.unexplained)} of {one.states} states have a status while no "
+                f"measure is below its threshold, as status {case.status}: {case.where}"
+            )
+    return tuple(found)
 
 
 class _Count:
@@ -117,14 +153,19 @@ class _Count:
 
 
 def _cases(
-    reference: Reference, kernels: Kernels, measures: ScaledMeasures, pushed: Pushed, scalar: Scalar
+    reference: Reference,
+    kernels: Kernels,
+    names: Sequence[str],
+    measures: ScaledMeasures,
+    pushed: Pushed,
+    scalar: Scalar,
 ) -> Iterator[tuple[str, Case]]:
     state = rounded_state(pushed.state, scalar)
     if not all(map(math.isfinite, (*state.q, *state.qd, *state.qdd, *state.u, *state.parameters))):
         return
-    outcomes = {name: kernels.run(name, state, scalar) for name in kernels.names}
+    outcomes = {name: kernels.run(name, state, scalar) for name in names}
     seed = f"{scalar} {pushed.where}"
-    expected = _expected(reference, state, kernels.names, scalar, seed)
+    expected = _expected(reference, state, names, scalar, seed)
     known = measures.at(state) if any(outcome.status for outcome in outcomes.values()) else {}
     for name, outcome in outcomes.items():
         one = expected.get(name)

@@ -7,6 +7,7 @@ import math
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from symgen.stress.kernels import STRESSED, Kernels
 from symgen.stress.long_run import Run, complaints, long_runs
 from symgen.stress.odd_numbers import OddNumbers, odd_numbers
 from symgen.stress.redundant import with_redundant_row
+from symgen.stress.rule import Held, breaches, counted
+from symgen.stress.rule_states import far_apart, towards_singular_sets
 from symgen.stress.scaling import Scaled, scaling
 from symgen.stress.series import Series
 from symgen.stress.sweep import StatusCount, Sweep, Sweeper
@@ -42,6 +45,7 @@ class Stress:
     odd: tuple[OddNumbers, ...]
     runs: tuple[Run, ...]
     no_run: str
+    rule: tuple[Held, ...]
     failures: tuple[str, ...]
     limits: tuple[str, ...]
 
@@ -82,6 +86,7 @@ class Stress:
             "odd_numbers": [asdict(one) for one in self.odd],
             "long_runs": [_plain(asdict(run)) for run in self.runs],
             "no_long_run": self.no_run,
+            "rule": [_plain(held.to_json()) for held in self.rule],
         }
 
 
@@ -107,6 +112,9 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
             progress("near-redundant constraints")
             searched, more = _near_redundant(twin, searched, folder / "redundant")
             swept = swept.joined(more)
+        progress("statuses")
+        pushed = chain(towards_singular_sets(searched), far_apart(reference))
+        rule = counted(reference, kernels, pushed, STRESSED)
         progress("other units")
         scaled, wrong_units = scaling(reference, kernels, folder)
         progress("odd numbers")
@@ -130,8 +138,9 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
         odd=odd,
         runs=runs,
         no_run=no_run,
+        rule=rule,
         failures=(*swept.failures, *wrong_units, *wrong_numbers, *complaints(runs)),
-        limits=(*swept.limits, *forms.left_out),
+        limits=(*swept.limits, *breaches(rule), *forms.left_out),
     )
 
 

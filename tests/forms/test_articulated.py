@@ -108,7 +108,7 @@ def compared(model: Model) -> float:
     assert found is not None
     seen, motion = found
     mechanics = Mechanics(model)
-    dense = schur_qr(Problem(mechanics, ()))
+    dense = schur_qr(Problem(mechanics, ()), mechanics.r)
     one = Evaluator([*motion.accelerations, *motion.multipliers])
     other = Evaluator([*dense.accelerations, *dense.multipliers])
     source = random.Random(model.name)

@@ -15,7 +15,7 @@ from symgen.verify.reference_system import default_parameters
 BITS = 256
 
 
-def wheels(name: str, rows: dict[str, str], extra: str = "") -> Model:
+def wheels(name: str, rows: dict[str, str], parameters: str = "") -> Model:
     """A plate on a ramp with wheels that steer by p and s; `rows` are what the wheels ask of the rates."""
     lines = "\n".join(f"    {label}: {row}" for label, row in rows.items())
     return load_text(
@@ -30,6 +30,7 @@ parameters:
   mu: {{value: 3, unit: kg, range: [1, 5]}}
   I_p: {{value: 0.7, unit: kg*m**2, range: [0.1, 1]}}
   I_s: {{value: 0.2, unit: kg*m**2, range: [0.1, 1]}}
+  {parameters}
 kinetic_energy: mu/2*(e_dot**2 + h_dot**2) + I_p/2*p_dot**2 + I_s/2*(p_dot + s_dot)**2
 potential_energy: mu*9.81*(e/3 + h/7)
 constraints:
@@ -38,7 +39,6 @@ constraints:
 inputs:
   drive: {{unit: N, acts_on: {{e: 1, h: 0.4}}}}
   turn: {{unit: N*m, acts_on: {{s: 1}}}}
-{extra}
 """,
         name,
     )

@@ -39,7 +39,7 @@ def candidates(generic: Genericity, space: NullSpace) -> tuple[MotionName, ...]:
     if generic.r == 0:
         return ("minor", "schur_qr") if by_minors else ("schur_qr",)
     if generic.rank < generic.r:
-        return ("nullspace",)
+        return ("schur_qr", "nullspace")
     return ("minor", "schur_qr") if by_minors else ("schur_qr", "nullspace")
 
 
@@ -88,7 +88,7 @@ def _motion(name: MotionName, problem: Problem, space: NullSpace, inertia: Const
         case "minor":
             return inertia.motion if isinstance(inertia, MinorMotion) else minor_motion(problem).motion
         case "schur_qr":
-            return schur_qr(problem)
+            return schur_qr(problem, problem.n - space.delta)
         case "schur_ldl":
             return schur_ldl(problem)
         case "nullspace":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.dynamics.forms.motion import Motion, Problem
-from symgen.dynamics.forms.refinement import refined
+from symgen.dynamics.forms.refinement import of_motion, refined
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.inertia import Cholesky, ConstrainedInertia, diagonal_sizes
 from symgen.dynamics.spaces import NullSpace, Reflections
@@ -26,8 +26,10 @@ def nullspace(problem: Problem, space: NullSpace, inertia: ConstrainedInertia) -
         q_ddot = tuple(x + y for x, y in zip(along, lifted, strict=True))
         return q_ddot, _reactions(problem, space, f, q_ddot)
 
-    solution = solve(problem.force, tuple(-a for a in problem.bias))
-    accelerations, multipliers = refined(problem, solution, solve)
+    asked = tuple(-a for a in problem.bias)
+    first = solve(problem.force, asked)
+    left_over = of_motion(problem.graph, problem.mass_matrix, problem.rows, problem.force, asked)
+    accelerations, multipliers = refined(problem.graph, first, left_over, solve)
     return Motion(accelerations, multipliers, (*space.guards, *_own(space, inertia)))
 
 

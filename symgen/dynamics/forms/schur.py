@@ -3,27 +3,22 @@
 With A = L^-1 B^T the system G q_ddot + B^T lambda = f, B q_ddot = -a becomes x + A lambda = L^-1 f, A^T D^-1 x = -a
 for x = D L^T q_ddot.  `schur_qr` factorises A = V R with columns of V that are orthogonal in the metric D^-1, so that
 the squared condition number of A^T D^-1 A is never met; `schur_ldl` forms that matrix, which is shorter and loses it
-(Golub and Van Loan, Matrix Computations, 4.1 and 5.2; Bjorck, Numerical Methods for Least Squares Problems, 2.4 and
-4.4).
-
-A = V R comes by the modified Gram-Schmidt process, not by reflections: where masses are far apart the rows of A are of
-very different size, and reflections mix them unless they are sorted.  Here each entry changes by a multiple of the
-entry of the column that is taken out, in its own row.
+(Golub and Van Loan, Matrix Computations, 4.1 and 5.2).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from symgen.dynamics.forms.motion import Motion, Problem
-from symgen.dynamics.forms.refinement import refined
+from symgen.dynamics.forms.orthogonal import PivotedGramSchmidt, WeightedGramSchmidt
+from symgen.dynamics.forms.refinement import Solution, less_forces, missing, of_columns, refined
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.inertia import Cholesky, diagonal_sizes
 from symgen.dynamics.spaces import LONGEST_PRODUCT
-from symgen.graph.matrix import Matrix, Vector, dot
+from symgen.graph.matrix import Matrix, Vector, dot, subtract_vectors
 from symgen.graph.scalar import Graph, Scalar
-from symgen.ir.kernel import Status
 
 
 class Factor(Protocol):
@@ -44,47 +39,87 @@ class Factor(Protocol):
         """The solution of L^T x = b."""
 
 
-def schur_qr(problem: Problem) -> Motion:
-    """By A = V R, with one step of refinement: valid wherever G is positive definite and B has full rank.
+def schur_qr(problem: Problem, rank: int) -> Motion:
+    """By A = V R: valid wherever G is positive definite and B has its generic `rank`."""
+    graph, force = problem.graph, problem.force
+    factor = OrderedCholesky(graph, problem.mass_matrix)
+    elimination = _Elimination(problem, factor, [factor.lowered(row) for row in problem.rows], rank)
+    rows = elimination.rows
 
-    Where masses are far apart the lightest ones decide, in the metric of G^-1, on what the others are lost beside; what
-    the equations still ask for is solved for once more (Higham, Accuracy and Stability of Numerical Algorithms, 12.2).
-    """
-    g = problem.mass_matrix
-    factor = Cholesky(problem.graph, g, diagonal_sizes(problem.graph, g))
-    elimination = _Elimination(problem, factor, [factor.lowered(row) for row in problem.rows])
-    solution = elimination.solve(problem.force, tuple(-a for a in problem.bias))
-    if problem.r:
-        solution = refined(problem, solution, elimination.solve)
-    return Motion(*solution, elimination.guards)
+    def left_over(x: Vector, multipliers: Vector) -> Solution:
+        # by L and D, because an inner entry of G has lost what it holds of light bodies; by B, because its columns may
+        # be of very different size, which L^-1 mixes
+        forces = subtract_vectors(factor.lowered(less_forces(graph, force, rows, multipliers)), x)
+        return forces, missing(graph, rows, elimination.asked, elimination.accelerations(x))
+
+    return elimination.motion(factor.lowered(force), left_over)
 
 
 def along_factor(problem: Problem, factor: Factor, columns: Sequence[Vector], force: Vector) -> Motion:
-    """The same without refinement for any factor of G; `columns` are those of A, `force` is L^-1 f."""
-    elimination = _Elimination(problem, factor, columns)
-    accelerations, multipliers = elimination.solve_lowered(force, tuple(-a for a in problem.bias))
-    return Motion(accelerations, multipliers, elimination.guards)
+    """The same for any factor of G; `columns` are those of A, `force` is L^-1 f."""
+    elimination = _Elimination(problem, factor, columns, problem.r)
+    return elimination.motion(
+        force, of_columns(problem.graph, columns, elimination.weights, force, elimination.asked)
+    )
 
 
 class _Elimination:
-    """G q_ddot + B^T lambda = f, B q_ddot = c for any f and c."""
+    """x + A lambda = L^-1 f, A^T D^-1 x = -a, refined once."""
 
-    def __init__(self, problem: Problem, factor: Factor, columns: Sequence[Vector]) -> None:
-        self._factor = factor
-        self._weights = tuple(1 / pivot for pivot in factor.pivots)
-        self._orthogonal = WeightedGramSchmidt(problem.graph, columns, self._weights)
-        # with many rows the rank of B is measured where they are made orthogonal anyway
-        regular = (self._orthogonal.regularity(),) if problem.r > LONGEST_PRODUCT else problem.guards
-        self.guards = (*regular, *factor.guards)
+    def __init__(self, problem: Problem, factor: Factor, columns: Sequence[Vector], rank: int) -> None:
+        graph, r = problem.graph, problem.r
+        self._graph, self._r, self._factor = graph, r, factor
+        self.weights: Vector = tuple(1 / pivot for pivot in factor.pivots)
+        self._orthogonal = (
+            WeightedGramSchmidt(graph, columns, self.weights)
+            if rank == r
+            else PivotedGramSchmidt(graph, columns, self.weights, rank)
+        )
+        self._all_rows = problem.rows
+        self.rows = self._orthogonal.chosen(problem.rows)
+        self.asked = self._orthogonal.asked(tuple(-a for a in problem.bias))
+        # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
+        regular = (self._orthogonal.regularity(),) if r > min(rank, LONGEST_PRODUCT) else problem.guards
+        self._guards = (*regular, *factor.guards)
 
-    def solve(self, f: Vector, c: Vector) -> tuple[Vector, Vector]:
-        """q_ddot and lambda."""
-        return self.solve_lowered(self._factor.lowered(f), c)
+    def accelerations(self, x: Vector) -> Vector:
+        """q_ddot of x = D L^T q_ddot."""
+        return self._factor.raised(tuple(entry * weight for entry, weight in zip(x, self.weights, strict=True)))
 
-    def solve_lowered(self, force: Vector, c: Vector) -> tuple[Vector, Vector]:
-        """q_ddot and lambda from L^-1 f."""
-        x, multipliers = self._orthogonal.solve(force, c)
-        return self._factor.raised(tuple(y * w for y, w in zip(x, self._weights, strict=True))), multipliers
+    def motion(self, force: Vector, left_over: Callable[[Vector, Vector], Solution]) -> Motion:
+        """q_ddot and lambda for L^-1 f; `left_over` is what a solution leaves of the right-hand sides."""
+        solution = self._orthogonal.solve(force, self.asked)
+        if self._r:
+            solution = refined(self._graph, solution, left_over, self._orthogonal.solve)
+        x, multipliers = solution
+        if isinstance(self._orthogonal, PivotedGramSchmidt):
+            multipliers = self._orthogonal.of_all(self._all_rows, multipliers)
+        return Motion(self.accelerations(x), multipliers, self._guards)
+
+
+class OrderedCholesky:
+    """G = L D L^T from the coordinates that carry least to those that carry most: outer links before inner ones.
+
+    What an inner coordinate holds of the outer ones is taken off again as it stands, and exactly where nothing else is
+    in between; the other way round the pivot of a light link is a difference of heavy ones.
+    """
+
+    def __init__(self, graph: Graph, mass_matrix: Matrix) -> None:
+        n = len(mass_matrix)
+        self._order = sorted(range(n), key=lambda i: (mass_matrix[i][i].size, -i))
+        turned = tuple(tuple(mass_matrix[i][j] for j in self._order) for i in self._order)
+        self._factor = Cholesky(graph, turned, diagonal_sizes(graph, turned))
+        self.pivots: Sequence[Scalar] = self._factor.pivots
+        self.guards = self._factor.guards
+
+    def lowered(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L y = b."""
+        return self._factor.lowered([b[i] for i in self._order])
+
+    def raised(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L^T x = b."""
+        found = dict(zip(self._order, self._factor.raised(b), strict=True))
+        return tuple(found[i] for i in range(len(self._order)))
 
 
 def schur_ldl(problem: Problem) -> Motion:
@@ -110,65 +145,3 @@ def schur_ldl(problem: Problem) -> Motion:
     ]
     accelerations = factor.raised(tuple(entry * weight for entry, weight in zip(rest, weights, strict=True)))
     return Motion(accelerations, multipliers, (*problem.guards, *factor.guards))
-
-
-class WeightedGramSchmidt:
-    """A = V R by the modified Gram-Schmidt process in the metric (x, y) = sum_i x_i y_i w_i; R has a unit diagonal.
-
-    No roots are taken: V keeps the lengths that are left of the columns.
-    """
-
-    def __init__(self, graph: Graph, columns: Sequence[Vector], weights: Sequence[Scalar]) -> None:
-        self._graph, self._columns, self._metric = graph, columns, weights
-        left = list(columns)
-        self._directions: list[Vector] = []
-        self._weighted: list[Vector] = []
-        self._squares: list[Scalar] = []
-        self._inverses: list[Scalar] = []
-        self._upper: list[list[Scalar]] = [[] for _ in columns]  # column j of R above the diagonal
-        for k, direction in enumerate(left):
-            weighted = tuple(x * w for x, w in zip(direction, weights, strict=True))
-            square = dot(graph, weighted, direction)
-            inverse = 1 / square
-            self._directions.append(direction)
-            self._weighted.append(weighted)
-            self._squares.append(square)
-            self._inverses.append(inverse)
-            for j in range(k + 1, len(left)):
-                share = dot(graph, weighted, left[j]) * inverse
-                self._upper[j].append(share)
-                left[j] = _less(left[j], share, direction)
-
-    def regularity(self) -> Guard:
-        """det(A^T D^-1 A) over the squared lengths of the columns: 0 exactly where columns depend on each other."""
-        graph = self._graph
-        lengths = (graph.sum(x * x * w for x, w in zip(c, self._metric, strict=True)) for c in self._columns)
-        quotients = [square / length for square, length in zip(self._squares, lengths, strict=True)]
-        return Guard(Status.CONSTRAINT_RANK, graph.product(quotients), 2, scale=graph.one)
-
-    def solve(self, b: Vector, c: Sequence[Scalar]) -> tuple[Vector, Vector]:
-        """y and l of y + A l = b, A^T W y = c.
-
-        Components along V are taken out of b one by one, and given back in the opposite order from what is there: what
-        rounding has left of them on the way does not stay (Bjorck and Paige, SIAM J. Matrix Anal. Appl. 15, 1994).
-        """
-        graph, count = self._graph, len(self._directions)
-        asked: list[Scalar] = []  # (V^T W y)_k
-        for k in range(count):
-            asked.append(c[k] - dot(graph, self._upper[k], asked))
-        y, shares = b, list[Scalar]()
-        for k in range(count):
-            along = dot(graph, self._weighted[k], y)
-            y = _less(y, along * self._inverses[k], self._directions[k])
-            shares.append((along - asked[k]) * self._inverses[k])
-        for k in reversed(range(count)):
-            surplus = dot(graph, self._weighted[k], y) - asked[k]
-            y = _less(y, surplus * self._inverses[k], self._directions[k])
-        for k in reversed(range(count)):
-            for i, entry in enumerate(self._upper[k]):
-                shares[i] = shares[i] - entry * shares[k]
-        return y, tuple(shares)
-
-
-def _less(x: Vector, share: Scalar, direction: Vector) -> Vector:
-    return tuple(entry - share * component for entry, component in zip(x, direction, strict=True))

@@ -1,0 +1,111 @@
+"""Status 0 means within the tolerance, and a status that a measure is small: swept towards what is singular."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rows_that_meet import wheels
+
+from symgen.ir.kernel import Scalar
+from symgen.model.load import load_text
+from symgen.model.model import Model
+from symgen.stress.families import search
+from symgen.stress.kernels import SCALARS, STRESSED, Kernels
+from symgen.stress.rule import breaches, counted, held_to_the_rule
+from symgen.stress.rule_states import Pushed, far_apart, towards_singular_sets
+from symgen.verify.compile import Outcome
+from symgen.verify.reference import Reference, State
+
+CASTORS = {
+    "front": "cos(p)*e_dot + sin(p)*h_dot + reach*p_dot",
+    "rear": "sin(s)*h_dot - cos(s)*e_dot + trail*sin(p)*s_dot",
+}
+LENGTHS = """reach: {value: 0.4, unit: m, range: [0.1, 1]}
+  trail: {value: 0.25, unit: m, range: [0.1, 1]}"""
+
+CRANK_AND_SWING = """
+model: crank_and_swing
+coordinates:
+  first: {unit: rad}
+  knee: {unit: rad}
+  swing: {unit: rad}
+parameters:
+  a: {value: 0.3, unit: m, range: [0.2, 0.5]}
+  b: {value: 0.7, unit: m, range: [0.5, 1]}
+  c: {value: 0.6, unit: m, range: [0.4, 1]}
+  far: {value: 0.8, unit: m, range: [0.5, 1]}
+  m_b: {value: 1.5, unit: kg, range: [0.5, 2]}
+  J_a: {value: 0.02, unit: kg*m**2, range: [0.01, 0.1]}
+  J_c: {value: 0.05, unit: kg*m**2, range: [0.01, 0.1]}
+kinetic_energy: >-
+  J_a/2*first_dot**2 + J_c/2*swing_dot**2 + m_b/2*(a**2*first_dot**2 + b**2/3*(first_dot + knee_dot)**2
+  + a*b*cos(knee)*first_dot*(first_dot + knee_dot))
+potential_energy: m_b*9.81*(a*sin(first) + b/2*sin(first + knee))
+constraints:
+  geometric:
+    along: a*cos(first) + b*cos(first + knee) - far - c*cos(swing)
+    across: a*sin(first) + b*sin(first + knee) - c*sin(swing)
+inputs:
+  drive: {unit: N*m, acts_on: {first: 1}}
+configuration: {first: 0.5, knee: 0.4, swing: 1.9}
+"""
+
+
+def castors(third: str = "") -> Model:
+    """Two castors with lengths as parameters, and a third row that follows from theirs."""
+    rows = CASTORS | ({"both": third} if third else {})
+    return wheels("castors" if not third else "castors_and_bar", rows, parameters=LENGTHS)
+
+
+SYSTEMS = {
+    "castors": castors,
+    "castors_and_bar": lambda: castors(f"2*({CASTORS['front']}) - ({CASTORS['rear']})"),
+    "crank_and_swing": lambda: load_text(CRANK_AND_SWING, "crank_and_swing"),
+}
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_float64_breaks_it_nowhere(name: str, tmp_path: Path) -> None:
+    held = [one for one in held_to_the_rule(SYSTEMS[name](), tmp_path) if one.scalar == "float64"]
+    assert [one.quantity for one in held if one.answered > one.states / 2] == [one.quantity for one in held]
+    assert breaches(held) == ()
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_float32_holds_it_towards_singular_sets_and_four_decades(name: str, tmp_path: Path) -> None:
+    held = held_to_the_rule(SYSTEMS[name](), tmp_path, closest=12, decades=(1, 2, 4))
+    assert breaches([one for one in held if one.scalar == "float32"]) == ()
+
+
+def test_what_is_wrong_is_found(tmp_path: Path) -> None:
+    """A kernel that is off by a millionth, and one that refuses everything."""
+    reference = Reference(castors())
+    states = [one for _, one in zip(range(3), far_apart(reference), strict=False)]
+
+    class Off(Kernels):
+        def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
+            found = super().run(name, state, scalar)
+            if name == "multipliers":
+                return Outcome(2, found.entries)
+            return Outcome(found.status, tuple(x * (1 + 1e-6) for x in found.entries))
+
+    held = counted(reference, Off(reference.model, tmp_path), states)
+    for one in held:
+        if one.quantity == "multipliers":
+            assert len(one.unexplained) == one.states > 0
+        elif one.scalar == "float64":
+            assert len(one.beyond) == one.answered > 0
+    assert len(breaches(held)) >= len(SCALARS) + len(STRESSED) - 1
+
+
+def test_states_go_to_singular_sets_and_far_apart() -> None:
+    reference = Reference(castors())
+    towards = list(towards_singular_sets(search(reference), closest=8))
+    apart = list(far_apart(reference, decades=(9,)))
+    assert all(isinstance(one, Pushed) for one in (*towards, *apart))
+    assert {one.where.split()[0] for one in towards} & {"constraint", "input", "parameter"}
+    names = [p.name for p in reference.model.parameters]
+    moved = {one.where: one.state.parameters for one in apart}
+    assert moved["mu times 1e9"][names.index("mu")] == pytest.approx(3e9)
+    assert moved["trail times 1e-9"][names.index("trail")] == pytest.approx(2.5e-10)
