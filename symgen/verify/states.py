@@ -25,6 +25,7 @@ SAMPLING_BITS = 128
 DRIFT = 1e-3
 REST = 1e-25
 TYPICAL_POINTS = 8
+PROJECTED = ("admissible_velocity", "admissible_acceleration")
 
 
 class VerificationError(Exception):
@@ -219,7 +220,7 @@ def _lengths(rows: Sequence[float], n: int) -> list[float]:
 
 def _measured(reference: Reference) -> tuple[str, ...]:
     """What makes a sample of a regular state."""
-    return "admissible_velocity", "admissible_acceleration", *(("inverse_dynamics",) if reference.model.m else ())
+    return *PROJECTED, *(("inverse_dynamics",) if reference.model.m else ())
 
 
 def _regular(
@@ -257,7 +258,8 @@ def _regular(
 
 
 def _values(reference: Reference, state: State, names: Sequence[str]) -> dict[str, tuple[float, ...]]:
-    return {name: _floats(matrix) for name, matrix in reference.matrices(state, names, SAMPLING_BITS).items()}
+    found = reference.matrices(state, names, SAMPLING_BITS)
+    return {name: (_rates if name in PROJECTED else _floats)(matrix) for name, matrix in found.items()}
 
 
 def _sample(reference: Reference, quantities: Sequence[str], regular: _Regular) -> Sample | None:
@@ -291,6 +293,11 @@ def _settled(values: Sequence[Any], ranges: Sequence[tuple[Any, Any]]) -> list[f
 
 def _floats(matrix: Any) -> tuple[float, ...]:
     return tuple(map(float, matrix.entries()))
+
+
+def _rates(matrix: Any) -> tuple[float, ...]:
+    """Entries rounded to float64; what cannot be told from 0 is 0, such as the rate of a joint that cannot move."""
+    return tuple(0.0 if x.is_finite() and x.contains(0) else float(x) for x in matrix.entries())
 
 
 def _in_ranges(reference: Reference, q: Sequence[Any]) -> bool:

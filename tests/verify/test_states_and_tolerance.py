@@ -54,6 +54,27 @@ def test_dependent_constraints_get_states_without_drift() -> None:
         assert norm(residual) < 1e-14
 
 
+def test_joints_that_cannot_move_have_no_rate() -> None:
+    # a triangle of two cranks is rigid beside a slider: what projection leaves of its rates is noise
+    reference = Reference(
+        build(
+            "triangle",
+            "a b x",
+            "J/2*(a_dot**2 + b_dot**2) + m/2*x_dot**2",
+            parameters={"J": "0.2", "m": "3"},
+            geometric=("2*cos(a) + cos(b) - 2.2", "2*sin(a) + sin(b) - 1.3"),
+            inputs={"F": {"x": "1"}},
+            configuration={"a": "0.1", "b": "1.5", "x": "0"},
+        )
+    )
+    samples = [sample for sample in sample_states(reference, ["coriolis_force"], 8) if sample.admissible]
+    assert samples
+    for sample in samples:
+        assert sample.state.qd[:2] == (0, 0)
+        assert sample.state.qd[2] != 0
+        assert sample.state.qdd[:2] == (0, 0)
+
+
 def test_no_state_where_a_row_of_the_jacobian_all_but_vanishes() -> None:
     # three parallel cranks: Newton's method is drawn to all of them in line, where the singularity measures stay large
     reference = Reference(
