@@ -9,7 +9,7 @@ to a configuration where a gradient vanishes a residual of 1e-12 is still a dist
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import TypeAlias
 
 from symgen.model.sparse import Row, groups, solve_gram, transposed_product
@@ -25,6 +25,16 @@ MOST_REFUSED = 2  # steps in a row, once a loop is closed
 
 Residuals: TypeAlias = Callable[[Sequence[float], Sequence[int]], tuple[list[float], list[Row]]]
 """Values and gradients of the rows with the given numbers at q; ArithmeticError or ValueError outside a domain."""
+
+
+# A row whose gradient has entries this far from 1 is in units of its own.
+ORDINARY = 2.0**10
+
+
+def row_unit(entries: Iterable[float]) -> float:
+    """The factor that brings a row back to ordinary size, by its gradient; a power of 2, and 1 where none is needed."""
+    size = max(map(abs, entries), default=0.0)
+    return 1.0 if not 0 < size < math.inf or 1 / ORDINARY <= size <= ORDINARY else 2.0 ** -math.frexp(size)[1]
 
 
 @dataclass(frozen=True, slots=True)

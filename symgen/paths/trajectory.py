@@ -7,10 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from symgen.model.closing import row_unit
 from symgen.model.model import Model, Path
 from symgen.paths.path_equations import Array, PathEquations, PathError, path_equations
 
-RESIDUAL = 1e-12  # of constraints and conditions, in their own units
+RESIDUAL = 1e-12  # of constraints and conditions, in their own units unless these are far from those of coordinates
 RANK_TOLERANCE = 1e-9
 NEWTON_STEPS = 30
 NONHOLONOMIC_RESIDUAL = 1e-9
@@ -34,6 +35,7 @@ class PathSolver:
         self.model = model
         self.path = path
         self.equations: PathEquations = path_equations(model, path)
+        self._units: Array | None = None
 
     def start(self) -> Array:
         """q at t = 0, by damped Newton steps from the path's `start`, else the model's configuration, else 0."""
@@ -76,10 +78,11 @@ class PathSolver:
 
     def derivatives(self, q: Array, t: float) -> tuple[Array, Array]:
         """q̇ and q̈ (n) by differentiating constraints and conditions twice."""
-        _, jacobian = self.equations.position(q, t)
+        _, jacobian = self._position(q, t)
         self._check_regular(jacobian, t)
-        qd = -_least_squares(jacobian, self.equations.rate(q, t))
-        qdd = -_least_squares(jacobian, self.equations.acceleration(q, qd, t))
+        units = self._units_at(q, t)
+        qd = -_least_squares(jacobian, units * self.equations.rate(q, t))
+        qdd = -_least_squares(jacobian, units * self.equations.acceleration(q, qd, t))
         if not np.all(np.isfinite(qd) & np.isfinite(qdd)):
             raise PathError(
                 self.path,
@@ -88,9 +91,21 @@ class PathSolver:
             )
         return qd, qdd
 
+    def _position(self, q: Array, t: float) -> tuple[Array, Array]:
+        """h and its Jacobian, rows in units far from those of coordinates brought back to the latter."""
+        h, jacobian = self.equations.position(q, t)
+        units = self._units_at(q, t)
+        return units * h, units[:, None] * jacobian
+
+    def _units_at(self, q: Array, t: float) -> Array:
+        """The factors of the rows, by their gradients at the first place that is asked for."""
+        if self._units is None:
+            self._units = np.array([row_unit(row) for row in self.equations.position(q, t)[1].tolist()])
+        return self._units
+
     def _newton(self, q: Array, t: float) -> Array | None:
         """The nearest solution that (damped) Gauss-Newton steps reach, polished to rounding; None if there is none."""
-        h, jacobian = self.equations.position(q, t)
+        h, jacobian = self._position(q, t)
         for _ in range(NEWTON_STEPS):
             if not (np.all(np.isfinite(h)) and np.all(np.isfinite(jacobian))):
                 return None
@@ -98,7 +113,7 @@ class PathSolver:
             fraction, before = 1.0, float(np.linalg.norm(h))
             while fraction > 1e-4:
                 trial = q - fraction * correction
-                h, jacobian = self.equations.position(trial, t)
+                h, jacobian = self._position(trial, t)
                 if np.linalg.norm(h) < before or before < RESIDUAL:
                     break
                 fraction /= 2
@@ -109,7 +124,7 @@ class PathSolver:
 
     def _check_count(self, q: Array) -> None:
         """As many conditions as V has dimensions, no more, no fewer."""
-        _, jacobian = self.equations.position(q, 0.0)
+        _, jacobian = self._position(q, 0.0)
         freedom = self.model.n - _rank(jacobian[: self.equations.geometric_rows])
         count = len(self.path.conditions)
         if count != freedom:

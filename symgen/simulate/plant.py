@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
+from symgen.dynamics.genericity import assembly_of
 from symgen.ir.kernel import Scalar, Status
+from symgen.model.closing import row_unit
+from symgen.model.mechanics import Mechanics
 from symgen.model.model import Model
 from symgen.verify.compile import Outcome
 from symgen.verify.reference import State
@@ -38,6 +41,7 @@ class Plant:
         self._kernels = kernels
         self._parameters = tuple(parameters)
         self.model = model
+        self._units = _units(model)
 
     def accelerations(self, q: Sequence[float], qd: Sequence[float], u: Sequence[float]) -> tuple[float, ...]:
         """q_ddot (n)."""
@@ -52,8 +56,10 @@ class Plant:
         return self._run("projected_configuration", q) if self._has_geometric else tuple(q)
 
     def residual(self, q: Sequence[float]) -> float:
-        """The largest violation of a geometric constraint."""
-        return max(map(abs, self._run("constraint_residual", q))) if self._has_geometric else 0.0
+        """The largest violation of a geometric constraint; rows in units of their own count as `row_unit` says."""
+        if not self._has_geometric:
+            return 0.0
+        return max(abs(g * unit) for g, unit in zip(self._run("constraint_residual", q), self._units, strict=True))
 
     def energy(self, q: Sequence[float], qd: Sequence[float]) -> tuple[float, float]:
         """(T, U)."""
@@ -73,3 +79,12 @@ class Plant:
         if outcome.status:
             raise PlantError(f"{name}: {MEANING[Status(outcome.status)]}")
         return tuple(map(float, outcome.entries))
+
+
+def _units(model: Model) -> list[float]:
+    """For each geometric row, by its gradient where the mechanism is known to be assembled."""
+    known = assembly_of(model)
+    parts = model.coordinates, model.parameters, model.definitions, model.constraints, model.kinetic_energy
+    numbers = Mechanics(*parts, model.mechanism)
+    rows = numbers.residuals(known.places[0].q, range(len(numbers.geometric)))[1]
+    return [row_unit(row.values()) for row in rows]

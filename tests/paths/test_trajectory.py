@@ -101,6 +101,14 @@ def test_dependent_rows_are_no_obstacle() -> None:
     assert trajectory.qdd[:, 1] == pytest.approx(-0.5 * np.cos(trajectory.t), abs=1e-12)
 
 
+def test_rows_in_other_units_are_the_same_rows() -> None:
+    scaled = SLIDER.replace("s - l*cos(a)", "1e-7*(s - l*cos(a))").replace("h - l*sin(a)", "1e7*(h - l*sin(a))")
+    conditions, start = "{reach: s - 0.3 - t/20}", "{a: 1, s: 0.3, h: 0.4}"
+    (_, plain), (_, other) = solved(SLIDER, conditions, start), solved(scaled, conditions, start)
+    assert other.q == pytest.approx(plain.q, abs=1e-12)
+    assert other.qdd == pytest.approx(plain.qdd, abs=1e-11)
+
+
 @pytest.mark.parametrize(
     ("conditions", "start", "message"),
     [
