@@ -33,6 +33,9 @@ FEWEST_STARTS, MOST_STARTS, ENOUGH = 8, 40, 4
 RETRIES = 3  # for loops that stay open where others close
 # Rows evaluated on the way, and how many times as many as long as nothing regular is found.
 EFFORT, LONGEST = 30_000, 5
+# Rows this small beside the largest may be what rounding leaves, those of no size are.
+SMALL, NO_SIZE = 1e-9, 1e-15
+NUDGE, CHANGED = 1e-7, 1e-3  # of a width, and of a row
 STEP = 1e-3  # in coordinate widths, along a branch
 STRAIGHT = 0.1  # of a step, by which a regular branch leaves its tangent at most
 TRIED = 3  # configurations of the same ranks that are looked at for a regular one
@@ -61,7 +64,7 @@ class _Search:
         ]
         samples = list(self._sampled())
         self._usable = bool(samples)
-        sizes = typical(samples)
+        sizes = self._without_noise(typical(samples))
         self._scales = Scales(sizes)
         self._closer = Closer(mechanics.residuals, sizes[: self._r_geometric], self._widths)
         self._bound = self._bounds(samples)
@@ -89,6 +92,23 @@ class _Search:
                 found += 1
             if found == TYPICAL_POINTS:
                 return
+
+    def _without_noise(self, sizes: list[Row]) -> list[Row]:
+        """Rows that are zero but for rounding are empty: those of no size beside others, and those that are small and
+        change altogether where q hardly does; a row in small units does not."""
+        largest = max((value for row in sizes for value in row.values()), default=0.0)
+        place = self._anywhere(whole=False)
+        beside = [x + NUDGE * width for x, width in zip(place, self._widths, strict=True)]
+        here, there = self._rows(place), self._rows(beside)
+        found = []
+        for i, row in enumerate(sizes):
+            most = max(row.values(), default=0.0)
+            keep = most > NO_SIZE * largest
+            if keep and most < SMALL * largest and here is not None and there is not None:
+                moved = max((abs(value - there[i].get(j, 0.0)) for j, value in here[i].items()), default=0.0)
+                keep = moved <= CHANGED * max(map(abs, here[i].values()), default=0.0)
+            found.append(row if keep else {})
+        return found
 
     def _bounds(self, samples: Sequence[Sequence[Row]]) -> tuple[int, int]:
         r = len(self._mechanics.constraints)

@@ -14,7 +14,7 @@ Row: TypeAlias = dict[int, float]
 # Between what counts as zero and what counts as a pivot a matrix is too close to losing rank to tell.
 NEGLIGIBLE = 1e-9
 PLAIN = 1e-5
-# Entries this small beside the largest of the matrix are what rounding leaves of zeros.
+# Entries this small beside the largest of their row are what rounding leaves of zeros.
 NOISE = 1e-13
 SWEEPS = 3
 
@@ -26,8 +26,11 @@ class Scales:
     """
 
     def __init__(self, typical: Sequence[Row]) -> None:
-        largest = max((value for row in typical for value in row.values()), default=0.0)
-        kept = [{j: value for j, value in row.items() if value > NOISE * largest} for row in typical]
+        largest = [max(row.values(), default=0.0) for row in typical]
+        kept = [
+            {j: value for j, value in row.items() if value > NOISE * most}
+            for row, most in zip(typical, largest, strict=True)
+        ]
         columns = {j for row in kept for j in row}
         self.rows = [1.0] * len(kept)
         self.columns = dict.fromkeys(sorted(columns), 1.0)

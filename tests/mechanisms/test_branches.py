@@ -34,7 +34,7 @@ def inverse(model: Model, q: Sequence[float]) -> tuple[Status, tuple[float, ...]
 
 
 @pytest.mark.parametrize("count", [1, 2, 4])
-@pytest.mark.parametrize("scales", [("1", "1"), ("1e-6", "1e4")])
+@pytest.mark.parametrize("scales", [("1", "1"), ("1e-6", "1e4"), ("1e7", "1e-7")])
 def test_equal_bars_hold_their_weight_on_the_branch_that_moves(count: int, scales: tuple[str, str]) -> None:
     model = load_text(row_of_four_bars(count, scales=scales), "row.yaml")
     angle = 0.8
