@@ -68,7 +68,7 @@ def test_constraints_hold_and_rates_are_projected(out: Path) -> None:
 def test_rows_in_other_units_hold_as_well(out: Path, tmp_path: Path) -> None:
     start = "configuration: {a0: 0.9, a1: 0.7, b1: 0.1}"
     moved = []
-    for name, scales in (("plain", ("1", "1")), ("scaled", ("1e-5", "1e-5"))):
+    for name, scales in (("plain", ("1", "1")), ("scaled", ("1/131072", "1048576"))):
         file = tmp_path / f"{name}.yaml"
         text = row_of_four_bars(1, ground="0.7", scales=scales, tail=start)
         file.write_text(text.replace("model: row_of_four_bars", f"model: {name}"), encoding="utf-8")
