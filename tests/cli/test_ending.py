@@ -42,7 +42,7 @@ def odd_compiler(folder: Path, text: str) -> Path:
 
 
 def runs(process: int) -> bool:
-    for _ in range(100):
+    for _ in range(500):
         try:
             with open(f"/proc/{process}/stat") as stat:
                 if stat.read().rpartition(")")[2].split()[0] == "Z":

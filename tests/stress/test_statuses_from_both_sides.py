@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -16,6 +17,7 @@ from symgen.stress.dimensions import parameter_dimensions
 from symgen.stress.kernels import SCALARS, STRESSED, Kernels, rounded_state
 from symgen.verify.reference import ReferenceValueError, State
 from symgen.verify.states import sample_states
+from symgen.verify.tolerance import FACTOR, expectations
 
 STATES = 40
 QUARTER = math.pi / 2
@@ -73,6 +75,12 @@ def measures(name: str, state: State, quantity: str) -> tuple[float, ...]:
     return both if driven else both[:1]
 
 
+def units_off(name: str, state: State, quantity: str, scalar: Scalar, entries: Sequence[float]) -> float:
+    """The error in units of what rounding the inputs and the result does to it."""
+    expected = expectations(reference(name), state, (quantity,), scalar, "both sides")[quantity]
+    return math.dist(entries, [float(x) for x in expected.value.entries()]) / expected.unit
+
+
 @pytest.mark.parametrize("scalar", SCALARS)
 def test_ranks_are_judged_as_the_exact_measures_do(kernels: Kernels, scalar: Scalar) -> None:
     name, eps = kernels.model.name, float(UNIT_ROUNDOFF[scalar])
@@ -85,8 +93,9 @@ def test_ranks_are_judged_as_the_exact_measures_do(kernels: Kernels, scalar: Sca
                 smallest = min(measures(name, state, quantity))
             except ReferenceValueError:
                 continue
-            if smallest < low:
-                assert outcome.status != Status.OK, (quantity, state.q)
+            if smallest < low and outcome.status == Status.OK:
+                # where rounding moves the measure across the threshold: what is returned is right nevertheless
+                assert units_off(name, state, quantity, scalar, outcome.entries) <= FACTOR, (quantity, state.q)
             if smallest > high and (quantity != "inverse_dynamics" or rows_of_one_size(name, state)):
                 assert outcome.status == Status.OK, (quantity, state.q, Status(outcome.status))
             assert outcome.status != Status.OK or all(map(math.isfinite, outcome.entries))
