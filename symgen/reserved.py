@@ -36,7 +36,9 @@ _MATH_FUNCTIONS = _words(
     trunc sincos exp10 pow10 drem gamma significand scalb finite j0 j1 jn y0 y1 yn"""
 )
 LIBRARY_NAMES = frozenset(name + suffix for name in _MATH_FUNCTIONS for suffix in ("", "f", "l")) | _words(
-    """abs labs llabs div ldiv lldiv abort exit atexit malloc calloc realloc free signgam isfinite isinf isnan isnormal
+    """memchr memcmp memcpy memmove memset strcat strchr strcmp strcoll strcpy strcspn strerror strlen strncat strncmp
+    strncpy strpbrk strrchr strspn strstr strtok strxfrm
+    abs labs llabs div ldiv lldiv abort exit atexit malloc calloc realloc free signgam isfinite isinf isnan isnormal
     signbit fpclassify isgreater isless isunordered INFINITY NAN HUGE_VAL NULL EOF errno assert offsetof stdin
     stdout stderr main size_t ptrdiff_t int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t float_t
     double_t RAND_MAX EXIT_SUCCESS EXIT_FAILURE BUFSIZ CHAR_BIT DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS HUGE
