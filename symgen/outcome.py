@@ -44,6 +44,8 @@ def _why_missing(path: Path) -> str:
         models = sorted(path.glob("*.yaml"))
         such = f", such as {models[0]}" if models else ""
         return f"{path} is a folder: name a model file{such}"
+    if path.is_symlink():
+        return f"{path} is a link that leads to no file"
     beside = [one.name for one in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
     meant = f"{path.name}.yaml" if f"{path.name}.yaml" in beside else path.name
     near = meant if meant in beside else next(iter(get_close_matches(meant, sorted(beside), 1, 0.6)), "")

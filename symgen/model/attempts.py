@@ -6,9 +6,12 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from symgen.diagnostics import Mistake
+from symgen.model.names import nearest
+from symgen.model.schema import MODEL
 from symgen.model.scope import words_of
 from symgen.model.source import MappingNode, Node, ScalarNode, SequenceNode
 
+MEANT = tuple(field.key for field in MODEL.fields)
 DECLARING = frozenset({"coordinates", "parameters", "definitions", "joints", "frames", "points", "inputs"})
 
 
@@ -17,7 +20,10 @@ def attempted_names(tree: MappingNode, mistakes: Sequence[Mistake]) -> set[str]:
     lines = {mistake.span.line for mistake in mistakes if mistake.span is not None and not mistake.span.file}
     found: set[str] = set()
     for key, block, whole in _ranges(tree):
-        if key.value not in DECLARING or not any(line in whole for line in lines):
+        if nearest(key.value, MEANT) not in DECLARING or not any(line in whole for line in lines):
+            continue
+        if key.value not in DECLARING:
+            found |= {word for text in _texts(block) for word in words_of(text)}  # the block is misspelt
             continue
         inner = list(_ranges(block)) if isinstance(block, MappingNode) else []
         faulty = [(name, value) for name, value, its in inner if any(line in its for line in lines)]

@@ -66,8 +66,13 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
             rate = units[rotor.coordinate].times(SECOND, -1)
             demanded = energy.times(rate.to_power(Fraction(2)), -1)
             inference.agrees(rotor.inertia, demanded, f"the rotor inertia of `{rotor.coordinate}`", "its energy")
+    blocks = [member(tree.get("constraints"), kind) for kind in ("geometric", "nonholonomic")]
+    written = {key.value for block in blocks for key, _ in entries(block)}
     for row in model.constraints:
-        inference.of(row.expression)
+        if row.name in written:
+            inference.of(row.expression)
+        else:
+            inference.of_made(row.expression, row.span)
     forces = {c.name: energy.times(units[c.name], -1) for c in model.coordinates if energy and c.name in units}
     for force in model.applied_forces:
         what = f"the applied force on `{force.coordinate}`"
@@ -145,6 +150,7 @@ class _Inference:
             if coordinate.name in units:
                 self._units[coordinate.rate] = units[coordinate.name].times(SECOND, -1)
         self._mistakes = mistakes
+        self._counts = _COUNTS
         for definition in model.definitions:
             found = self.of(definition.value)
             if found is not None:
@@ -160,7 +166,7 @@ class _Inference:
         """The dimension of an expression."""
         match expression:
             case Number(value=value):
-                return NUMBER if value in _COUNTS else None
+                return NUMBER if value in self._counts else None
             case Pi():
                 return NUMBER
             case Name(name=name) if is_component(name):
@@ -179,6 +185,14 @@ class _Inference:
             case Call():
                 return self._call(expression)
 
+    def of_made(self, expression: Expression, span: Span | None) -> None:
+        """Checks a row that was made for the entry at `span`: numbers in it have the unit their place demands."""
+        before = len(self._mistakes)
+        self._counts, counts = frozenset(), self._counts
+        self.of(expression)
+        self._counts = counts
+        self._mistakes[before:] = [replace(one, span=one.span or span) for one in self._mistakes[before:]]
+
     def _of_term(self, expression: Expression) -> Dimension:
         """As `of`, but a number that stands for itself has the unit its place demands, even 1 or 2."""
         return self.of(expression) if any(names_in(expression)) else None
@@ -192,7 +206,8 @@ class _Inference:
 
     def _product(self, operator: str, left: Expression, right: Expression) -> Dimension:
         if operator == "/" and isinstance(right, Number) and right.value.denominator == 1:
-            return NUMBER if isinstance(left, Number) and left.value.denominator == 1 else self.of(left)
+            whole = isinstance(left, Number) and left.value.denominator == 1
+            return NUMBER if whole and self._counts else self.of(left)
         a, b = self.of(left), self.of(right)
         return None if a is None or b is None else a.times(b, 1 if operator == "*" else -1)
 

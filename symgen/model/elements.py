@@ -44,6 +44,8 @@ def read_springs(scope: Scope, tree: MappingNode) -> tuple[Expression, tuple[For
         stiffness = scope.expression(member(node, "stiffness"), f"the stiffness of {what}", PARAMETERS)
         length = scope.expression(member(node, "length"), f"the length of {what}", PARAMETERS) or ZERO
         damping = scope.expression(member(node, "damping"), f"the damping of {what}", PARAMETERS)
+        if member(node, "stiffness") is None and member(node, "damping") is None:
+            scope.wrong(f"{what} has neither `stiffness` nor `damping`", "give one of them, or both", key.span)
         if stretch is None or rate is None:
             continue
         fits.append(Fit(length, stretch, -1, False, f"the length of {what}"))

@@ -85,7 +85,7 @@ def frame_name(scope: Scope, node: Node | None, what: str) -> str | None:
     if name == WORLD or scope.kinds.get(name) == "frame":
         return name
     kind = scope.kinds.get(name)
-    if kind is None and scope.is_attempted(name):
+    if scope.is_attempted(name):
         return None
     if kind is not None:
         remedy = NEED_FRAME if kind == "point" else "name one of `frames` or `joints`, or `world`"

@@ -72,7 +72,7 @@ def point_name(scope: Scope, node: Node | None, what: str) -> str | None:
         scope.used.add(name)
         return name
     kind = scope.kinds.get(name)
-    if kind is None and scope.is_attempted(name):
+    if scope.is_attempted(name):
         return None
     if kind is not None:
         remedy = "name one of `points`, or a frame for its origin"

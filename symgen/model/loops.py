@@ -8,7 +8,7 @@ from typing import Literal
 
 from symgen.diagnostics import Span
 from symgen.model.combine import divided, minus, negated, plus, times
-from symgen.model.expression import Call, Expression, Name, Number, Power
+from symgen.model.expression import Binary, Call, Expression, Name, Number, Power
 from symgen.model.formulas import Form, Formula, Formulas
 from symgen.model.frames import NEED_FRAME, frame_name
 from symgen.model.inputs import point_name, squared_distance
@@ -129,8 +129,8 @@ class Rows:
             return Name(Component(frame, what, axes).name)
 
         if upright:
-            yield "along", minus(rate("vx"), times(radius, rate("wy")))
-            yield "across", plus(rate("vy"), times(radius, rate("wx")))
+            yield "along", minus(rate("vx"), _scaled(radius, rate("wy")))
+            yield "across", plus(rate("vy"), _scaled(radius, rate("wx")))
             return
         # the spin does not show in the axes of what carries the wheel
         still = parent != WORLD and exact_value(self._value(Component(frame, f"r{column}{column}", parent).name)) == 1
@@ -138,7 +138,7 @@ class Rows:
         one, other = (axle + 1) % 3, (axle + 2) % 3
         up_one, up_other = (self._entry(carrier, 2, index) for index in (one, other))
         side = Call("sqrt", (plus(Power(up_one, TWO), Power(up_other, TWO)),))
-        arm_one, arm_other = (negated(times(radius, divided(up, side))) for up in (up_one, up_other))
+        arm_one, arm_other = (negated(_scaled(radius, divided(up, side))) for up in (up_one, up_other))
         spin, turn_one, turn_other = (Name(Component(frame, f"w{AXES[k]}", carrier).name) for k in (axle, one, other))
         # what turning adds to the velocity of the centre: the cross product with the arm
         added = {
@@ -151,7 +151,7 @@ class Rows:
             for index, value in added.items():
                 slip = plus(slip, times(self._entry(carrier, row, index), value))
             yield name, slip
-        yield "height", minus(Name(f"{frame}.z"), times(radius, side))
+        yield "height", minus(Name(f"{frame}.z"), _scaled(radius, side))
 
     def _entry(self, frame: str, row: int, column: int) -> Expression:
         """An entry of the attitude of a frame in the world; zero where it is zero in every configuration."""
@@ -201,3 +201,8 @@ class Rows:
 
 def _main_axis(name: str | None, usual: int) -> int:
     return next((index for index, axis in enumerate(AXES) if axis == name), usual)
+
+
+def _scaled(length: Expression, other: Expression) -> Expression:
+    """The product as it stands: a length of 1 is one of the product's units all the same."""
+    return Binary("*", length, other)

@@ -116,6 +116,7 @@ class Scope:
             span = self.spans.get(name)
             where = "" if span is None else f" ({span.file}:{span.line})" if span.file else f" (line {span.line})"
             self.wrong(f"`{name}` is already {a_kind(taken)}{where}", "give each thing a name of its own", node.span)
+            self.attempted.add(name)
             return False
         self.kinds[name] = kind
         self.spans[name] = node.span

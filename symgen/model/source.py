@@ -235,7 +235,10 @@ def _syntax_mistake(text: str, error: yaml.YAMLError) -> Mistake:
         message = "this line does not belong to its block: it begins further right or left, or has no name"
         return Mistake(message, "indent all entries of a block alike, each `name: value`", span)
     if problem.startswith("mapping values are not allowed"):
-        return _without_colon(text, span) or Mistake("a second `:` in one line", QUOTED, span)
+        message = "a second `:` in one line"
+        if ":" not in text.splitlines()[span.line - 1][: span.column - 1]:
+            message = "this line is no entry of the block that it stands in"
+        return _without_colon(text, span) or Mistake(message, f"indent entries of a block alike; {QUOTED}", span)
     return Mistake(f"this is not YAML: {problem}", f"check indentation, brackets and quotes; {QUOTED}", span)
 
 

@@ -100,3 +100,18 @@ def test_windows_line_ends_and_byte_order_mark(tmp_path: Path) -> None:
     path = tmp_path / "m.yaml"
     path.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
     assert load_model(path).name == "carriage"
+
+
+def test_a_radius_that_is_a_number_has_the_unit_of_a_length() -> None:
+    text = """\
+model: hoop
+coordinates: {x: {unit: m}, y: {unit: m}, heading: {unit: rad}, spin: {unit: rad}}
+gravity: [0, 0, -9.81]
+frames:
+  fork: {translation: [x, y, RADIUS], rotation: [[z, heading]]}
+  hoop: {parent: fork, rotation: [[y, spin]]}
+bodies: {hoop: {mass: 3, inertia: {xx: 0.6, yy: 1.2, zz: 0.6}}}
+rolling: {ground: {frame: hoop, radius: RADIUS}}
+"""
+    for radius in ("1", "2", "0.35", "1/4"):
+        assert load_text(text.replace("RADIUS", radius), "hoop.yaml").r == 2
