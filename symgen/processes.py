@@ -30,19 +30,22 @@ class ToolError(Exception):
 
 
 def start(command: Sequence[str], folder: Path | None = None, output: IO[bytes] | None = None,
-          complaints: IO[bytes] | None = None) -> subprocess.Popen[bytes]:
-    """A tool at work without input; what it prints goes to the files, or nowhere. `stop` ends it.
+          complaints: IO[bytes] | None = None, temporary: Path | None = None) -> subprocess.Popen[bytes]:
+    """A tool at work in a folder, without input; what it prints goes to the files, or nowhere. `stop` ends it.
 
+    What it keeps for itself goes to `temporary`, or the folder it works in: a tool that is ended leaves it behind.
     Raises ToolError where the tool cannot be started.
     """
     import subprocess
 
     if _ending:
         raise ToolError(f"{command[0]} is not started: the run ends")
+    own = temporary or folder
+    environment = None if own is None else {**os.environ, "TMPDIR": str(own.resolve())}
     with _held_back():
         try:
             process = subprocess.Popen(
-                command, cwd=folder, stdin=subprocess.DEVNULL, stdout=output or subprocess.DEVNULL,
+                command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=output or subprocess.DEVNULL,
                 stderr=complaints or subprocess.DEVNULL, process_group=0 if os.name == "posix" else None,
             )
         except OSError as error:

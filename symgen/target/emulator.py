@@ -21,7 +21,7 @@ def build_counter(folder: Path) -> Path:
     """The plug-in, built from symgen's own source."""
     target = folder / "counter.so"
     source = template_folder() / "target" / "counter.c"
-    run(["gcc", "-std=c99", "-O2", "-shared", "-fPIC", "-o", str(target), str(source)])
+    run(["gcc", "-std=c99", "-O2", "-shared", "-fPIC", "-o", str(target.resolve()), str(source)], folder)
     return target
 
 

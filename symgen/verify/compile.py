@@ -90,7 +90,7 @@ class Compilation:
         self._log = folder / f"{source.stem}.log"
         with self._log.open("wb") as log:
             command = [*compiler.command, *FLAGS, "-o", str(self._target), *paths, "-lm"]
-            self._process = start(command, output=log, complaints=log)
+            self._process = start(command, output=log, complaints=log, temporary=folder)
 
     def library(self) -> ctypes.CDLL:
         """The loaded library; raises CompilationError with the compiler's message, or with a remedy."""

@@ -28,7 +28,7 @@ inputs:
 HANGING = """#!/bin/sh
 case "$*" in
   *--version*) echo odd 1.0 ;;
-  *{name}*) echo $$ >> "{marks}"; sh -c 'echo $$ >> "{marks}"; exec sleep 300'; exit 1 ;;
+  *{name}*) echo $$ >> "{marks}"; touch "$TMPDIR/kept"; sh -c 'echo $$ >> "{marks}"; exec sleep 300'; exit 1 ;;
   *) exec cc "$@" ;;
 esac
 """

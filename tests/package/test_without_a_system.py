@@ -56,9 +56,9 @@ def test_it_would_be_noticed_without_the_library_of_math(
 
 
 def test_large_packages_are_built_with_their_small_kernels(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(package_build, "LARGEST", 100_000)
-    known = programs("rapkm_2rrr_rr")
-    made = package_of(model("rapkm_2rrr_rr"), known)
+    monkeypatch.setattr(package_build, "LARGEST", 1000)
+    known = programs(NAME)
+    made = package_of(model(NAME), known)
     names = {entry.kernel.name for entry in made.entries["float32"].functions}
     assert "inverse_dynamics" in names
     assert names < {kernel.name for kernel in known["float32"].kernels}
