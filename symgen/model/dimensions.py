@@ -67,9 +67,9 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
             demanded = energy.times(rate.to_power(Fraction(2)), -1)
             inference.agrees(rotor.inertia, demanded, f"the rotor inertia of `{rotor.coordinate}`", "its energy")
     blocks = [member(tree.get("constraints"), kind) for kind in ("geometric", "nonholonomic")]
-    written = {key.value for block in blocks for key, _ in entries(block)}
+    rows = {key.value for block in blocks for key, _ in entries(block)}
     for row in model.constraints:
-        if row.name in written:
+        if row.name in rows:
             inference.of(row.expression)
         else:
             inference.of_made(row.expression, row.span)
