@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -55,7 +56,10 @@ def test_no_odd_number_gives_an_odd_result_with_status_0(tmp_path: Path) -> None
 
 
 @pytest.mark.toolchain
-def test_projections_keep_a_long_run_on_the_constraints(slider_crank: tuple[Kernels, Path]) -> None:
+def test_projections_keep_a_long_run_on_the_constraints(
+    slider_crank: tuple[Kernels, Path], tool: Callable[[str], str]
+) -> None:
+    tool("cc")
     (free, projected), _ = long_runs(reference("slider_crank"), *slider_crank, 10_000)
     assert free.complaint == projected.complaint == ""
     assert len(free.time) == 200
