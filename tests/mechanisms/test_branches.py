@@ -6,12 +6,14 @@ import math
 import resource
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 import shipped
 from linkages import cranks_on_one_coupler, row_of_four_bars
 
 from symgen.diagnostics import ModelError
+from symgen.dynamics.admission.search import Search
 from symgen.dynamics.genericity import genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.select import derive_quantities
@@ -71,6 +73,17 @@ def test_more_cranks_than_needed_move(count: int, tail: str) -> None:
     status, u = inverse(model, [0.6] * count + [0.0])
     assert status == Status.OK
     assert u == pytest.approx([2 * 9.81 * 0.5 * math.cos(0.6)], rel=1e-12)
+
+
+def test_a_scalar_that_vanishes_in_the_stretched_pose_alone_has_no_regular_zero() -> None:
+    """Beside that pose rows are short and cross each other: their length there is no measure."""
+    mechanics = Mechanics(load_text(cranks_on_one_coupler(4), "cranks.yaml"))
+    graph = mechanics.graph
+    a, b = (graph.trig("sin", graph.symbol(name)) for name in ("a0", "b"))
+    assert Search(mechanics, genericity(mechanics)).zero_of(a * a + b * b) is None
+    found = Search(mechanics, genericity(mechanics)).zero_of(a - Fraction(1, 2))
+    assert found is not None
+    assert math.sin(float(dict(found.point)["a0"])) == pytest.approx(0.5)
 
 
 def test_an_input_that_moves_nothing_on_the_declared_branch_gives_a_status_there() -> None:

@@ -14,6 +14,7 @@ import random
 from collections.abc import Sequence
 from decimal import Decimal, localcontext
 from fractions import Fraction
+from functools import cached_property
 
 from symgen.dynamics.admission.decimals import DIGITS, ONE, ZERO, DecimalEvaluator, UndefinedError
 from symgen.dynamics.admission.floats import FloatGradients
@@ -32,7 +33,8 @@ STEPS = 40
 MOST_TERMS = 12  # of a sum of squares that are driven to 0 one by one
 VANISHED = Decimal("1e-12")  # of the scalar's usual size, and of the constraint residuals
 NEAR, FINISHED = 1e-8, 1e-14  # the same in double precision: where decimals go on, and where no step gains any more
-REGULAR = Decimal("1e-4")  # of the largest pivot of a matrix with rows of length 1
+REGULAR = Decimal("1e-4")  # of the largest pivot of a matrix with rows that usually have length 1
+LENGTH_POINTS = 4
 Point = dict[str, Decimal]
 
 
@@ -207,12 +209,32 @@ class Search:
             values = self._rows.values(point)
         except UndefinedError:
             return False
-        n = generic.n
-        rows = [values[i * n : (i + 1) * n] for i in range(generic.r + generic.m)]
+        rows = [
+            [x / length for x in row] if length else row
+            for row, length in zip(self._matrix(values), self._lengths, strict=True)
+        ]
         return (
             _smallest_pivot(rows[: generic.r], generic.rank) > REGULAR
             and _smallest_pivot(rows, generic.rank + generic.alpha) > REGULAR
         )
+
+    def _matrix(self, values: Sequence[Decimal]) -> list[Sequence[Decimal]]:
+        n = self._generic.n
+        return [values[i * n : (i + 1) * n] for i in range(self._generic.r + self._generic.m)]
+
+    @cached_property
+    def _lengths(self) -> list[Decimal]:
+        """The largest length of each row of [B; M^T] at some points: a row that all but vanishes is a drop of rank."""
+        source = random.Random(SEED)
+        lengths = [ZERO] * (self._generic.r + self._generic.m)
+        for _ in range(LENGTH_POINTS):
+            try:
+                values = self._rows.values(self._start(source, inner=True))
+            except UndefinedError:
+                continue
+            found = (sum((x * x for x in row), ZERO).sqrt() for row in self._matrix(values))
+            lengths = [max(pair) for pair in zip(lengths, found, strict=True)]
+        return lengths
 
     @staticmethod
     def _defaults(mechanics: Mechanics) -> Point:
@@ -262,12 +284,8 @@ def _solve(a: list[list[Decimal]], b: Sequence[Decimal]) -> list[Decimal]:
 
 
 def _smallest_pivot(rows: Sequence[Sequence[Decimal]], rank: int) -> Decimal:
-    """The pivot number `rank` of elimination with complete pivoting, rows scaled to length 1."""
-    work = []
-    for row in rows:
-        length = sum((x * x for x in row), ZERO).sqrt()
-        if length:
-            work.append([x / length for x in row])
+    """The pivot number `rank` of elimination with complete pivoting."""
+    work = [list(row) for row in rows]
     size = ONE
     for k in range(rank):
         pivots = [(abs(work[i][j]), -i, -j) for i in range(k, len(work)) for j in range(len(work[i]))]
