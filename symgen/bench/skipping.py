@@ -209,14 +209,14 @@ def _by_matrices(mechanics: Mechanics, generic: Genericity) -> Vector:
     coriolis = matvec(graph, mechanics.coriolis_matrix(qd), qd)
     forces = zip(inertial, coriolis, mechanics.potential_force, mechanics.applied_force, strict=True)
     space = MinorSpace(graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
-    forms, restriction = space.actuation(mechanics.inputs, generic.alpha)
+    forms, restriction = space.listed_actuation(mechanics.inputs, generic.alpha)
     return forms.solve(restriction(tuple(g + c + q - a for g, c, q, a in forces)))
 
 
 def _summed(model: Model, generic: Genericity) -> Vector:
     mechanics = Mechanics(model)
     space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
-    forms, restriction = space.actuation(mechanics.inputs, generic.alpha)
+    forms, restriction = space.listed_actuation(mechanics.inputs, generic.alpha)
     return _SummedForms(forms.rows, forms.inputs, forms.degree).solve(restriction(mechanics.balance))
 
 

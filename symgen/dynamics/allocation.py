@@ -33,7 +33,7 @@ class InputAllocation:
         weights = [graph.one] * mechanics.m
         for name, parameter in allocation.weights:
             weights[self._place[name]] = graph.symbol(parameter)
-        forms, self._restriction = space.actuation(mechanics.inputs, degree)
+        forms, self._restriction = space.listed_actuation(mechanics.inputs, degree)
         self.forms = ActuationForms(forms.rows, forms.inputs, forms.degree, weights)
 
     def solve(self, force: Vector) -> Vector:

@@ -13,7 +13,7 @@ from math import comb
 from symgen.dynamics.blocks import Component, components
 from symgen.dynamics.exterior import ActuationForms
 from symgen.dynamics.guards import Guard
-from symgen.dynamics.spaces import HouseholderSpace, MinorSpace, NullSpace, Restriction
+from symgen.dynamics.spaces import HouseholderSpace, InputEquations, MinorSpace, NullSpace, Restriction
 from symgen.graph.matrix import Matrix, Vector, identity, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
@@ -93,9 +93,12 @@ class BlockSpace:
                 result[i] = entry
         return tuple(result)
 
-    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
         """Inputs couple the blocks: as if there were one."""
         return HouseholderSpace(self.graph, self.rows, self.n).actuation(inputs, degree)
+
+    def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        return HouseholderSpace(self.graph, self.rows, self.n).listed_actuation(inputs, degree)
 
 
 def _space(graph: Graph, rows: Matrix, places: Component) -> NullSpace:

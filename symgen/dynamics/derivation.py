@@ -11,7 +11,6 @@ from dataclasses import replace
 from functools import cached_property
 
 from symgen.dynamics.allocation import InputAllocation
-from symgen.dynamics.exterior import ActuationForms
 from symgen.dynamics.forms.absolute import in_absolute_angles, motion_brought_back
 from symgen.dynamics.forms.definiteness import positive_definite
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
@@ -25,7 +24,15 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.rank_measures import rank_measures
 from symgen.dynamics.solvable import solvable
-from symgen.dynamics.spaces import LONGEST_PRODUCT, HouseholderSpace, MinorSpace, NullSpace, Restriction, residual
+from symgen.dynamics.spaces import (
+    LONGEST_PRODUCT,
+    HouseholderSpace,
+    InputEquations,
+    MinorSpace,
+    NullSpace,
+    Restriction,
+    residual,
+)
 from symgen.graph.calculus import derivative_along
 from symgen.graph.matrix import (
     Matrix,
@@ -142,7 +149,7 @@ class Derivation:
         return cheapest(self._motions, "multipliers", self.mechanics)
 
     @cached_property
-    def _actuation(self) -> tuple[ActuationForms, Restriction]:
+    def _actuation(self) -> tuple[InputEquations, Restriction]:
         forms, restriction = self.space.actuation(self.mechanics.inputs, self.generic.alpha)
         return forms.cancelled(self.mechanics.factoring.cancelled), restriction
 
@@ -152,7 +159,7 @@ class Derivation:
         forms, _ = self._actuation
         return self._solvable(forms, self.mechanics.inputs, Status.ACTUATION_RANK)
 
-    def _solvable(self, forms: ActuationForms, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
+    def _solvable(self, forms: InputEquations, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
         return solvable(self.mechanics, self.generic, self.space, forms, columns, status)
 
     def _solve_inputs(self, force: Vector) -> Vector:
@@ -265,7 +272,7 @@ class Derivation:
         return tuple(names.index(name) for name in self.mechanics.model.independent_velocities)
 
     @cached_property
-    def _partition(self) -> tuple[ActuationForms, Restriction]:
+    def _partition(self) -> tuple[InputEquations, Restriction]:
         axes = identity(self.graph, self.n)
         family = [axes[i] for i in self._independent]
         forms, restriction = self.space.actuation(family, len(self._independent))

@@ -14,7 +14,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from symgen.dynamics.catalogue import Derived, scalars
-from symgen.dynamics.exterior import ActuationForms, RowForms, square, wedge
+from symgen.dynamics.exterior import ActuationForms, RowForms, small_family, square, wedge
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
@@ -46,10 +46,15 @@ def with_test_of_excess(mechanics: Mechanics, generic: Genericity, derived: Deri
     if not rows and not inputs:
         return derived
     ways: list[Tests] = [_by_reflections(mechanics, generic, rows, inputs)]
-    if generic.minors <= MINOR_LIMIT:
+    if generic.minors <= MINOR_LIMIT and (not inputs or _few_inputs(mechanics, generic)):
         ways.append(_by_minors(mechanics, generic, rows, inputs))
     candidates = [replace(derived, guards=(*before, *derived.guards, *after)) for before, after in ways]
     return min(candidates, key=_weight)
+
+
+def _few_inputs(mechanics: Mechanics, generic: Genericity) -> bool:
+    forms = RowForms(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank).forms
+    return small_family(forms, mechanics.inputs, generic.alpha + 1)
 
 
 def _weight(derived: Derived) -> int:

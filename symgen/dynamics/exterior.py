@@ -20,6 +20,8 @@ Multivector: TypeAlias = dict[int, Scalar]
 
 # Longer determinants are not multiplied out.
 LONGEST_DETERMINANT = 200
+# Products of a family of determinants beyond which equations are solved by reflections: as for nine dense directions.
+LARGEST_FAMILY = 4096
 
 
 def unit(graph: Graph) -> Multivector:
@@ -77,6 +79,27 @@ def basis_wedges(graph: Graph, a: Multivector, n: int) -> list[Multivector]:
     """a ^ e_i for every axis i."""
     axes = [tuple(graph.one if i == j else graph.zero for j in range(n)) for i in range(n)]
     return [wedge(a, axis) for axis in axes]
+
+
+def small_family(starts: Iterable[Iterable[int]], columns: Sequence[Vector], degree: int) -> bool:
+    """Whether wedging `degree` of the columns on multivectors with these masks takes few products."""
+    places = [[axis for axis, entry in enumerate(column) if not entry.is_zero] for column in columns]
+    products = 0
+    for start in starts:
+        for subset in combinations(range(len(columns)), degree):
+            masks = set(start)
+            for k in subset:
+                found = set()
+                for mask in masks:
+                    products += 1
+                    for axis in places[k]:
+                        if not mask >> axis & 1:
+                            products += 1
+                            found.add(mask | 1 << axis)
+                    if products > LARGEST_FAMILY:
+                        return False
+                masks = found
+    return True
 
 
 class RowForms:
@@ -156,6 +179,7 @@ class ActuationForms:
         self.degree = degree
         self.subsets = list(combinations(range(len(inputs)), degree))
         self.products = [[self._product(form, subset) for subset in self.subsets] for form in rows.forms]
+        self._without: dict[int, dict[tuple[int, ...], Multivector]] = {}
 
     def _product(self, form: Multivector, subset: tuple[int, ...]) -> Multivector:
         return wedge_all(form, [self.inputs[k] for k in subset])
@@ -221,8 +245,8 @@ class ActuationForms:
         """Minimum-norm least-squares u of N_B M u = N_B force: Cramer's rule summed over all minors (theory 3.1)."""
         graph = self.graph
         numerators = [graph.zero] * len(self.inputs)
-        for form, family in zip(self.rows.forms, self.products, strict=True):
-            replaced = self._replaced(form, force)
+        for number, family in enumerate(self.products):
+            replaced = self._replaced(number, force)
             for subset, product in zip(self.subsets, family, strict=True):
                 factor = self.importance(subset)
                 for place, k in enumerate(subset):
@@ -239,9 +263,13 @@ class ActuationForms:
         inverse = 1 / denominator
         return tuple(numerator * inverse for numerator in numerators)
 
-    def _replaced(self, form: Multivector, force: Vector) -> dict[tuple[int, ...], Multivector]:
-        subsets = sorted({subset[:i] + subset[i + 1 :] for subset in self.subsets for i in range(len(subset))})
-        return {subset: wedge(self._product(form, subset), force) for subset in subsets}
+    def _replaced(self, number: int, force: Vector) -> dict[tuple[int, ...], Multivector]:
+        """By subset, the products of one row subset in which the force stands for the input that is missing."""
+        if number not in self._without:
+            form = self.rows.forms[number]
+            subsets = sorted({subset[:i] + subset[i + 1 :] for subset in self.subsets for i in range(len(subset))})
+            self._without[number] = {subset: self._product(form, subset) for subset in subsets}
+        return {subset: wedge(product, force) for subset, product in self._without[number].items()}
 
     def _pair(self, product: Multivector, replaced: Multivector) -> Scalar:
         if self.single:

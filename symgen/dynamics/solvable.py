@@ -14,7 +14,8 @@ from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard, magnitude
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import elementary_symmetric
-from symgen.dynamics.spaces import MinorSpace, NullSpace
+from symgen.dynamics.reflected_inputs import ReflectedInputs
+from symgen.dynamics.spaces import InputEquations, MinorSpace, NullSpace
 from symgen.graph.matrix import Vector, dot
 from symgen.graph.scalar import Scalar
 from symgen.ir.kernel import Status
@@ -24,11 +25,15 @@ def solvable(
     mechanics: Mechanics,
     generic: Genericity,
     space: NullSpace,
-    forms: ActuationForms,
+    forms: InputEquations,
     columns: Sequence[Vector],
     status: Status,
 ) -> tuple[Guard, ...]:
     """The guard with `status` of the determinants of `columns`; a drop of the rank of B is named first."""
+    if isinstance(forms, ReflectedInputs):
+        guard = forms.guard(status, space.guards, columns)
+        return () if guard.denominator.constant is not None else (guard,)
+    assert isinstance(forms, ActuationForms)
     graph, denominator = mechanics.graph, forms.denominator()
     if denominator.constant is not None:
         return ()

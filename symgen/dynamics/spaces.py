@@ -6,12 +6,12 @@ symmetrically, the reflections take the rows as they come.  The reflections need
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import Protocol
 
-from symgen.dynamics.exterior import ActuationForms, RowForms
+from symgen.dynamics.exterior import ActuationForms, RowForms, small_family
 from symgen.dynamics.guards import Guard
 from symgen.graph.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
@@ -23,6 +23,30 @@ MINOR_LIMIT = 300
 LONGEST_PRODUCT = 6
 # Of the squared lengths of all rows together, what one of them is taken for at least: 1e-6 of their length.
 VANISHING = Fraction(1, 2**40)
+
+
+class InputEquations(Protocol):
+    """The equations of the inputs along a null space: by determinants, or by reflections where these are too many."""
+
+    @property
+    def single(self) -> bool:
+        """Whether one determinant is divided by."""
+
+    @property
+    def minors(self) -> frozenset[Scalar]:
+        """What is small where the inputs lose an effect, besides the denominator."""
+
+    def cancelled(self, cancel: Callable[[Scalar], Scalar]) -> InputEquations:
+        """The same with a single determinant multiplied out."""
+
+    def solve(self, force: Vector) -> Vector:
+        """The inputs of least norm."""
+
+    def square(self) -> Scalar:
+        """The sum of the squared determinants."""
+
+    def denominator(self) -> Scalar:
+        """What vanishes where a rank drops."""
 
 
 class NullSpace(Protocol):
@@ -58,8 +82,11 @@ class NullSpace(Protocol):
     def lift_transposed(self, x: Vector) -> Vector:
         """(B^+)^T x."""
 
-    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
-        """The forms that solve for inputs, and the map that brings forces to where they live."""
+    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        """What solves for inputs, and the map that brings forces to where they live."""
+
+    def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        """The same by determinants, however many they are."""
 
 
 class Restriction:
@@ -125,7 +152,14 @@ class MinorSpace:
     def lift_transposed(self, x: Vector) -> Vector:
         return matvec(self.graph, transpose(self.pseudoinverse, len(self.rows)), x)
 
-    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        if small_family(self.forms.forms, inputs, degree):
+            return self.listed_actuation(inputs, degree)
+        from symgen.dynamics.pivoted import reflected  # which is made of what is here
+
+        return reflected(self.graph, self.rows, self.n, self.rank).actuation(inputs, degree)
+
+    def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
         return ActuationForms(self.forms, inputs, degree), Restriction(None, 0)
 
 
@@ -242,7 +276,16 @@ class HouseholderSpace:
                 head[i] = head[i] - self.reflections.triangle[k][i] * y[k]
         return tuple(y)
 
-    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        restriction = Restriction(self.reflections, self.rank)
+        columns = [restriction(column) for column in inputs]
+        if small_family([[0]], columns, degree):
+            return ActuationForms(RowForms(self.graph, (), self.delta, 0), columns, degree), restriction
+        from symgen.dynamics.reflected_inputs import ReflectedInputs  # which is made of what is here
+
+        return ReflectedInputs(self.graph, columns, self.delta, degree, self.reflections.everywhere), restriction
+
+    def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
         restriction = Restriction(self.reflections, self.rank)
         free = RowForms(self.graph, (), self.delta, 0)
         return ActuationForms(free, [restriction(column) for column in inputs], degree), restriction

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import combinations, islice, product
 
-from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product
+from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, small_family
 from symgen.dynamics.forms.form import Form, form
 from symgen.dynamics.forms.rates import Rates, reduced_rates
 from symgen.dynamics.forms.system import System
@@ -59,6 +59,8 @@ def nullspace_form(system: System, allowed: Callable[[Scalar], bool]) -> Form | 
     w = transpose(basis.columns, generic.delta)
     free = RowForms(graph, (), generic.delta, 0)
     inputs = transpose(matmul(graph, w, mechanics.control_matrix, generic.m), generic.m)
+    if not small_family([[0]], inputs, generic.alpha):
+        return "the determinants of the inputs are too many"
     forms = ActuationForms(free, inputs, generic.alpha)
     force = tuple(row[0] for row in matmul(graph, w, tuple((f,) for f in mechanics.balance), 1))
     regular = tuple(guard for part in basis.parts for guard in MinorSpace(graph, part, len(part[0]), len(part)).guards)
