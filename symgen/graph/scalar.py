@@ -25,6 +25,9 @@ Number: TypeAlias = "Scalar | int | Fraction"
 PI = Fraction(31415926535897932384626433832795028841971693993751058209749445923078164, 10**70)
 
 
+LONGEST_TEXT = 500
+
+
 class Scalar:
     """One node; compared by identity because equal nodes are the same object within a graph."""
 
@@ -83,6 +86,8 @@ class Scalar:
     def __repr__(self) -> str:
         if self.op in ("const", "symbol"):
             return str(self.payload)
+        if self.size > LONGEST_TEXT:  # written out, what is shared would be written again and again
+            return f"<{self.op} of {self.size} operations>"
         return f"{self.op}({', '.join(map(repr, self.args))})"
 
 
