@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.pivoted import longest
-from symgen.graph.matrix import Vector, dot, transpose
+from symgen.graph.matrix import Matrix, Vector, dot, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
 
@@ -47,7 +47,7 @@ class WeightedGramSchmidt:
         """Those of the rows of B whose columns are solved with: all."""
         return list(rows)
 
-    def asked(self, c: Vector) -> Vector:
+    def asked(self, rows: Sequence[Vector], c: Vector) -> Vector:  # noqa: ARG002 - of dependent rows only
         """The right-hand sides of these."""
         return c
 
@@ -93,6 +93,13 @@ class WeightedGramSchmidt:
             for i, entry in enumerate(column):
                 found[i] = found[i] + entry * factor
         return tuple(found)
+
+    def given(self, amounts: Vector) -> Vector:
+        """R^T `amounts`: what these amounts of the directions are along the columns."""
+        return tuple(
+            amount + dot(self._graph, self._upper[k], amounts[: len(self._upper[k])])
+            for k, amount in enumerate(amounts)
+        )
 
     def shortest(self, asked: Vector) -> Vector:
         """The shortest y with A^T W y = `asked`."""
@@ -153,19 +160,30 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
         """As many of the rows of B as the rank."""
         return [_combined(self._graph, choice, rows) for choice in self._choices]
 
-    def asked(self, c: Vector) -> Vector:
-        """Their right-hand sides: of a short row rounding may have left nothing in a long one that follows from it."""
-        return tuple(dot(self._graph, choice, c) for choice in self._choices)
+    def asked(self, rows: Sequence[Vector], c: Vector) -> Vector:
+        """Their right-hand sides in what comes nearest to c of all that the rows can give, as B^+ takes it.
+
+        Measured rates contradict rows that depend on each other; no row may then speak for the others.
+        """
+        base, shares = self._by_chosen(rows)
+        zero = (self._graph.zero,) * len(shares)
+        nearest = WeightedGramSchmidt(self._graph, shares, (self._graph.one,) * len(c)).solve(c, zero)[1]
+        return base.given(nearest)
 
     def of_all(self, rows: Sequence[Vector], multipliers: Vector) -> Vector:
         """The shortest multipliers of all rows that do what those of the chosen ones do.
 
         How rows follow from each other is read off B, as what L^-1 adds to long rows may leave nothing of short ones.
         """
+        base, shares = self._by_chosen(rows)
+        ones = (self._graph.one,) * len(rows)
+        return WeightedGramSchmidt(self._graph, shares, ones).shortest(base.combined(multipliers))
+
+    def _by_chosen(self, rows: Sequence[Vector]) -> tuple[WeightedGramSchmidt, Matrix]:
+        """Directions of the chosen rows, and what all rows have of each of them."""
         graph = self._graph
         base = WeightedGramSchmidt(graph, self.chosen(rows), (graph.one,) * len(rows[0]))
-        shares = transpose(tuple(map(base.shares, rows)), len(multipliers))
-        return WeightedGramSchmidt(graph, shares, (graph.one,) * len(rows)).shortest(base.combined(multipliers))
+        return base, transpose(tuple(map(base.shares, rows)), len(self._choices))
 
     def regularity(self) -> Guard:
         """The product of what is left of each chosen column, in units of its length."""

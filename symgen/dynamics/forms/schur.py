@@ -77,7 +77,7 @@ class _Elimination:
         )
         self._all_rows = problem.rows
         self.rows = self._orthogonal.chosen(problem.rows)
-        self.asked = self._orthogonal.asked(tuple(-a for a in problem.bias))
+        self.asked = self._orthogonal.asked(problem.rows, tuple(-a for a in problem.bias))
         # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
         regular = (self._orthogonal.regularity(),) if r > min(rank, LONGEST_PRODUCT) else problem.guards
         self._guards = (*regular, *factor.guards)
