@@ -13,6 +13,27 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -1171,7 +1192,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
     const double t51 = c_z7 * t33;
     const double t52 = I_yz7 - t51;
     const double t53 = t52 / t44;
-    const double t54 = t41 * t53;
+    const double t54 = t53 * t41;
     const double t55 = t50 - t54;
     const double t59 = m_6 * c_z6;
     const double t60 = c_z6 * t59;
@@ -1292,8 +1313,8 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
     const double t730 = t728 + t729;
     const double t731 = t727 + t730;
     const double t732 = fabs(c_z2);
-    const double t733 = fabs(c_x2);
-    const double t734 = fabs(c_y2);
+    const double t733 = fabs(c_y2);
+    const double t734 = fabs(c_x2);
     const double t735 = t733 + t734;
     const double t736 = t732 + t735;
     const double t737 = m_2 * t736;
@@ -1422,9 +1443,9 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
     const double t1458 = I_xx2 - I_yy2;
     const double t1459 = I_zz2 + t1458;
     const double t1469 = 2.0 * c_x2;
-    const double t1480 = 2.0 * I_xy2;
+    const double t1484 = 2.0 * I_xy2;
     const double t1491 = I_xx3 - I_zz3;
-    const double t1566 = I_zz2 - t1458;
+    const double t1569 = t1458 - I_zz2;
     double copy[20][LANES]; /* the last states, the first of them repeated */
     double result[7][LANES];
     double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -1646,7 +1667,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t237 = t18 * t33;
             const double t238 = t17 * t39;
             const double t239 = t237 + t238;
-            const double t240 = t239 + t59;
+            const double t240 = t59 + t239;
             const double t241 = t229 / t163;
             const double t242 = t141 * t241;
             const double t243 = t240 + t242;
@@ -2072,52 +2093,52 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t846 = fabs(t163);
             const double t850 = q_2_dot * t9;
             const double t851 = q_1_dot * t7;
-            const double t852 = t10 * t851;
+            const double t852 = t851 * t10;
             const double t853 = t850 - t852;
-            const double t854 = t12 * t853;
+            const double t854 = t853 * t12;
             const double t855 = q_1_dot * t8;
             const double t856 = q_3_dot + t855;
-            const double t857 = t11 * t856;
+            const double t857 = t856 * t11;
             const double t858 = t854 + t857;
-            const double t859 = t14 * t858;
-            const double t860 = t9 * t851;
+            const double t859 = t858 * t14;
+            const double t860 = t851 * t9;
             const double t861 = q_2_dot * t10;
             const double t862 = t860 + t861;
             const double t863 = q_4_dot - t862;
-            const double t864 = t13 * t863;
+            const double t864 = t863 * t13;
             const double t865 = t859 - t864;
-            const double t866 = t16 * t865;
-            const double t867 = t12 * t856;
-            const double t868 = t11 * t853;
+            const double t866 = t865 * t16;
+            const double t867 = t856 * t12;
+            const double t868 = t853 * t11;
             const double t869 = t867 - t868;
             const double t870 = q_5_dot + t869;
-            const double t871 = t15 * t870;
+            const double t871 = t870 * t15;
             const double t872 = t866 - t871;
-            const double t873 = t18 * t872;
-            const double t874 = t13 * t858;
-            const double t875 = t14 * t863;
+            const double t873 = t872 * t18;
+            const double t874 = t858 * t13;
+            const double t875 = t863 * t14;
             const double t876 = t874 + t875;
             const double t877 = q_6_dot - t876;
-            const double t878 = t17 * t877;
+            const double t878 = t877 * t17;
             const double t879 = t873 + t878;
             const double t880 = t879 * t879;
-            const double t881 = t18 * t877;
-            const double t882 = t17 * t872;
+            const double t881 = t877 * t18;
+            const double t882 = t872 * t17;
             const double t883 = t881 - t882;
             const double t884 = t883 * t883;
             const double t885 = t880 - t884;
             const double t886 = I_xy7 * t885;
-            const double t887 = t879 * t883;
+            const double t887 = t883 * t879;
             const double t889 = t887 * t888;
             const double t890 = t872 * t877;
-            const double t891 = t858 * t863;
+            const double t891 = t863 * t858;
             const double t892 = q_2_dot * t851;
-            const double t893 = t853 * t862;
+            const double t893 = t862 * t853;
             const double t894 = t892 + t893;
             const double t895 = t12 * t894;
             const double t896 = t862 * t856;
             const double t897 = t851 * t855;
-            const double t898 = t9 * t897;
+            const double t898 = t897 * t9;
             const double t899 = q_2_dot * t855;
             const double t900 = 2.0 * t899;
             const double t901 = t10 * t900;
@@ -2127,13 +2148,13 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t905 = t11 * t904;
             const double t906 = t895 + t905;
             const double t907 = t891 + t906;
-            const double t908 = t865 * t876;
+            const double t908 = t876 * t865;
             const double t909 = t907 - t908;
             const double t910 = t16 * t909;
-            const double t911 = t858 * t869;
-            const double t912 = t853 * t856;
+            const double t911 = t869 * t858;
+            const double t912 = t856 * t853;
             const double t913 = t9 * t900;
-            const double t914 = t10 * t897;
+            const double t914 = t897 * t10;
             const double t915 = t913 - t914;
             const double t916 = t912 - t915;
             const double t917 = t911 - t916;
@@ -2154,14 +2175,14 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t932 = t890 - t931;
             const double t933 = I_zz7 * t932;
             const double t934 = t889 + t933;
-            const double t935 = t15 * t865;
-            const double t936 = t16 * t870;
+            const double t935 = t865 * t15;
+            const double t936 = t870 * t16;
             const double t937 = t935 + t936;
             const double t938 = t872 * t937;
             const double t939 = t14 * t917;
             const double t940 = t13 * t924;
             const double t941 = t939 - t940;
-            const double t942 = t865 * t870;
+            const double t942 = t870 * t865;
             const double t943 = t941 - t942;
             const double t944 = t938 + t943;
             const double t945 = t18 * t944;
@@ -2185,7 +2206,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t963 = c_x7 * t962;
             const double t964 = q_7_dot + t937;
             const double t965 = t964 * t964;
-            const double t966 = t880 + t965;
+            const double t966 = t965 + t880;
             const double t967 = c_y7 * t966;
             const double t968 = t963 - t967;
             const double t969 = c_z7 * t958;
@@ -2193,12 +2214,12 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t971 = d_7 * t944;
             const double t972 = d_5 * t917;
             const double t973 = g * t8;
-            const double t974 = t851 * t851;
-            const double t975 = q_2_dot * q_2_dot;
+            const double t974 = q_2_dot * q_2_dot;
+            const double t975 = t851 * t851;
             const double t976 = t974 + t975;
             const double t977 = d_3 * t976;
             const double t978 = t973 - t977;
-            const double t979 = t11 * t978;
+            const double t979 = t978 * t11;
             const double t980 = d_3 * t900;
             const double t981 = t9 * t980;
             const double t982 = g * t7;
@@ -2218,11 +2239,11 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t996 = t13 * t995;
             const double t997 = t990 - t996;
             const double t998 = t16 * t997;
-            const double t999 = t12 * t978;
+            const double t999 = t978 * t12;
             const double t1000 = t11 * t986;
             const double t1001 = t999 - t1000;
-            const double t1002 = t858 * t858;
-            const double t1003 = t863 * t863;
+            const double t1002 = t863 * t863;
+            const double t1003 = t858 * t858;
             const double t1004 = t1002 + t1003;
             const double t1005 = d_5 * t1004;
             const double t1006 = t1001 - t1005;
@@ -2259,7 +2280,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1037 = t53 * t1036;
             const double t1038 = t965 - t880;
             const double t1039 = I_xz7 * t1038;
-            const double t1040 = t879 * t964;
+            const double t1040 = t964 * t879;
             const double t1042 = t1040 * t1041;
             const double t1043 = t953 - t1040;
             const double t1044 = I_yy7 * t1043;
@@ -2279,8 +2300,8 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1058 = t15 * t997;
             const double t1059 = t16 * t1006;
             const double t1060 = t1058 + t1059;
-            const double t1061 = t872 * t872;
-            const double t1062 = t877 * t877;
+            const double t1061 = t877 * t877;
+            const double t1062 = t872 * t872;
             const double t1063 = t1061 + t1062;
             const double t1065 = t1063 * t1064;
             const double t1066 = t1060 - t1065;
@@ -2320,7 +2341,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1101 = d_7 * t1100;
             const double t1102 = t1093 - t1101;
             const double t1103 = t937 * t937;
-            const double t1104 = t1103 - t1062;
+            const double t1104 = t1103 - t1061;
             const double t1105 = I_yz6 * t1104;
             const double t1106 = I_xx6 * t950;
             const double t1108 = t946 * t1107;
@@ -2335,8 +2356,8 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1117 = c_x6 * t1113;
             const double t1118 = c_y6 * t951;
             const double t1119 = t1117 - t1118;
-            const double t1120 = t865 * t865;
-            const double t1121 = t870 * t870;
+            const double t1120 = t870 * t870;
+            const double t1121 = t865 * t865;
             const double t1122 = t1120 + t1121;
             const double t1123 = c_z6 * t1122;
             const double t1124 = t1119 - t1123;
@@ -2362,7 +2383,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1144 = t18 * t1073;
             const double t1145 = t1143 + t1144;
             const double t1146 = t1142 - t1145;
-            const double t1147 = t1061 - t1103;
+            const double t1147 = t1062 - t1103;
             const double t1148 = I_xy6 * t1147;
             const double t1149 = I_zz6 * t943;
             const double t1151 = t938 * t1150;
@@ -2374,7 +2395,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1157 = t1148 + t1156;
             const double t1158 = c_x6 * t1134;
             const double t1159 = c_z6 * t931;
-            const double t1160 = t1103 + t1062;
+            const double t1160 = t1103 + t1061;
             const double t1161 = c_x6 * t1160;
             const double t1162 = c_y6 * t944;
             const double t1163 = t1161 + t1162;
@@ -2389,7 +2410,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1172 = t164 * t1171;
             const double t1173 = t1138 - t1172;
             const double t1174 = t16 * t1173;
-            const double t1175 = t1062 - t1061;
+            const double t1175 = t1061 - t1062;
             const double t1176 = I_xz6 * t1175;
             const double t1177 = I_yz6 * t944;
             const double t1179 = t890 * t1178;
@@ -2409,7 +2430,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1193 = t15 * t1192;
             const double t1194 = t1174 - t1193;
             const double t1195 = t876 * t876;
-            const double t1196 = t1195 - t1121;
+            const double t1196 = t1195 - t1120;
             const double t1197 = I_yz5 * t1196;
             const double t1198 = I_xx5 * t928;
             const double t1200 = t927 * t1199;
@@ -2442,7 +2463,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1227 = t1194 - t1226;
             const double t1228 = c_x5 * t1223;
             const double t1229 = c_y5 * t909;
-            const double t1230 = t1195 + t1121;
+            const double t1230 = t1195 + t1120;
             const double t1231 = c_x5 * t1230;
             const double t1232 = t1229 - t1231;
             const double t1233 = c_z5 * t941;
@@ -2451,7 +2472,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1236 = m_5 * t1235;
             const double t1237 = c_y5 * t1236;
             const double t1238 = t1228 + t1237;
-            const double t1239 = t1120 - t1195;
+            const double t1239 = t1121 - t1195;
             const double t1240 = I_xy5 * t1239;
             const double t1241 = I_yz5 * t941;
             const double t1243 = t908 * t1242;
@@ -2470,7 +2491,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1256 = t206 * t1255;
             const double t1257 = t1227 - t1256;
             const double t1258 = t14 * t1257;
-            const double t1259 = t1121 - t1120;
+            const double t1259 = t1120 - t1121;
             const double t1260 = I_xz5 * t1259;
             const double t1262 = t942 * t1261;
             const double t1263 = I_yy5 * t943;
@@ -2513,7 +2534,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1300 = d_5 * t1299;
             const double t1301 = t1278 - t1300;
             const double t1302 = t869 * t869;
-            const double t1303 = t1302 - t1003;
+            const double t1303 = t1302 - t1002;
             const double t1304 = I_yz4 * t1303;
             const double t1306 = t919 * t1305;
             const double t1307 = I_xx4 * t923;
@@ -2528,8 +2549,8 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1316 = c_x4 * t1312;
             const double t1317 = c_y4 * t924;
             const double t1318 = t1316 + t1317;
-            const double t1319 = t853 * t853;
-            const double t1320 = t856 * t856;
+            const double t1319 = t856 * t856;
+            const double t1320 = t853 * t853;
             const double t1321 = t1319 + t1320;
             const double t1322 = c_z4 * t1321;
             const double t1323 = t1318 - t1322;
@@ -2555,7 +2576,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1343 = t1341 - t1342;
             const double t1344 = d_5 * t1343;
             const double t1345 = t1340 - t1344;
-            const double t1346 = t1002 - t1302;
+            const double t1346 = t1003 - t1302;
             const double t1347 = I_xy4 * t1346;
             const double t1349 = t911 * t1348;
             const double t1350 = I_zz4 * t916;
@@ -2567,7 +2588,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1356 = t1347 + t1355;
             const double t1357 = c_x4 * t1333;
             const double t1358 = c_y4 * t917;
-            const double t1359 = t1302 + t1003;
+            const double t1359 = t1302 + t1002;
             const double t1360 = c_x4 * t1359;
             const double t1361 = t1358 - t1360;
             const double t1362 = c_z4 * t906;
@@ -2582,7 +2603,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1371 = t400 * t1370;
             const double t1372 = t1337 - t1371;
             const double t1373 = t12 * t1372;
-            const double t1374 = t1003 - t1002;
+            const double t1374 = t1002 - t1003;
             const double t1375 = I_xz4 * t1374;
             const double t1377 = t891 * t1376;
             const double t1378 = I_yy4 * t907;
@@ -2602,7 +2623,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1392 = t11 * t1391;
             const double t1393 = t1373 + t1392;
             const double t1394 = t862 * t862;
-            const double t1395 = t1394 - t1320;
+            const double t1395 = t1394 - t1319;
             const double t1396 = I_yz3 * t1395;
             const double t1397 = t893 - t892;
             const double t1398 = I_xz3 * t1397;
@@ -2636,7 +2657,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1427 = t11 * t1372;
             const double t1428 = t12 * t1391;
             const double t1429 = t1427 - t1428;
-            const double t1430 = t1319 - t1394;
+            const double t1430 = t1320 - t1394;
             const double t1431 = I_xy3 * t1430;
             const double t1433 = t893 * t1432;
             const double t1434 = I_zz3 * t892;
@@ -2648,7 +2669,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1440 = t1431 + t1439;
             const double t1441 = c_x3 * t1422;
             const double t1442 = c_y3 * t894;
-            const double t1443 = t1394 + t1320;
+            const double t1443 = t1394 + t1319;
             const double t1444 = c_x3 * t1443;
             const double t1445 = t1442 - t1444;
             const double t1446 = c_z3 * t915;
@@ -2679,17 +2700,17 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1474 = m_2 * t1473;
             const double t1475 = c_y2 * t1474;
             const double t1476 = t1466 + t1475;
-            const double t1477 = I_xz2 * t897;
-            const double t1478 = t1476 - t1477;
-            const double t1479 = t1460 + t1478;
-            const double t1481 = t892 * t1480;
-            const double t1482 = t1479 - t1481;
-            const double t1483 = t855 * t855;
-            const double t1484 = t1483 - t975;
-            const double t1485 = I_yz2 * t1484;
-            const double t1486 = t1482 - t1485;
+            const double t1477 = t855 * t855;
+            const double t1478 = t1477 - t974;
+            const double t1479 = I_yz2 * t1478;
+            const double t1480 = t1476 - t1479;
+            const double t1481 = I_xz2 * t897;
+            const double t1482 = t1480 - t1481;
+            const double t1483 = t1460 + t1482;
+            const double t1485 = t892 * t1484;
+            const double t1486 = t1483 - t1485;
             const double t1487 = t1457 + t1486;
-            const double t1488 = t1320 - t1319;
+            const double t1488 = t1319 - t1320;
             const double t1489 = I_xz3 * t1488;
             const double t1490 = I_xy3 * t904;
             const double t1492 = t912 * t1491;
@@ -2747,14 +2768,14 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1544 = t1539 + t1543;
             const double t1545 = c_x2 * t1465;
             const double t1546 = c_y2 * t897;
-            const double t1547 = t1483 + t975;
+            const double t1547 = t1477 + t974;
             const double t1548 = c_x2 * t1547;
             const double t1549 = t1546 - t1548;
             const double t1550 = t1549 - t982;
             const double t1551 = m_2 * t1550;
             const double t1552 = c_y2 * t1551;
             const double t1553 = t1545 - t1552;
-            const double t1554 = t974 - t1483;
+            const double t1554 = t975 - t1477;
             const double t1555 = I_xy2 * t1554;
             const double t1556 = t897 * t1458;
             const double t1557 = t1555 - t1556;
@@ -2765,14 +2786,14 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             const double t1562 = t1536 - t1561;
             const double t1563 = t7 * t1562;
             const double t1564 = I_yz2 * t897;
-            const double t1565 = t899 * t1480;
-            const double t1567 = t892 * t1566;
+            const double t1565 = t899 * t1484;
+            const double t1566 = t974 - t975;
+            const double t1567 = I_xz2 * t1566;
             const double t1568 = u_3 - t1567;
-            const double t1569 = t1565 + t1568;
-            const double t1570 = t1564 + t1569;
-            const double t1571 = t975 - t974;
-            const double t1572 = I_xz2 * t1571;
-            const double t1573 = t1570 - t1572;
+            const double t1570 = t892 * t1569;
+            const double t1571 = t1568 + t1570;
+            const double t1572 = t1565 + t1571;
+            const double t1573 = t1564 + t1572;
             const double t1574 = c_z2 * t1551;
             const double t1575 = t1573 - t1574;
             const double t1576 = c_x2 * t1474;

@@ -11,6 +11,22 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -405,10 +421,10 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t76 = t72 + t75;
     const float t77 = t15 * t76;
     const float t78 = 2.0f * J_t;
-    const float t79 = m_t * c_t;
-    const float t80 = 4.0f * d;
-    const float t81 = t54 - t80;
-    const float t82 = t79 * t81;
+    const float t79 = 4.0f * d;
+    const float t80 = t54 - t79;
+    const float t81 = m_t * c_t;
+    const float t82 = t80 * t81;
     const float t83 = t78 + t82;
     const float t84 = t4 * t12;
     const float t85 = t6 * t84;
@@ -464,29 +480,29 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t129 = t127 * t128;
     const float t130 = c_t * t129;
     const float t131 = t27 * t130;
-    const float t132 = h * t6;
     const float x_dot = qd[0];
-    const float t133 = x_dot * t9;
+    const float t132 = x_dot * t9;
     const float y_dot = qd[1];
-    const float t134 = y_dot * t8;
-    const float t135 = t133 + t134;
-    const float t136 = t135 * t7;
-    const float t137 = y_dot * t9;
-    const float t138 = x_dot * t8;
-    const float t139 = t137 - t138;
-    const float t140 = theta_dot * h;
-    const float t141 = t139 - t140;
-    const float t142 = t6 * t141;
-    const float t143 = t136 + t142;
+    const float t133 = y_dot * t8;
+    const float t134 = t132 + t133;
+    const float t135 = t134 * t7;
+    const float t136 = y_dot * t9;
+    const float t137 = x_dot * t8;
+    const float t138 = t136 - t137;
+    const float t139 = theta_dot * h;
+    const float t140 = t138 - t139;
+    const float t141 = t6 * t140;
+    const float t142 = t135 + t141;
     const float k = p->k;
-    const float t144 = k * t143;
-    const float t145 = t132 * t144;
-    const float t146 = t7 * t127;
+    const float t143 = k * t142;
+    const float t144 = h * t6;
+    const float t145 = t143 * t144;
     const float psi_dot = qd[4];
-    const float t147 = theta_dot + psi_dot;
-    const float t148 = t147 * t147;
-    const float t149 = c_t * t148;
-    const float t150 = t146 + t149;
+    const float t146 = theta_dot + psi_dot;
+    const float t147 = t146 * t146;
+    const float t148 = c_t * t147;
+    const float t149 = t7 * t127;
+    const float t150 = t148 + t149;
     const float t151 = m_t * t150;
     const float t152 = t6 * t151;
     const float t153 = t7 * t129;
@@ -499,19 +515,19 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t160 = t7 * t151;
     const float t161 = t6 * t129;
     const float t162 = t160 + t161;
-    const float t163 = t45 * t126;
+    const float t163 = t126 * t45;
     const float t164 = t162 - t163;
     const float F_ = u[0];
     const float t165 = F_ - t164;
     const float t166 = t9 * t165;
-    const float t167 = t159 + t166;
-    const float t168 = t19 * t144;
-    const float t169 = t167 - t168;
+    const float t167 = t143 * t19;
+    const float t168 = t166 - t167;
+    const float t169 = t159 + t168;
     const float t170 = t32 * t169;
     const float t171 = t8 * t165;
-    const float t172 = t9 * t154;
+    const float t172 = t143 * t25;
     const float t173 = t171 - t172;
-    const float t174 = t25 * t144;
+    const float t174 = t9 * t154;
     const float t175 = t173 - t174;
     const float t176 = t30 * t175;
     const float t177 = t170 + t176;
@@ -529,7 +545,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t189 = t188 * t184;
     const float t190 = t188 * t185;
     const float t191 = t189 + t190;
-    const float t192 = t79 * t191;
+    const float t192 = t81 * t191;
     const float t193 = t187 - t192;
     const float t194 = J_s * t193;
     const float phi_dot = qd[3];
@@ -550,17 +566,17 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t209 = t197 + t208;
     const float t210 = t9 * t209;
     const float t211 = t13 * t210;
-    const float t212 = theta_dot * t135;
-    const float t213 = t13 * t201;
-    const float t214 = t15 * t19;
+    const float t212 = theta_dot * t134;
+    const float t213 = t15 * t19;
+    const float t214 = t13 * t201;
     const float t215 = t213 + t214;
     const float t216 = t212 * t215;
     const float t217 = t211 - t216;
     const float t218 = x_dot * t19;
     const float t219 = y_dot * t25;
     const float t220 = t218 + t219;
-    const float t221 = t147 * t220;
-    const float t222 = psi_dot * t140;
+    const float t221 = t146 * t220;
+    const float t222 = psi_dot * t139;
     const float t223 = t6 * t222;
     const float t224 = t221 - t223;
     const float t225 = t22 * t224;
@@ -579,7 +595,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t238 = t12 * t237;
     const float t239 = t7 * t200;
     const float t240 = h * t239;
-    const float t241 = t214 - t240;
+    const float t241 = t213 - t240;
     const float t242 = t6 * t241;
     const float t243 = t238 + t242;
     const float t244 = c_t * t243;
@@ -617,8 +633,8 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     float rest = t275 - t275;
     const float t276 = t30 * t181;
     const float t277 = t16 * t224;
-    const float t278 = t13 * t205;
-    const float t279 = t15 * t25;
+    const float t278 = t15 * t25;
+    const float t279 = t13 * t205;
     const float t280 = t278 + t279;
     const float t281 = t212 * t280;
     const float t282 = t8 * t209;
@@ -632,13 +648,13 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t290 = t266 * t289;
     const float t291 = c * t200;
     const float t292 = t22 - t291;
-    const float t293 = t292 * t230;
+    const float t293 = t230 * t292;
     const float t294 = h * t200;
     const float t295 = t22 + t294;
     const float t296 = d * t295;
     const float t297 = t12 * t239;
     const float t298 = h * t237;
-    const float t299 = t298 + t279;
+    const float t299 = t298 + t278;
     const float t300 = t6 * t299;
     const float t301 = t297 + t300;
     const float t302 = c_t * t301;
@@ -682,7 +698,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t338 = T * t32;
     const float t339 = t337 * t338;
     const float t340 = h * t330;
-    const float t341 = t79 * t25;
+    const float t341 = t81 * t25;
     const float t342 = c * t329;
     const float t343 = t341 - t342;
     const float t344 = t340 + t343;
@@ -695,7 +711,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t351 = T * t30;
     const float t352 = t337 * t351;
     const float t353 = c * t334;
-    const float t354 = t79 * t19;
+    const float t354 = t81 * t19;
     const float t355 = t353 - t354;
     const float t356 = h * t333;
     const float t357 = t355 - t356;
@@ -711,7 +727,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t367 = J_t + t366;
     const float t368 = J_s + t47;
     const float t369 = t7 * t365;
-    const float t370 = t132 * t128;
+    const float t370 = t144 * t128;
     const float t371 = t369 + t370;
     const float t372 = h * t371;
     const float t373 = t368 + t372;
@@ -726,12 +742,12 @@ car_with_trailer_status car_with_trailer_forward_dynamics_f(const float q[5], co
     const float t382 = t380 - t381;
     const float t383 = t10 * t382;
     const float t384 = t363 + t383;
-    const float t385 = t367 * t124;
+    const float t385 = t124 * t367;
     const float t386 = T * t185;
-    const float t387 = t79 * t386;
-    const float t388 = d * t387;
+    const float t387 = d * t386;
+    const float t388 = t81 * t387;
     const float t389 = t385 + t388;
-    const float t390 = c_t * t79;
+    const float t390 = c_t * t81;
     const float t391 = J_t + t390;
     const float t392 = t391 * t347;
     const float t393 = t389 - t392;
@@ -852,7 +868,7 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float t120 = t95 * t119;
     const float t121 = t97 + t120;
     const float t122 = 2.3841858e-06f * t121;
-    const float t79 = m_t * c_t;
+    const float t81 = m_t * c_t;
     const float t154 = t4 * t7;
     const float t155 = h * t154;
     const float t156 = t6 * t15;
@@ -862,7 +878,7 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float t158 = J_t * t157;
     const float t160 = t159 * t155;
     const float t162 = t160 + t161;
-    const float t163 = t79 * t162;
+    const float t163 = t81 * t162;
     const float t164 = t158 - t163;
     const float t165 = J_s * t164;
     const float t45 = m * c;
@@ -918,9 +934,9 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float t76 = t72 + t75;
     const float t77 = t15 * t76;
     const float t78 = 2.0f * J_t;
-    const float t80 = 4.0f * d;
-    const float t81 = t54 - t80;
-    const float t82 = t79 * t81;
+    const float t79 = 4.0f * d;
+    const float t80 = t54 - t79;
+    const float t82 = t80 * t81;
     const float t83 = t78 + t82;
     const float t84 = t4 * t12;
     const float t85 = t6 * t84;
@@ -956,7 +972,7 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float t146 = J_s * t145;
     const float t206 = c * t136;
     const float t207 = t22 - t206;
-    const float t208 = t207 * t125;
+    const float t208 = t125 * t207;
     const float t209 = h * t136;
     const float t210 = t22 + t209;
     const float t211 = d * t210;
@@ -984,20 +1000,20 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float t368 = t363 + t367;
     const float t369 = t358 + t368;
     const float theta_dot = qd[2];
-    const float t273 = theta_dot * theta_dot;
-    const float t274 = h * t273;
-    const float t282 = t274 * t281;
+    const float t275 = theta_dot * theta_dot;
+    const float t276 = h * t275;
+    const float t282 = t276 * t281;
     const float psi_dot = qd[4];
     const float t166 = theta_dot + psi_dot;
-    const float t275 = t7 * t274;
-    const float t276 = t166 * t166;
-    const float t277 = c_t * t276;
-    const float t278 = t275 + t277;
+    const float t273 = t166 * t166;
+    const float t274 = c_t * t273;
+    const float t277 = t7 * t276;
+    const float t278 = t274 + t277;
     const float t279 = m_t * t278;
     const float t286 = t7 * t279;
     const float t287 = t6 * t282;
     const float t288 = t286 + t287;
-    const float t289 = t45 * t273;
+    const float t289 = t275 * t45;
     const float t290 = t288 - t289;
     const float F_ = u[0];
     const float t291 = F_ - t290;
@@ -1011,28 +1027,28 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float y_dot = qd[1];
     const float t177 = y_dot * t8;
     const float t178 = t176 + t177;
-    const float t294 = t178 * t7;
-    const float t295 = y_dot * t9;
-    const float t296 = x_dot * t8;
-    const float t297 = t295 - t296;
-    const float t298 = t297 - t171;
-    const float t299 = t6 * t298;
-    const float t300 = t294 + t299;
+    const float t293 = t178 * t7;
+    const float t294 = y_dot * t9;
+    const float t295 = x_dot * t8;
+    const float t296 = t294 - t295;
+    const float t297 = t296 - t171;
+    const float t298 = t6 * t297;
+    const float t299 = t293 + t298;
     const float k = p->k;
-    const float t301 = k * t300;
-    const float t350 = t349 * t301;
+    const float t300 = k * t299;
+    const float t350 = t300 * t349;
     const float t352 = h * t284;
     const float t353 = t351 - t352;
     const float t354 = t350 - t353;
     const float t285 = t8 * t284;
     const float t292 = t9 * t291;
-    const float t293 = t285 + t292;
-    const float t302 = t19 * t301;
-    const float t303 = t293 - t302;
+    const float t301 = t300 * t19;
+    const float t302 = t292 - t301;
+    const float t303 = t285 + t302;
     const float t329 = t8 * t291;
-    const float t330 = t9 * t284;
+    const float t330 = t300 * t25;
     const float t331 = t329 - t330;
-    const float t332 = t25 * t301;
+    const float t332 = t9 * t284;
     const float t333 = t331 - t332;
     const float t167 = x_dot * t19;
     const float t168 = y_dot * t25;
@@ -1047,9 +1063,9 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float t190 = t8 * t5;
     const float t191 = t190 + t126;
     const float t243 = t13 * t188;
-    const float t244 = t243 + t135;
+    const float t244 = t135 + t243;
     const float t306 = t13 * t191;
-    const float t307 = t306 + t214;
+    const float t307 = t214 + t306;
     const float t202 = d * t191;
     const float phi_dot = qd[3];
     const float t183 = phi_dot * t4;
@@ -1125,7 +1141,7 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     if (CAR_WITH_TRAILER_RARELY_F(!(t91 > t122))) {
         return CAR_WITH_TRAILER_MASS_RANK;
     }
-    const float t149 = t79 * t25;
+    const float t149 = t81 * t25;
     const float t147 = m_t * t8;
     const float t150 = m * t8;
     const float t235 = m_t * t9;
@@ -1139,7 +1155,7 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float t237 = t235 + t236;
     const float t238 = t9 * t237;
     const float t239 = t234 + t238;
-    const float t324 = t79 * t19;
+    const float t324 = t81 * t19;
     const float t323 = c * t236;
     const float t325 = t323 - t324;
     const float t326 = h * t235;
@@ -1149,7 +1165,7 @@ car_with_trailer_status car_with_trailer_multipliers_f(const float q[5], const f
     const float t271 = t123 * t270;
     const float t317 = t123 * t316;
     const float t339 = t123 * t338;
-    const float t386 = c_t * t79;
+    const float t386 = c_t * t81;
     const float t387 = J_t + t386;
     const float t388 = t387 * t317;
     const float t389 = t358 * t231;

@@ -11,6 +11,27 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -146,10 +167,10 @@ car_with_trailer_prepared car_with_trailer_prepare(const car_with_trailer_params
     const double v8 = 2.0 * c_t;
     const double v9 = m * v1;
     const double v10 = 2.0 * J_t;
-    const double v11 = m_t * c_t;
-    const double v12 = 4.0 * d;
-    const double v13 = v8 - v12;
-    const double v14 = v11 * v13;
+    const double v11 = 4.0 * d;
+    const double v12 = v8 - v11;
+    const double v13 = m_t * c_t;
+    const double v14 = v12 * v13;
     const double v15 = v10 + v14;
     const double v16 = fabs(m);
     const double v17 = fabs(m_t);
@@ -179,7 +200,7 @@ car_with_trailer_prepared car_with_trailer_prepare(const car_with_trailer_params
     const double v41 = d * m;
     const double v42 = d * v4;
     const double v43 = J_s + v4;
-    const double v44 = c_t * v11;
+    const double v44 = c_t * v13;
     const double v45 = J_t + v44;
     car_with_trailer_prepared prepared;
     prepared.value[0] = L;
@@ -199,7 +220,7 @@ car_with_trailer_prepared car_with_trailer_prepare(const car_with_trailer_params
     prepared.value[14] = v7;
     prepared.value[15] = v8;
     prepared.value[16] = v9;
-    prepared.value[17] = v11;
+    prepared.value[17] = v13;
     prepared.value[18] = v15;
     prepared.value[19] = v19;
     prepared.value[20] = v20;
@@ -348,29 +369,29 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t129 = t127 * t128;
     const double t130 = c_t * t129;
     const double t131 = t27 * t130;
-    const double t132 = h * t6;
     const double x_dot = qd[0];
-    const double t133 = x_dot * t9;
+    const double t132 = x_dot * t9;
     const double y_dot = qd[1];
-    const double t134 = y_dot * t8;
-    const double t135 = t133 + t134;
-    const double t136 = t135 * t7;
-    const double t137 = y_dot * t9;
-    const double t138 = x_dot * t8;
-    const double t139 = t137 - t138;
-    const double t140 = theta_dot * h;
-    const double t141 = t139 - t140;
-    const double t142 = t6 * t141;
-    const double t143 = t136 + t142;
+    const double t133 = y_dot * t8;
+    const double t134 = t132 + t133;
+    const double t135 = t134 * t7;
+    const double t136 = y_dot * t9;
+    const double t137 = x_dot * t8;
+    const double t138 = t136 - t137;
+    const double t139 = theta_dot * h;
+    const double t140 = t138 - t139;
+    const double t141 = t6 * t140;
+    const double t142 = t135 + t141;
     const double k = p->value[9];
-    const double t144 = k * t143;
-    const double t145 = t132 * t144;
-    const double t146 = t7 * t127;
+    const double t143 = k * t142;
+    const double t144 = h * t6;
+    const double t145 = t143 * t144;
     const double psi_dot = qd[4];
-    const double t147 = theta_dot + psi_dot;
-    const double t148 = t147 * t147;
-    const double t149 = c_t * t148;
-    const double t150 = t146 + t149;
+    const double t146 = theta_dot + psi_dot;
+    const double t147 = t146 * t146;
+    const double t148 = c_t * t147;
+    const double t149 = t7 * t127;
+    const double t150 = t148 + t149;
     const double t151 = m_t * t150;
     const double t152 = t6 * t151;
     const double t153 = t7 * t129;
@@ -384,19 +405,19 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t161 = t6 * t129;
     const double t162 = t160 + t161;
     const double t45 = p->value[11];
-    const double t163 = t45 * t126;
+    const double t163 = t126 * t45;
     const double t164 = t162 - t163;
     const double F_ = u[0];
     const double t165 = F_ - t164;
     const double t166 = t9 * t165;
-    const double t167 = t159 + t166;
-    const double t168 = t19 * t144;
-    const double t169 = t167 - t168;
+    const double t167 = t143 * t19;
+    const double t168 = t166 - t167;
+    const double t169 = t159 + t168;
     const double t170 = t32 * t169;
     const double t171 = t8 * t165;
-    const double t172 = t9 * t154;
+    const double t172 = t143 * t25;
     const double t173 = t171 - t172;
-    const double t174 = t25 * t144;
+    const double t174 = t9 * t154;
     const double t175 = t173 - t174;
     const double t176 = t30 * t175;
     const double t177 = t170 + t176;
@@ -414,8 +435,8 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t189 = t188 * t184;
     const double t190 = t188 * t185;
     const double t191 = t189 + t190;
-    const double t79 = p->value[17];
-    const double t192 = t79 * t191;
+    const double t81 = p->value[17];
+    const double t192 = t81 * t191;
     const double t193 = t187 - t192;
     const double t194 = J_s * t193;
     const double phi_dot = qd[3];
@@ -436,17 +457,17 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t209 = t197 + t208;
     const double t210 = t9 * t209;
     const double t211 = t13 * t210;
-    const double t212 = theta_dot * t135;
-    const double t213 = t13 * t201;
-    const double t214 = t15 * t19;
+    const double t212 = theta_dot * t134;
+    const double t213 = t15 * t19;
+    const double t214 = t13 * t201;
     const double t215 = t213 + t214;
     const double t216 = t212 * t215;
     const double t217 = t211 - t216;
     const double t218 = x_dot * t19;
     const double t219 = y_dot * t25;
     const double t220 = t218 + t219;
-    const double t221 = t147 * t220;
-    const double t222 = psi_dot * t140;
+    const double t221 = t146 * t220;
+    const double t222 = psi_dot * t139;
     const double t223 = t6 * t222;
     const double t224 = t221 - t223;
     const double t225 = t22 * t224;
@@ -466,7 +487,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t238 = t12 * t237;
     const double t239 = t7 * t200;
     const double t240 = h * t239;
-    const double t241 = t214 - t240;
+    const double t241 = t213 - t240;
     const double t242 = t6 * t241;
     const double t243 = t238 + t242;
     const double t244 = c_t * t243;
@@ -504,8 +525,8 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     double rest = t275 - t275;
     const double t276 = t30 * t181;
     const double t277 = t16 * t224;
-    const double t278 = t13 * t205;
-    const double t279 = t15 * t25;
+    const double t278 = t15 * t25;
+    const double t279 = t13 * t205;
     const double t280 = t278 + t279;
     const double t281 = t212 * t280;
     const double t282 = t8 * t209;
@@ -519,13 +540,13 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t290 = t266 * t289;
     const double t291 = c * t200;
     const double t292 = t22 - t291;
-    const double t293 = t292 * t230;
+    const double t293 = t230 * t292;
     const double t294 = h * t200;
     const double t295 = t22 + t294;
     const double t296 = d * t295;
     const double t297 = t12 * t239;
     const double t298 = h * t237;
-    const double t299 = t298 + t279;
+    const double t299 = t298 + t278;
     const double t300 = t6 * t299;
     const double t301 = t297 + t300;
     const double t302 = c_t * t301;
@@ -570,7 +591,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t338 = T * t32;
     const double t339 = t337 * t338;
     const double t340 = h * t330;
-    const double t341 = t79 * t25;
+    const double t341 = t81 * t25;
     const double t342 = c * t329;
     const double t343 = t341 - t342;
     const double t344 = t340 + t343;
@@ -583,7 +604,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t351 = T * t30;
     const double t352 = t337 * t351;
     const double t353 = c * t334;
-    const double t354 = t79 * t19;
+    const double t354 = t81 * t19;
     const double t355 = t353 - t354;
     const double t356 = h * t333;
     const double t357 = t355 - t356;
@@ -598,7 +619,7 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t366 = c_t * t365;
     const double t367 = J_t + t366;
     const double t369 = t7 * t365;
-    const double t370 = t132 * t128;
+    const double t370 = t144 * t128;
     const double t371 = t369 + t370;
     const double t372 = h * t371;
     const double t368 = p->value[26];
@@ -614,10 +635,10 @@ car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double 
     const double t382 = t380 - t381;
     const double t383 = t10 * t382;
     const double t384 = t363 + t383;
-    const double t385 = t367 * t124;
+    const double t385 = t124 * t367;
     const double t386 = T * t185;
-    const double t387 = t79 * t386;
-    const double t388 = d * t387;
+    const double t387 = d * t386;
+    const double t388 = t81 * t387;
     const double t389 = t385 + t388;
     const double t391 = p->value[27];
     const double t392 = t391 * t347;
@@ -722,8 +743,8 @@ car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5],
     const double t158 = J_t * t157;
     const double t160 = t159 * t155;
     const double t162 = t160 + t161;
-    const double t79 = p->value[17];
-    const double t163 = t79 * t162;
+    const double t81 = p->value[17];
+    const double t163 = t81 * t162;
     const double t164 = t158 - t163;
     const double J_s = p->value[5];
     const double t165 = J_s * t164;
@@ -814,7 +835,7 @@ car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5],
     const double t146 = J_s * t145;
     const double t206 = c * t136;
     const double t207 = t22 - t206;
-    const double t208 = t207 * t125;
+    const double t208 = t125 * t207;
     const double t209 = h * t136;
     const double t210 = t22 + t209;
     const double t211 = d * t210;
@@ -842,21 +863,21 @@ car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5],
     const double t368 = t363 + t367;
     const double t369 = t358 + t368;
     const double theta_dot = qd[2];
-    const double t273 = theta_dot * theta_dot;
-    const double t274 = h * t273;
-    const double t282 = t274 * t281;
+    const double t275 = theta_dot * theta_dot;
+    const double t276 = h * t275;
+    const double t282 = t276 * t281;
     const double psi_dot = qd[4];
     const double t166 = theta_dot + psi_dot;
-    const double t275 = t7 * t274;
-    const double t276 = t166 * t166;
-    const double t277 = c_t * t276;
-    const double t278 = t275 + t277;
+    const double t273 = t166 * t166;
+    const double t274 = c_t * t273;
+    const double t277 = t7 * t276;
+    const double t278 = t274 + t277;
     const double t279 = m_t * t278;
     const double t286 = t7 * t279;
     const double t287 = t6 * t282;
     const double t288 = t286 + t287;
     const double t45 = p->value[11];
-    const double t289 = t45 * t273;
+    const double t289 = t275 * t45;
     const double t290 = t288 - t289;
     const double F_ = u[0];
     const double t291 = F_ - t290;
@@ -870,28 +891,28 @@ car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5],
     const double y_dot = qd[1];
     const double t177 = y_dot * t8;
     const double t178 = t176 + t177;
-    const double t294 = t178 * t7;
-    const double t295 = y_dot * t9;
-    const double t296 = x_dot * t8;
-    const double t297 = t295 - t296;
-    const double t298 = t297 - t171;
-    const double t299 = t6 * t298;
-    const double t300 = t294 + t299;
+    const double t293 = t178 * t7;
+    const double t294 = y_dot * t9;
+    const double t295 = x_dot * t8;
+    const double t296 = t294 - t295;
+    const double t297 = t296 - t171;
+    const double t298 = t6 * t297;
+    const double t299 = t293 + t298;
     const double k = p->value[9];
-    const double t301 = k * t300;
-    const double t350 = t349 * t301;
+    const double t300 = k * t299;
+    const double t350 = t300 * t349;
     const double t352 = h * t284;
     const double t353 = t351 - t352;
     const double t354 = t350 - t353;
     const double t285 = t8 * t284;
     const double t292 = t9 * t291;
-    const double t293 = t285 + t292;
-    const double t302 = t19 * t301;
-    const double t303 = t293 - t302;
+    const double t301 = t300 * t19;
+    const double t302 = t292 - t301;
+    const double t303 = t285 + t302;
     const double t329 = t8 * t291;
-    const double t330 = t9 * t284;
+    const double t330 = t300 * t25;
     const double t331 = t329 - t330;
-    const double t332 = t25 * t301;
+    const double t332 = t9 * t284;
     const double t333 = t331 - t332;
     const double t167 = x_dot * t19;
     const double t168 = y_dot * t25;
@@ -906,9 +927,9 @@ car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5],
     const double t190 = t8 * t5;
     const double t191 = t190 + t126;
     const double t243 = t13 * t188;
-    const double t244 = t243 + t135;
+    const double t244 = t135 + t243;
     const double t306 = t13 * t191;
-    const double t307 = t306 + t214;
+    const double t307 = t214 + t306;
     const double t202 = d * t191;
     const double phi_dot = qd[3];
     const double t183 = phi_dot * t4;
@@ -984,7 +1005,7 @@ car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5],
     if (CAR_WITH_TRAILER_RARELY(!(t91 > t122))) {
         return CAR_WITH_TRAILER_MASS_RANK;
     }
-    const double t149 = t79 * t25;
+    const double t149 = t81 * t25;
     const double t147 = m_t * t8;
     const double m = p->value[3];
     const double t150 = m * t8;
@@ -999,7 +1020,7 @@ car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5],
     const double t237 = t235 + t236;
     const double t238 = t9 * t237;
     const double t239 = t234 + t238;
-    const double t324 = t79 * t19;
+    const double t324 = t81 * t19;
     const double t323 = c * t236;
     const double t325 = t323 - t324;
     const double t326 = h * t235;

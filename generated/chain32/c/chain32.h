@@ -73,8 +73,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     675    810      2      0     32      0
- * forward_dynamics    2356   2807     98      3     32      0
- * multipliers         1996   2407    100      3     32      0
+ * forward_dynamics    2621   3041     96      1     32      0
+ * multipliers         2318   2733     96      1     32      0
  * singularity          401    351     66      3     32      0
  * (changes of sign are not counted)
  *

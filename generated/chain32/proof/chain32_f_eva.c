@@ -137,7 +137,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t815, t849, t883, t917, t951, t985, t1019, t1053, t1087, t1121, t1155, t1189, t1223, t1257, t1291, t1325, t1359, t1393, t1427, t1461, t1495, t1529, t1563, t1597, t1631, t1665, t1699, t1733, t1767, t1801, t1823, t2789, t2795, t4347, t4349. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t815, t849, t883, t917, t951, t985, t1019, t1053, t1087, t1121, t1155, t1189, t1223, t1257, t1291, t1325, t1359, t1393, t1427, t1461, t1495, t1529, t1563, t1597, t1631, t1665, t1699, t1733, t1767, t1801, t1823, t2600, t4341. */
 void eva_forward_dynamics(void) {
     float q[32];
     float qd[32];
@@ -253,7 +253,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t815, t849, t883, t917, t951, t985, t1019, t1053, t1087, t1121, t1155, t1189, t1223, t1257, t1291, t1325, t1359, t1393, t1427, t1461, t1495, t1529, t1563, t1597, t1631, t1665, t1699, t1733, t1767, t1801, t2788, t3719, t1823, t4505, t4513. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t815, t849, t883, t917, t951, t985, t1019, t1053, t1087, t1121, t1155, t1189, t1223, t1257, t1291, t1325, t1359, t1393, t1427, t1461, t1495, t1529, t1563, t1597, t1631, t1665, t1699, t1733, t1767, t1801, t1823, t2600, t4338. */
 void eva_multipliers(void) {
     float q[32];
     float qd[32];

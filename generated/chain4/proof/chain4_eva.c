@@ -53,7 +53,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t67, t113, t147, t272, t266, t169, t426, t424. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t276. */
 void eva_forward_dynamics(void) {
     double q[4];
     double qd[4];
@@ -85,7 +85,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t67, t113, t147, t233, t406, t255, t317, t491, t499. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t67, t113, t147, t169, t246, t413. */
 void eva_multipliers(void) {
     double q[4];
     double qd[4];

@@ -18,8 +18,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      52     68      1      1      3      0
- * forward_dynamics     163    268     11      6      3      0
- * multipliers          148    237     14      6      3      0
+ * forward_dynamics     241    353      8      3      3      0
+ * multipliers          228    334      8      3      3      0
  * singularity           58    106     13      4      3      0
  * (changes of sign are not counted)
  *

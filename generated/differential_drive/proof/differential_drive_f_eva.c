@@ -112,7 +112,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t98, t238, t364, t245, t448, t496, t572, t360, t450, t498, t574, t631, t627. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t230. */
 void eva_multipliers(void) {
     float q[7];
     float qd[7];

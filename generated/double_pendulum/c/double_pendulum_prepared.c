@@ -11,6 +11,27 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -166,10 +187,10 @@ double_pendulum_prepared double_pendulum_prepare(const double_pendulum_params *p
     const double v29 = fabs(m_2);
     const double v30 = fabs(l_1);
     const double v31 = v30 * v30;
-    const double v32 = v21 * v31;
+    const double v32 = v31 * v21;
     const double v33 = fabs(c_2);
     const double v34 = v29 * v31;
-    const double v35 = v27 + v34;
+    const double v35 = v34 + v27;
     const double v36 = v33 * v35;
     const double v37 = v33 * v36;
     const double v38 = v32 + v37;

@@ -11,6 +11,22 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -158,10 +174,10 @@ double_pendulum_prepared_f double_pendulum_prepare_f(const double_pendulum_param
     const float v29 = fabsf(m_2);
     const float v30 = fabsf(l_1);
     const float v31 = v30 * v30;
-    const float v32 = v21 * v31;
+    const float v32 = v31 * v21;
     const float v33 = fabsf(c_2);
     const float v34 = v29 * v31;
-    const float v35 = v27 + v34;
+    const float v35 = v34 + v27;
     const float v36 = v33 * v35;
     const float v37 = v33 * v36;
     const float v38 = v32 + v37;

@@ -16,8 +16,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      31     41      1      0      3      2
- * forward_dynamics     106    194      7      3      4      2
- * multipliers           93    170      9      3      4      2
+ * forward_dynamics     147    236      5      1      4      2
+ * multipliers          135    220      5      1      4      2
  * singularity           37     57      9      2      4      0
  * (changes of sign are not counted)
  *

@@ -13,6 +13,22 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -197,8 +213,8 @@ size_t front_car_bodies_forward_dynamics_batch_f(size_t count, size_t stride, co
     const float m_2 = p->m_2;
     const float Theta_1 = p->Theta_1;
     const float Theta_2 = p->Theta_2;
-    const float t49 = L * m_2;
-    const float t66 = L * t49;
+    const float t50 = L * m_2;
+    const float t66 = L * t50;
     const float t67 = Theta_1 + t66;
     const float t87 = L * Theta_2;
     const float t29 = fabsf(L);
@@ -276,9 +292,9 @@ size_t front_car_bodies_forward_dynamics_batch_f(size_t count, size_t stride, co
             const float t133 = t131 + t132;
             const float t134 = t9 * t133;
             const float t135 = t130 + t134;
-            const float t136 = t68 * t126;
+            const float t136 = t126 * t68;
             const float t137 = t135 + t136;
-            const float t50 = theta_dot * theta_dot;
+            const float t49 = theta_dot * theta_dot;
             const float t51 = t49 * t50;
             const float t42 = L * t3;
             const float t45 = t6 * t4;
@@ -339,11 +355,11 @@ size_t front_car_bodies_forward_dynamics_batch_f(size_t count, size_t stride, co
             const float t105 = t86 * t104;
             const float t106 = t100 - t105;
             const float t107 = t96 - t106;
-            const float t109 = t3 * t64;
-            const float t110 = t91 * t99;
-            const float t111 = t84 * t104;
-            const float t112 = t110 + t111;
-            const float t113 = t109 + t112;
+            const float t109 = t91 * t99;
+            const float t110 = t84 * t104;
+            const float t111 = t109 + t110;
+            const float t112 = t3 * t64;
+            const float t113 = t111 + t112;
             const float t10 = t9 * t9;
             const float t12 = t11 * t11;
             const float t13 = t10 + t12;
@@ -439,9 +455,9 @@ size_t front_car_bodies_multipliers_batch_f(size_t count, size_t stride, const f
     const float t35 = fabsf(m_1);
     const float t36 = t35 + t30;
     const float t42 = L * Theta_2;
-    const float t54 = L * m_2;
-    const float t68 = L * t54;
-    const float t69 = Theta_1 + t68;
+    const float t55 = L * m_2;
+    const float t74 = L * t55;
+    const float t75 = Theta_1 + t74;
     float copy[7][LANES]; /* the last states, the first of them repeated */
     float result[2][LANES];
     float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -520,42 +536,42 @@ size_t front_car_bodies_multipliers_batch_f(size_t count, size_t stride, const f
             const float t100 = t6 * t19;
             const float t101 = t99 + t100;
             const float t102 = t42 * t101;
-            const float t72 = L * t3;
-            const float t82 = x_dot * t6;
-            const float t83 = y_dot * t5;
+            const float t78 = L * t3;
+            const float t68 = x_dot * t6;
+            const float t69 = y_dot * t5;
+            const float t70 = t68 + t69;
+            const float t71 = theta_dot * t70;
+            const float t79 = theta_dot * t78;
+            const float t80 = phi_dot * t79;
+            const float t81 = theta_dot + phi_dot;
+            const float t82 = x_dot * t52;
+            const float t83 = y_dot * t45;
             const float t84 = t82 + t83;
-            const float t85 = theta_dot * t84;
-            const float t73 = theta_dot * t72;
-            const float t74 = phi_dot * t73;
-            const float t75 = theta_dot + phi_dot;
-            const float t76 = x_dot * t52;
-            const float t77 = y_dot * t45;
-            const float t78 = t76 + t77;
-            const float t79 = t75 * t78;
-            const float t80 = t74 + t79;
-            const float t81 = t6 * t80;
-            const float t86 = t52 * t85;
-            const float t87 = t81 - t86;
-            const float t95 = t5 * t80;
-            const float t96 = t45 * t85;
+            const float t85 = t81 * t84;
+            const float t86 = t80 + t85;
+            const float t87 = t6 * t86;
+            const float t88 = t52 * t71;
+            const float t89 = t87 - t88;
+            const float t95 = t5 * t86;
+            const float t96 = t45 * t71;
             const float t97 = t95 - t96;
-            const float t89 = t8 * t85;
-            const float t70 = t3 * t69;
-            const float t71 = Theta_2 * t70;
-            const float t88 = t71 * t87;
-            const float t90 = t89 * t49;
-            const float t91 = t88 + t90;
+            const float t72 = t8 * t71;
+            const float t76 = t3 * t75;
+            const float t77 = Theta_2 * t76;
+            const float t73 = t72 * t49;
+            const float t90 = t77 * t89;
+            const float t91 = t73 + t90;
             const float t98 = t49 * t97;
-            const float t103 = t87 * t102;
+            const float t103 = t89 * t102;
             const float t104 = t98 + t103;
-            const float t113 = t71 * t97;
-            const float t114 = t89 * t102;
+            const float t113 = t77 * t97;
+            const float t114 = t72 * t102;
             const float t115 = t113 - t114;
             const float t41 = 1.0f / t25;
             const float t92 = t41 * t91;
             const float t105 = t41 * t104;
             const float t116 = t41 * t115;
-            const float t126 = K_f * t72;
+            const float t126 = K_f * t78;
             const float t60 = m_2 * t5;
             const float t63 = m_2 * t6;
             const float t94 = L * t60;
@@ -563,7 +579,7 @@ size_t front_car_bodies_multipliers_batch_f(size_t count, size_t stride, const f
             const float t127 = t118 * t116;
             const float t128 = t94 * t92;
             const float t129 = t127 - t128;
-            const float t130 = t69 * t105;
+            const float t130 = t75 * t105;
             const float t131 = t129 - t130;
             const float t132 = t126 + t131;
             const float t59 = m_1 * t5;
@@ -573,7 +589,7 @@ size_t front_car_bodies_multipliers_batch_f(size_t count, size_t stride, const f
             const float t65 = t63 + t64;
             const float t66 = t6 * t65;
             const float t67 = t62 + t66;
-            const float t55 = theta_dot * theta_dot;
+            const float t54 = theta_dot * theta_dot;
             const float t56 = t54 * t55;
             const float t53 = K_f * t52;
             const float t57 = t6 * t56;
@@ -589,10 +605,10 @@ size_t front_car_bodies_multipliers_batch_f(size_t count, size_t stride, const f
             const float t119 = t118 * t105;
             const float t120 = t117 - t119;
             const float t121 = t112 + t120;
-            const float t125 = t71 * t108;
+            const float t125 = t77 * t108;
             const float t133 = t102 * t132;
             const float t134 = t125 - t133;
-            const float t137 = t71 * t121;
+            const float t137 = t77 * t121;
             const float t138 = t49 * t132;
             const float t139 = t137 - t138;
             const float t109 = t49 * t108;

@@ -11,6 +11,27 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -83,14 +104,14 @@ front_car_bodies_status front_car_bodies_forward_dynamics_sc(const front_car_bod
     const double cos_theta = sc->cos_theta;
     const double t11 = cos_theta * t8;
     const double m_2 = p->m_2;
-    const double t49 = L * m_2;
+    const double t50 = L * m_2;
     const double t116 = m_2 * sin_theta;
     const double t119 = m_2 * cos_theta;
     const double T = u[1];
     const double sin_phi = sc->sin_phi;
     const double t126 = T * sin_phi;
     const double t127 = L * t126;
-    const double t66 = L * t49;
+    const double t66 = L * t50;
     const double Theta_1 = p->Theta_1;
     const double t67 = Theta_1 + t66;
     const double t68 = sin_phi * t67;
@@ -112,10 +133,10 @@ front_car_bodies_status front_car_bodies_forward_dynamics_sc(const front_car_bod
     const double t133 = t131 + t132;
     const double t134 = t9 * t133;
     const double t135 = t130 + t134;
-    const double t136 = t68 * t126;
+    const double t136 = t126 * t68;
     const double t137 = t135 + t136;
     const double theta_dot = qd[2];
-    const double t50 = theta_dot * theta_dot;
+    const double t49 = theta_dot * theta_dot;
     const double t51 = t49 * t50;
     const double t42 = L * sin_phi;
     const double t45 = cos_theta * cos_phi;
@@ -182,11 +203,11 @@ front_car_bodies_status front_car_bodies_forward_dynamics_sc(const front_car_bod
     const double t105 = t86 * t104;
     const double t106 = t100 - t105;
     const double t107 = t96 - t106;
-    const double t109 = sin_phi * t64;
-    const double t110 = t91 * t99;
-    const double t111 = t84 * t104;
-    const double t112 = t110 + t111;
-    const double t113 = t109 + t112;
+    const double t109 = t91 * t99;
+    const double t110 = t84 * t104;
+    const double t111 = t109 + t110;
+    const double t112 = sin_phi * t64;
+    const double t113 = t111 + t112;
     const double t10 = t9 * t9;
     const double t12 = t11 * t11;
     const double t13 = t10 + t12;
@@ -308,50 +329,50 @@ front_car_bodies_status front_car_bodies_multipliers_sc(const front_car_bodies_t
     const double t100 = cos_theta * t19;
     const double t101 = t99 + t100;
     const double t102 = t42 * t101;
-    const double t72 = L * sin_phi;
+    const double t78 = L * sin_phi;
     const double x_dot = qd[0];
-    const double t82 = x_dot * cos_theta;
+    const double t68 = x_dot * cos_theta;
     const double y_dot = qd[1];
-    const double t83 = y_dot * sin_theta;
-    const double t84 = t82 + t83;
+    const double t69 = y_dot * sin_theta;
+    const double t70 = t68 + t69;
     const double theta_dot = qd[2];
-    const double t85 = theta_dot * t84;
-    const double t73 = theta_dot * t72;
+    const double t71 = theta_dot * t70;
+    const double t79 = theta_dot * t78;
     const double phi_dot = qd[3];
-    const double t74 = phi_dot * t73;
-    const double t75 = theta_dot + phi_dot;
-    const double t76 = x_dot * t52;
-    const double t77 = y_dot * t45;
-    const double t78 = t76 + t77;
-    const double t79 = t75 * t78;
-    const double t80 = t74 + t79;
-    const double t81 = cos_theta * t80;
-    const double t86 = t52 * t85;
-    const double t87 = t81 - t86;
-    const double t95 = sin_theta * t80;
-    const double t96 = t45 * t85;
+    const double t80 = phi_dot * t79;
+    const double t81 = theta_dot + phi_dot;
+    const double t82 = x_dot * t52;
+    const double t83 = y_dot * t45;
+    const double t84 = t82 + t83;
+    const double t85 = t81 * t84;
+    const double t86 = t80 + t85;
+    const double t87 = cos_theta * t86;
+    const double t88 = t52 * t71;
+    const double t89 = t87 - t88;
+    const double t95 = sin_theta * t86;
+    const double t96 = t45 * t71;
     const double t97 = t95 - t96;
-    const double t89 = t8 * t85;
-    const double t54 = L * m_2;
-    const double t68 = L * t54;
-    const double t69 = Theta_1 + t68;
-    const double t70 = sin_phi * t69;
-    const double t71 = Theta_2 * t70;
-    const double t88 = t71 * t87;
-    const double t90 = t89 * t49;
-    const double t91 = t88 + t90;
+    const double t72 = t8 * t71;
+    const double t55 = L * m_2;
+    const double t74 = L * t55;
+    const double t75 = Theta_1 + t74;
+    const double t76 = sin_phi * t75;
+    const double t77 = Theta_2 * t76;
+    const double t73 = t72 * t49;
+    const double t90 = t77 * t89;
+    const double t91 = t73 + t90;
     const double t98 = t49 * t97;
-    const double t103 = t87 * t102;
+    const double t103 = t89 * t102;
     const double t104 = t98 + t103;
-    const double t113 = t71 * t97;
-    const double t114 = t89 * t102;
+    const double t113 = t77 * t97;
+    const double t114 = t72 * t102;
     const double t115 = t113 - t114;
     const double t41 = 1.0 / t25;
     const double t92 = t41 * t91;
     const double t105 = t41 * t104;
     const double t116 = t41 * t115;
     const double K_f = u[0];
-    const double t126 = K_f * t72;
+    const double t126 = K_f * t78;
     const double t60 = m_2 * sin_theta;
     const double t63 = m_2 * cos_theta;
     const double t94 = L * t60;
@@ -359,7 +380,7 @@ front_car_bodies_status front_car_bodies_multipliers_sc(const front_car_bodies_t
     const double t127 = t118 * t116;
     const double t128 = t94 * t92;
     const double t129 = t127 - t128;
-    const double t130 = t69 * t105;
+    const double t130 = t75 * t105;
     const double t131 = t129 - t130;
     const double t132 = t126 + t131;
     const double t59 = m_1 * sin_theta;
@@ -369,7 +390,7 @@ front_car_bodies_status front_car_bodies_multipliers_sc(const front_car_bodies_t
     const double t65 = t63 + t64;
     const double t66 = cos_theta * t65;
     const double t67 = t62 + t66;
-    const double t55 = theta_dot * theta_dot;
+    const double t54 = theta_dot * theta_dot;
     const double t56 = t54 * t55;
     const double t53 = K_f * t52;
     const double t57 = cos_theta * t56;
@@ -385,10 +406,10 @@ front_car_bodies_status front_car_bodies_multipliers_sc(const front_car_bodies_t
     const double t119 = t118 * t105;
     const double t120 = t117 - t119;
     const double t121 = t112 + t120;
-    const double t125 = t71 * t108;
+    const double t125 = t77 * t108;
     const double t133 = t102 * t132;
     const double t134 = t125 - t133;
-    const double t137 = t71 * t121;
+    const double t137 = t77 * t121;
     const double t138 = t49 * t132;
     const double t139 = t137 - t138;
     const double t109 = t49 * t108;

@@ -24,9 +24,6 @@ size_t gough_loops_inverse_dynamics_batch(size_t count, size_t stride, const dou
 /* q̈: accelerations under the inputs, (15); qdd has 24 rows */
 size_t gough_loops_forward_dynamics_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const gough_loops_params *p, double *qdd, unsigned char *status);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); lambda_B has 18 rows */
-size_t gough_loops_multipliers_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const gough_loops_params *p, double *lambda_B, unsigned char *status);
-
 #ifdef __cplusplus
 }
 #endif

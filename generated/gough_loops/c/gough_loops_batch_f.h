@@ -24,9 +24,6 @@ size_t gough_loops_inverse_dynamics_batch_f(size_t count, size_t stride, const f
 /* q̈: accelerations under the inputs, (15); qdd has 24 rows */
 size_t gough_loops_forward_dynamics_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *u, const gough_loops_params_f *p, float *qdd, unsigned char *status);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); lambda_B has 18 rows */
-size_t gough_loops_multipliers_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *u, const gough_loops_params_f *p, float *lambda_B, unsigned char *status);
-
 #ifdef __cplusplus
 }
 #endif

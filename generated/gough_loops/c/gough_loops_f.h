@@ -41,8 +41,7 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     501    801     20      4     16      0
- * forward_dynamics    2873   3844     72     19     16      0
- * multipliers         2819   3747     89     19     16      0
+ * forward_dynamics    6218   7205     53      1     16      0
  * singularity         2713   3511    133     37     16      0
  * (changes of sign are not counted)
  *
@@ -95,9 +94,6 @@ gough_loops_status gough_loops_inverse_dynamics_f(const float q[24], const float
 
 /* q̈: accelerations under the inputs, (15); length 24 */
 gough_loops_status gough_loops_forward_dynamics_f(const float q[24], const float qd[24], const float u[6], const gough_loops_params_f *p, float qdd[24]);
-
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); length 18 */
-gough_loops_status gough_loops_multipliers_f(const float q[24], const float qd[24], const float u[6], const gough_loops_params_f *p, float lambda_B[18]);
 
 /* σ: distances from constraint and input singularities, 0 to 1; length 2 */
 gough_loops_status gough_loops_singularity_f(const float q[24], const gough_loops_params_f *p, float measure[2]);

@@ -51,9 +51,6 @@ gough_loops_status gough_loops_inverse_dynamics_sc(const gough_loops_trig *sc, c
 /* q̈: accelerations under the inputs, (15) */
 gough_loops_status gough_loops_forward_dynamics_sc(const gough_loops_trig *sc, const double q[24], const double qd[24], const double u[6], const gough_loops_params *p, double qdd[24]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14) */
-gough_loops_status gough_loops_multipliers_sc(const gough_loops_trig *sc, const double q[24], const double qd[24], const double u[6], const gough_loops_params *p, double lambda_B[18]);
-
 #ifdef __cplusplus
 }
 #endif

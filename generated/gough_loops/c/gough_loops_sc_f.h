@@ -51,9 +51,6 @@ gough_loops_status gough_loops_inverse_dynamics_sc_f(const gough_loops_trig_f *s
 /* q̈: accelerations under the inputs, (15) */
 gough_loops_status gough_loops_forward_dynamics_sc_f(const gough_loops_trig_f *sc, const float q[24], const float qd[24], const float u[6], const gough_loops_params_f *p, float qdd[24]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14) */
-gough_loops_status gough_loops_multipliers_sc_f(const gough_loops_trig_f *sc, const float q[24], const float qd[24], const float u[6], const gough_loops_params_f *p, float lambda_B[18]);
-
 #ifdef __cplusplus
 }
 #endif

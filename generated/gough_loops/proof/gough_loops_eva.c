@@ -123,7 +123,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t103, t137, t200, t312, t77, t74, t394, t606, t802, t996, t993, t1035, t1280, t1556, t1622, t1619, t1654, t2181, t2538, t2604, t2601, t2643, t3093, t3517, t3951, t3948, t3990, t4347, t4436, t4451, t4458, t4476, t4490, t4496, t4508, t4520, t4525, t4537, t4549, t4566, t4580, t4585, t4597, t4601, t4613, t4623, t203, t487, t677, t396, t608, t804, t1037, t1282, t1558, t1656, t2183, t2540, t2645, t3095, t3519, t4010, t4349, t4419, t5600. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t83, t105, t111, t185, t303, t442, t456, t469, t670, t930, t1226, t1240, t1258, t1629, t2056, t2544, t2558, t2579, t3155, t3812, t4521, t4535, t4559, t4971, t5866, t6836, t6850, t6877, t7763, t7992, t8004, t8008, t8024, t8036, t8040, t8050, t8060, t8063, t8073, t8083, t8099, t8111, t8113, t8123, t8133, t8140, t7977. */
 void eva_forward_dynamics(void) {
     double q[24];
     double qd[24];
@@ -202,91 +202,6 @@ void eva_forward_dynamics(void) {
     p.J_z = Frama_C_double_interval(3.0, 3.0);
     p.g = Frama_C_double_interval(9.81, 9.81);
     gough_loops_status status = gough_loops_forward_dynamics(q, qd, u, &p, y);
-    //@ assert regular: status == GOUGH_LOOPS_OK || status == GOUGH_LOOPS_NOT_FINITE;
-    (void)status;
-}
-
-void eva_multipliers(void);
-
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t103, t137, t200, t312, t77, t74, t394, t606, t802, t996, t993, t1035, t1280, t1556, t1622, t1619, t1654, t2181, t2538, t2604, t2601, t2643, t3093, t3517, t3951, t3948, t3990, t4347, t4436, t4451, t4458, t4476, t4490, t4496, t4508, t4520, t4525, t4537, t4549, t4566, t4580, t4585, t4597, t4601, t4613, t4623, t203, t487, t677, t396, t608, t804, t1037, t1282, t1558, t1656, t2183, t2540, t2645, t3095, t3519, t4010, t4349, t6206, t4419. */
-void eva_multipliers(void) {
-    double q[24];
-    double qd[24];
-    double u[6];
-    gough_loops_params p;
-    double y[18];
-    q[0] = Frama_C_double_interval(-0.2, 0.2);
-    q[1] = Frama_C_double_interval(-0.2, 0.2);
-    q[2] = Frama_C_double_interval(0.7, 1.1);
-    q[3] = Frama_C_double_interval(-0.4, 0.4);
-    q[4] = Frama_C_double_interval(-0.4, 0.4);
-    q[5] = Frama_C_double_interval(-0.4, 0.4);
-    q[6] = Frama_C_double_interval(-1.0, 1.0);
-    q[7] = Frama_C_double_interval(-1.0, 1.0);
-    q[8] = Frama_C_double_interval(0.6, 1.4);
-    q[9] = Frama_C_double_interval(-1.0, 1.0);
-    q[10] = Frama_C_double_interval(-1.0, 1.0);
-    q[11] = Frama_C_double_interval(0.6, 1.4);
-    q[12] = Frama_C_double_interval(-1.0, 1.0);
-    q[13] = Frama_C_double_interval(-1.0, 1.0);
-    q[14] = Frama_C_double_interval(0.6, 1.4);
-    q[15] = Frama_C_double_interval(-1.0, 1.0);
-    q[16] = Frama_C_double_interval(-1.0, 1.0);
-    q[17] = Frama_C_double_interval(0.6, 1.4);
-    q[18] = Frama_C_double_interval(-1.0, 1.0);
-    q[19] = Frama_C_double_interval(-1.0, 1.0);
-    q[20] = Frama_C_double_interval(0.6, 1.4);
-    q[21] = Frama_C_double_interval(-1.0, 1.0);
-    q[22] = Frama_C_double_interval(-1.0, 1.0);
-    q[23] = Frama_C_double_interval(0.6, 1.4);
-    qd[0] = Frama_C_double_interval(-1.0, 1.0);
-    qd[1] = Frama_C_double_interval(-1.0, 1.0);
-    qd[2] = Frama_C_double_interval(-1.0, 1.0);
-    qd[3] = Frama_C_double_interval(-1.0, 1.0);
-    qd[4] = Frama_C_double_interval(-1.0, 1.0);
-    qd[5] = Frama_C_double_interval(-1.0, 1.0);
-    qd[6] = Frama_C_double_interval(-1.0, 1.0);
-    qd[7] = Frama_C_double_interval(-1.0, 1.0);
-    qd[8] = Frama_C_double_interval(-1.0, 1.0);
-    qd[9] = Frama_C_double_interval(-1.0, 1.0);
-    qd[10] = Frama_C_double_interval(-1.0, 1.0);
-    qd[11] = Frama_C_double_interval(-1.0, 1.0);
-    qd[12] = Frama_C_double_interval(-1.0, 1.0);
-    qd[13] = Frama_C_double_interval(-1.0, 1.0);
-    qd[14] = Frama_C_double_interval(-1.0, 1.0);
-    qd[15] = Frama_C_double_interval(-1.0, 1.0);
-    qd[16] = Frama_C_double_interval(-1.0, 1.0);
-    qd[17] = Frama_C_double_interval(-1.0, 1.0);
-    qd[18] = Frama_C_double_interval(-1.0, 1.0);
-    qd[19] = Frama_C_double_interval(-1.0, 1.0);
-    qd[20] = Frama_C_double_interval(-1.0, 1.0);
-    qd[21] = Frama_C_double_interval(-1.0, 1.0);
-    qd[22] = Frama_C_double_interval(-1.0, 1.0);
-    qd[23] = Frama_C_double_interval(-1.0, 1.0);
-    u[0] = Frama_C_double_interval(-1.0, 1.0);
-    u[1] = Frama_C_double_interval(-1.0, 1.0);
-    u[2] = Frama_C_double_interval(-1.0, 1.0);
-    u[3] = Frama_C_double_interval(-1.0, 1.0);
-    u[4] = Frama_C_double_interval(-1.0, 1.0);
-    u[5] = Frama_C_double_interval(-1.0, 1.0);
-    p.R = Frama_C_double_interval(0.5, 0.7);
-    p.r = Frama_C_double_interval(0.3, 0.4);
-    p.beta = Frama_C_double_interval(0.2, 0.2);
-    p.gamma_ = Frama_C_double_interval(0.25, 0.25);
-    p.m_t = Frama_C_double_interval(2.0, 8.0);
-    p.c_t = Frama_C_double_interval(0.25, 0.25);
-    p.J_t = Frama_C_double_interval(0.1, 0.1);
-    p.m_s = Frama_C_double_interval(1.0, 4.0);
-    p.c_s = Frama_C_double_interval(0.2, 0.2);
-    p.J_s = Frama_C_double_interval(0.04, 0.04);
-    p.J_l = Frama_C_double_interval(0.004, 0.004);
-    p.m = Frama_C_double_interval(20.0, 80.0);
-    p.h = Frama_C_double_interval(0.05, 0.05);
-    p.J_x = Frama_C_double_interval(1.6, 1.6);
-    p.J_y = Frama_C_double_interval(1.7, 1.7);
-    p.J_z = Frama_C_double_interval(3.0, 3.0);
-    p.g = Frama_C_double_interval(9.81, 9.81);
-    gough_loops_status status = gough_loops_multipliers(q, qd, u, &p, y);
     //@ assert regular: status == GOUGH_LOOPS_OK || status == GOUGH_LOOPS_NOT_FINITE;
     (void)status;
 }

@@ -87,14 +87,6 @@ static int forward_dynamics_32(float *const *x, const gough_loops_params_f *p, f
     return (int)gough_loops_forward_dynamics_f(x[0], x[1], x[3], p, y);
 }
 
-static int multipliers_64(double *const *x, const gough_loops_params *p, double *y) {
-    return (int)gough_loops_multipliers(x[0], x[1], x[3], p, y);
-}
-
-static int multipliers_32(float *const *x, const gough_loops_params_f *p, float *y) {
-    return (int)gough_loops_multipliers_f(x[0], x[1], x[3], p, y);
-}
-
 static int singularity_64(double *const *x, const gough_loops_params *p, double *y) {
     return (int)gough_loops_singularity(x[0], p, y);
 }
@@ -243,86 +235,14 @@ static int forward_dynamics_sc_32(float *const *x, const gough_loops_params_f *p
     return (int)gough_loops_forward_dynamics_sc_f(&sc, x[0], x[1], x[3], p, y);
 }
 
-static int multipliers_sc_64(double *const *x, const gough_loops_params *p, double *y) {
-    gough_loops_trig sc;
-    sc.sin_psi = x[4][0];
-    sc.cos_psi = x[4][1];
-    sc.sin_theta = x[4][2];
-    sc.cos_theta = x[4][3];
-    sc.sin_phi = x[4][4];
-    sc.cos_phi = x[4][5];
-    sc.sin_a_1 = x[4][6];
-    sc.cos_a_1 = x[4][7];
-    sc.sin_b_1 = x[4][8];
-    sc.cos_b_1 = x[4][9];
-    sc.sin_a_2 = x[4][10];
-    sc.cos_a_2 = x[4][11];
-    sc.sin_b_2 = x[4][12];
-    sc.cos_b_2 = x[4][13];
-    sc.sin_a_3 = x[4][14];
-    sc.cos_a_3 = x[4][15];
-    sc.sin_b_3 = x[4][16];
-    sc.cos_b_3 = x[4][17];
-    sc.sin_a_4 = x[4][18];
-    sc.cos_a_4 = x[4][19];
-    sc.sin_b_4 = x[4][20];
-    sc.cos_b_4 = x[4][21];
-    sc.sin_a_5 = x[4][22];
-    sc.cos_a_5 = x[4][23];
-    sc.sin_b_5 = x[4][24];
-    sc.cos_b_5 = x[4][25];
-    sc.sin_a_6 = x[4][26];
-    sc.cos_a_6 = x[4][27];
-    sc.sin_b_6 = x[4][28];
-    sc.cos_b_6 = x[4][29];
-    return (int)gough_loops_multipliers_sc(&sc, x[0], x[1], x[3], p, y);
-}
-
-static int multipliers_sc_32(float *const *x, const gough_loops_params_f *p, float *y) {
-    gough_loops_trig_f sc;
-    sc.sin_psi = x[4][0];
-    sc.cos_psi = x[4][1];
-    sc.sin_theta = x[4][2];
-    sc.cos_theta = x[4][3];
-    sc.sin_phi = x[4][4];
-    sc.cos_phi = x[4][5];
-    sc.sin_a_1 = x[4][6];
-    sc.cos_a_1 = x[4][7];
-    sc.sin_b_1 = x[4][8];
-    sc.cos_b_1 = x[4][9];
-    sc.sin_a_2 = x[4][10];
-    sc.cos_a_2 = x[4][11];
-    sc.sin_b_2 = x[4][12];
-    sc.cos_b_2 = x[4][13];
-    sc.sin_a_3 = x[4][14];
-    sc.cos_a_3 = x[4][15];
-    sc.sin_b_3 = x[4][16];
-    sc.cos_b_3 = x[4][17];
-    sc.sin_a_4 = x[4][18];
-    sc.cos_a_4 = x[4][19];
-    sc.sin_b_4 = x[4][20];
-    sc.cos_b_4 = x[4][21];
-    sc.sin_a_5 = x[4][22];
-    sc.cos_a_5 = x[4][23];
-    sc.sin_b_5 = x[4][24];
-    sc.cos_b_5 = x[4][25];
-    sc.sin_a_6 = x[4][26];
-    sc.cos_a_6 = x[4][27];
-    sc.sin_b_6 = x[4][28];
-    sc.cos_b_6 = x[4][29];
-    return (int)gough_loops_multipliers_sc_f(&sc, x[0], x[1], x[3], p, y);
-}
-
 static const Kernel kernels[] = {
     {"inverse_dynamics", inverse_dynamics_64, inverse_dynamics_32, {1, 1, 1, 0, 0}, 6u, 1, 0, NULL, NULL},
     {"forward_dynamics", forward_dynamics_64, forward_dynamics_32, {1, 1, 0, 1, 0}, 24u, 1, 0, NULL, NULL},
-    {"multipliers", multipliers_64, multipliers_32, {1, 1, 0, 1, 0}, 18u, 0, 0, NULL, NULL},
     {"singularity", singularity_64, singularity_32, {1, 0, 0, 0, 0}, 2u, 0, 0, NULL, NULL},
     {"inverse_dynamics_sc", inverse_dynamics_sc_64, inverse_dynamics_sc_32, {1, 1, 1, 0, 0}, 6u, 1, 1, NULL, NULL},
     {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0}, 24u, 1, 1, NULL, NULL},
-    {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0}, 18u, 0, 1, NULL, NULL},
 };
-enum { KERNELS = 7 };
+enum { KERNELS = 5 };
 
 static const size_t sizes[ARRAYS] = {24u, 24u, 24u, 6u, 30u};
 static const float ranges[][2] = {

@@ -29,8 +29,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     261    355      8      4      5      0
- * forward_dynamics    1199   1833     39     12      5      0
- * multipliers         1141   1752     48     12      5      0
+ * forward_dynamics    1557   2257     41      6      5      0
+ * multipliers         1503   2189     41      6      5      0
  * singularity          681    992     49     13      5      0
  * (changes of sign are not counted)
  *

@@ -96,7 +96,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1047, t1058, t1296, t1301, t1504, t1630, t1779, t1952, t2151, t1507, t1633, t1782, t1955, t2154. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1012, t1057, t1122, t1231, t1367, t1451, t2480, t2754. */
 void eva_forward_dynamics(void) {
     static const double low_9[] = {-0x1.999999999999ap-2, -0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3};
     static const double high_9[] = {-0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3, 0x1.999999999999ap-2};
@@ -166,7 +166,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1047, t1079, t1123, t1145, t1142, t1567, t1687, t1830, t1997, t2060, t2065, t2096, t2126, t2156, t2056. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1012, t1057, t1122, t1534, t1668, t1845, t2066, t2166. */
 void eva_multipliers(void) {
     static const double low_9[] = {-0x1.999999999999ap-2, -0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3};
     static const double high_9[] = {-0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3, 0x1.999999999999ap-2};

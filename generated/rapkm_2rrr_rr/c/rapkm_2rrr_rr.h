@@ -49,8 +49,8 @@
  * projected_configuration             219    242     16      8     12      0
  * inverse_dynamics                     51     76      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    335    483     14      6      6      0
- * multipliers                         208    300     24      7      6      0
+ * forward_dynamics                    326    448     15      3      6      0
+ * multipliers                         307    424     15      3      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          55     91     17      4      6      0
  * (changes of sign are not counted)

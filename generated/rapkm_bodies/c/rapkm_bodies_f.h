@@ -19,8 +19,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      53     83      3      0      5      0
- * forward_dynamics     271    405     11      4      6      0
- * multipliers          214    346     22      7      6      0
+ * forward_dynamics     351    503     14      3      6      0
+ * multipliers          332    474     14      3      6      0
  * singularity           55     91     17      4      6      0
  * (changes of sign are not counted)
  *

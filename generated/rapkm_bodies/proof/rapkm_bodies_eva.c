@@ -66,7 +66,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t131, t186, t319, t50, t87, t140, t182, t463. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t81, t149, t204, t240, t293, t327, t255, t474, t581. */
 void eva_forward_dynamics(void) {
     double q[6];
     double qd[6];
@@ -109,7 +109,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t81, t149, t240, t317, t204, t406, t458, t255, t313, t408, t476, t539, t535. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t81, t149, t240, t204, t287, t395, t255, t457, t511. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];

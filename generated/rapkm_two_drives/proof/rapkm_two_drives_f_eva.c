@@ -1218,7 +1218,7 @@ void eva_actuator_bias(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t131, t196, t229, t330, t50, t89, t140, t503, t501, t753, t849. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t234, t225, t259, t289, t209, t403, t498. */
 void eva_forward_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1260,7 +1260,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t198, t236, t245, t254, t249, t287, t369, t259, t419, t284, t374, t426, t489, t485. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t225, t234, t257, t209, t337, t374, t440. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];

@@ -19,8 +19,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      15     32      2      0      2      0
- * forward_dynamics      97    178     12      5      3      0
- * multipliers           80    152     14      5      3      0
+ * forward_dynamics     149    213      9      2      3      0
+ * multipliers          132    190      8      2      3      0
  * singularity           27     63     12      3      2      0
  * (changes of sign are not counted)
  *

@@ -11,6 +11,27 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -192,10 +213,10 @@ rolling_disc_status rolling_disc_inverse_dynamics_prepared(const double q[6], co
         const double t35 = t34 * t18;
         const double t36 = t35 * t35;
         const double t37 = t33 + t36;
-        const double t38 = t27 * t20;
+        const double t38 = t20 * t27;
         const double t39 = t38 * t38;
         const double t40 = t37 + t39;
-        const double t41 = t27 * t24;
+        const double t41 = t24 * t27;
         const double t42 = t41 * t41;
         const double t43 = t40 + t42;
         const double t44 = R * R;
@@ -209,10 +230,10 @@ rolling_disc_status rolling_disc_inverse_dynamics_prepared(const double q[6], co
         const double t52 = t50 + t51;
         const double t53 = t23 * t23;
         const double t54 = t52 + t53;
-        const double t55 = t27 * t19;
+        const double t55 = t19 * t27;
         const double t56 = t55 * t55;
         const double t57 = t54 + t56;
-        const double t58 = t27 * t23;
+        const double t58 = t23 * t27;
         const double t59 = t58 * t58;
         const double t60 = t57 + t59;
         const double t61 = t4 * t44;

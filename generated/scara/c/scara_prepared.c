@@ -11,6 +11,27 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -161,7 +182,7 @@ scara_prepared scara_prepare(const scara_params *p) {
     const double v20 = l_2 * m_2;
     const double v21 = l_2 * m_3;
     const double v22 = 0.5 * v20;
-    const double v23 = v22 + v21;
+    const double v23 = v21 + v22;
     const double v24 = 0.25 * v20;
     const double v25 = v24 + v21;
     const double v26 = l_2 * v25;
@@ -454,18 +475,18 @@ scara_status scara_forward_dynamics_prepared(const double q[4], const double qd[
     const double t112 = l_2 * t111;
     const double u_4 = u[3];
     const double t113 = u_4 - t112;
-    const double t114 = 0.5 * q_2_dot;
-    const double t115 = 50.0 * q_2_dot;
-    const double t116 = tanh(t115);
-    const double t117 = t114 + t116;
+    const double t114 = 50.0 * q_2_dot;
+    const double t116 = 0.5 * q_2_dot;
+    const double t115 = tanh(t114);
+    const double t117 = t115 + t116;
     const double u_2 = u[1];
     const double t118 = u_2 - t117;
     const double t119 = t118 + t113;
-    const double t84 = 0.8 * q_1_dot;
-    const double t85 = 50.0 * q_1_dot;
-    const double t86 = tanh(t85);
-    const double t87 = 1.5 * t86;
-    const double t88 = t84 + t87;
+    const double t84 = 50.0 * q_1_dot;
+    const double t87 = 0.8 * q_1_dot;
+    const double t85 = tanh(t84);
+    const double t86 = 1.5 * t85;
+    const double t88 = t86 + t87;
     const double u_1 = u[0];
     const double t89 = u_1 - t88;
     const double t16 = p->value[17];

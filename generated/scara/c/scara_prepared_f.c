@@ -11,6 +11,22 @@
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -153,7 +169,7 @@ scara_prepared_f scara_prepare_f(const scara_params_f *p) {
     const float v20 = l_2 * m_2;
     const float v21 = l_2 * m_3;
     const float v22 = 0.5f * v20;
-    const float v23 = v22 + v21;
+    const float v23 = v21 + v22;
     const float v24 = 0.25f * v20;
     const float v25 = v24 + v21;
     const float v26 = l_2 * v25;
@@ -446,18 +462,18 @@ scara_status scara_forward_dynamics_prepared_f(const float q[4], const float qd[
     const float t112 = l_2 * t111;
     const float u_4 = u[3];
     const float t113 = u_4 - t112;
-    const float t114 = 0.5f * q_2_dot;
-    const float t115 = 50.0f * q_2_dot;
-    const float t116 = tanhf(t115);
-    const float t117 = t114 + t116;
+    const float t114 = 50.0f * q_2_dot;
+    const float t116 = 0.5f * q_2_dot;
+    const float t115 = tanhf(t114);
+    const float t117 = t115 + t116;
     const float u_2 = u[1];
     const float t118 = u_2 - t117;
     const float t119 = t118 + t113;
-    const float t84 = 0.8f * q_1_dot;
-    const float t85 = 50.0f * q_1_dot;
-    const float t86 = tanhf(t85);
-    const float t87 = 1.5f * t86;
-    const float t88 = t84 + t87;
+    const float t84 = 50.0f * q_1_dot;
+    const float t87 = 0.8f * q_1_dot;
+    const float t85 = tanhf(t84);
+    const float t86 = 1.5f * t85;
+    const float t88 = t86 + t87;
     const float u_1 = u[0];
     const float t89 = u_1 - t88;
     const float t16 = p->value[17];

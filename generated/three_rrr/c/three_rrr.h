@@ -22,8 +22,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      69    113      3      0      9      0
- * forward_dynamics     467    707     24     12      7      0
- * multipliers          433    647     30     12      7      0
+ * forward_dynamics     724    965     18      6      7      0
+ * multipliers          694    924     18      6      7      0
  * singularity          156    228     30     12      7      0
  * (changes of sign are not counted)
  *

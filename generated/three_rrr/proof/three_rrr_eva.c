@@ -72,7 +72,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t412, t485, t491, t544, t542, t438, t654, t652, t706, t712, t447, t922, t1048, t927, t1052. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t412, t479, t504, t438, t623, t685, t447, t843, t1165. */
 void eva_forward_dynamics(void) {
     double q[9];
     double qd[9];
@@ -118,7 +118,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t484, t506, t412, t591, t589, t438, t661, t659, t447, t799, t806, t923, t919, t992, t1099. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t412, t473, t572, t438, t623, t747, t447, t891, t972. */
 void eva_multipliers(void) {
     double q[9];
     double qd[9];

@@ -13,9 +13,9 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      55    106      1      0      5      0
- * forward_dynamics     145    257      2      0      5      0
- * multipliers          165    281      2      0      5      0
+ * inverse_dynamics      60    110      1      0      5      0
+ * forward_dynamics     232    401     16      0      5      2
+ * multipliers          222    393     16      0      5      2
  * singularity           35     63     14      3      5      0
  * (changes of sign are not counted)
  *

@@ -20,7 +20,7 @@ float Frama_C_float_interval(float min, float max);
 
 void eva_inverse_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t57. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t303. */
 void eva_inverse_dynamics(void) {
     float q[3];
     float qd[3];
@@ -50,7 +50,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t188. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t379, t407, t443, t544. */
 void eva_forward_dynamics(void) {
     float q[3];
     float qd[3];
@@ -78,7 +78,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t106, t273. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t282, t431, t306, t496. */
 void eva_multipliers(void) {
     float q[3];
     float qd[3];

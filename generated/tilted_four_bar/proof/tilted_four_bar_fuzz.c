@@ -21,7 +21,7 @@
  *
  * With libFuzzer:  clang -g -O1 -ffp-contract=off -fno-sanitize-recover=all -Ic
  *                  -fsanitize=fuzzer,address,undefined,float-cast-overflow
- *                  proof/tilted_four_bar_fuzz.c c/tilted_four_bar.c c/tilted_four_bar_f.c c/tilted_four_bar_prepared.c c/tilted_four_bar_prepared_f.c c/tilted_four_bar_sc.c c/tilted_four_bar_sc_f.c -lm
+ *                  proof/tilted_four_bar_fuzz.c c/tilted_four_bar.c c/tilted_four_bar_f.c c/tilted_four_bar_sc.c c/tilted_four_bar_sc_f.c -lm
  * Without:         -DSTANDALONE and no `fuzzer`, gcc or clang; the argument is the number of inputs tried.
  * Divisions:       -DINSIDE and float-divide-by-zero among the sanitizers.
  *
@@ -29,8 +29,6 @@
  */
 #include "tilted_four_bar.h"
 #include "tilted_four_bar_f.h"
-#include "tilted_four_bar_prepared.h"
-#include "tilted_four_bar_prepared_f.h"
 #include "tilted_four_bar_sc.h"
 #include "tilted_four_bar_sc_f.h"
 
@@ -105,30 +103,6 @@ static int singularity_32(float *const *x, const tilted_four_bar_params_f *p, fl
     return (int)tilted_four_bar_singularity_f(x[0], p, y);
 }
 
-static int forward_dynamics_prepared_64(double *const *x, const tilted_four_bar_params *p, double *y) {
-    const tilted_four_bar_prepared ready = tilted_four_bar_prepare(p);
-    feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
-    return (int)tilted_four_bar_forward_dynamics_prepared(x[0], x[1], x[3], &ready, y);
-}
-
-static int forward_dynamics_prepared_32(float *const *x, const tilted_four_bar_params_f *p, float *y) {
-    const tilted_four_bar_prepared_f ready = tilted_four_bar_prepare_f(p);
-    feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
-    return (int)tilted_four_bar_forward_dynamics_prepared_f(x[0], x[1], x[3], &ready, y);
-}
-
-static int multipliers_prepared_64(double *const *x, const tilted_four_bar_params *p, double *y) {
-    const tilted_four_bar_prepared ready = tilted_four_bar_prepare(p);
-    feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
-    return (int)tilted_four_bar_multipliers_prepared(x[0], x[1], x[3], &ready, y);
-}
-
-static int multipliers_prepared_32(float *const *x, const tilted_four_bar_params_f *p, float *y) {
-    const tilted_four_bar_prepared_f ready = tilted_four_bar_prepare_f(p);
-    feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
-    return (int)tilted_four_bar_multipliers_prepared_f(x[0], x[1], x[3], &ready, y);
-}
-
 static int inverse_dynamics_sc_64(double *const *x, const tilted_four_bar_params *p, double *y) {
     tilted_four_bar_trig sc;
     sc.sin_a = x[4][0];
@@ -200,13 +174,11 @@ static const Kernel kernels[] = {
     {"forward_dynamics", forward_dynamics_64, forward_dynamics_32, {1, 1, 0, 1, 0}, 3u, 1, 0, NULL, NULL},
     {"multipliers", multipliers_64, multipliers_32, {1, 1, 0, 1, 0}, 3u, 0, 0, NULL, NULL},
     {"singularity", singularity_64, singularity_32, {1, 0, 0, 0, 0}, 2u, 0, 0, NULL, NULL},
-    {"forward_dynamics_prepared", forward_dynamics_prepared_64, forward_dynamics_prepared_32, {1, 1, 0, 1, 0}, 3u, 1, 0, forward_dynamics_64, forward_dynamics_32},
-    {"multipliers_prepared", multipliers_prepared_64, multipliers_prepared_32, {1, 1, 0, 1, 0}, 3u, 0, 0, multipliers_64, multipliers_32},
     {"inverse_dynamics_sc", inverse_dynamics_sc_64, inverse_dynamics_sc_32, {1, 1, 1, 0, 0}, 1u, 1, 1, NULL, NULL},
     {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0}, 3u, 1, 1, NULL, NULL},
     {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0}, 3u, 0, 1, NULL, NULL},
 };
-enum { KERNELS = 9 };
+enum { KERNELS = 7 };
 
 static const size_t sizes[ARRAYS] = {3u, 3u, 3u, 1u, 6u};
 static const float ranges[][2] = {

@@ -44,6 +44,22 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -255,7 +271,7 @@ arm7_prepared_f arm7_prepare_f(const arm7_params_f *p) {
     const float v32 = c_z7 * v15;
     const float v33 = I_yz7 - v32;
     const float v34 = v33 / v26;
-    const float v35 = v23 * v34;
+    const float v35 = v34 * v23;
     const float v36 = v31 - v35;
     const float v37 = m_6 * c_z6;
     const float v38 = c_z6 * v37;
@@ -376,8 +392,8 @@ arm7_prepared_f arm7_prepare_f(const arm7_params_f *p) {
     const float v153 = v151 + v152;
     const float v154 = v150 + v153;
     const float v155 = fabsf(c_z2);
-    const float v156 = fabsf(c_x2);
-    const float v157 = fabsf(c_y2);
+    const float v156 = fabsf(c_y2);
+    const float v157 = fabsf(c_x2);
     const float v158 = v156 + v157;
     const float v159 = v155 + v158;
     const float v160 = m_2 * v159;
@@ -508,7 +524,7 @@ arm7_prepared_f arm7_prepare_f(const arm7_params_f *p) {
     const float v285 = 2.0f * c_x2;
     const float v286 = 2.0f * I_xy2;
     const float v287 = I_xx3 - I_zz3;
-    const float v288 = I_zz2 - v283;
+    const float v288 = v283 - I_zz2;
     arm7_prepared_f prepared;
     prepared.value[0] = d_3;
     prepared.value[1] = d_5;
@@ -873,7 +889,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t238 = t17 * t39;
     const float t239 = t237 + t238;
     const float t59 = p->value[75];
-    const float t240 = t239 + t59;
+    const float t240 = t59 + t239;
     const float t241 = t229 / t163;
     const float t242 = t141 * t241;
     const float t243 = t240 + t242;
@@ -1373,58 +1389,58 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t850 = q_2_dot * t9;
     const float q_1_dot = qd[0];
     const float t851 = q_1_dot * t7;
-    const float t852 = t10 * t851;
+    const float t852 = t851 * t10;
     const float t853 = t850 - t852;
-    const float t854 = t12 * t853;
+    const float t854 = t853 * t12;
     const float t855 = q_1_dot * t8;
     const float q_3_dot = qd[2];
     const float t856 = q_3_dot + t855;
-    const float t857 = t11 * t856;
+    const float t857 = t856 * t11;
     const float t858 = t854 + t857;
-    const float t859 = t14 * t858;
-    const float t860 = t9 * t851;
+    const float t859 = t858 * t14;
+    const float t860 = t851 * t9;
     const float t861 = q_2_dot * t10;
     const float t862 = t860 + t861;
     const float q_4_dot = qd[3];
     const float t863 = q_4_dot - t862;
-    const float t864 = t13 * t863;
+    const float t864 = t863 * t13;
     const float t865 = t859 - t864;
-    const float t866 = t16 * t865;
-    const float t867 = t12 * t856;
-    const float t868 = t11 * t853;
+    const float t866 = t865 * t16;
+    const float t867 = t856 * t12;
+    const float t868 = t853 * t11;
     const float t869 = t867 - t868;
     const float q_5_dot = qd[4];
     const float t870 = q_5_dot + t869;
-    const float t871 = t15 * t870;
+    const float t871 = t870 * t15;
     const float t872 = t866 - t871;
-    const float t873 = t18 * t872;
-    const float t874 = t13 * t858;
-    const float t875 = t14 * t863;
+    const float t873 = t872 * t18;
+    const float t874 = t858 * t13;
+    const float t875 = t863 * t14;
     const float t876 = t874 + t875;
     const float q_6_dot = qd[5];
     const float t877 = q_6_dot - t876;
-    const float t878 = t17 * t877;
+    const float t878 = t877 * t17;
     const float t879 = t873 + t878;
     const float t880 = t879 * t879;
-    const float t881 = t18 * t877;
-    const float t882 = t17 * t872;
+    const float t881 = t877 * t18;
+    const float t882 = t872 * t17;
     const float t883 = t881 - t882;
     const float t884 = t883 * t883;
     const float t885 = t880 - t884;
     const float I_xy7 = p->value[58];
     const float t886 = I_xy7 * t885;
-    const float t887 = t879 * t883;
+    const float t887 = t883 * t879;
     const float t888 = p->value[131];
     const float t889 = t887 * t888;
     const float t890 = t872 * t877;
-    const float t891 = t858 * t863;
+    const float t891 = t863 * t858;
     const float t892 = q_2_dot * t851;
-    const float t893 = t853 * t862;
+    const float t893 = t862 * t853;
     const float t894 = t892 + t893;
     const float t895 = t12 * t894;
     const float t896 = t862 * t856;
     const float t897 = t851 * t855;
-    const float t898 = t9 * t897;
+    const float t898 = t897 * t9;
     const float t899 = q_2_dot * t855;
     const float t900 = 2.0f * t899;
     const float t901 = t10 * t900;
@@ -1434,13 +1450,13 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t905 = t11 * t904;
     const float t906 = t895 + t905;
     const float t907 = t891 + t906;
-    const float t908 = t865 * t876;
+    const float t908 = t876 * t865;
     const float t909 = t907 - t908;
     const float t910 = t16 * t909;
-    const float t911 = t858 * t869;
-    const float t912 = t853 * t856;
+    const float t911 = t869 * t858;
+    const float t912 = t856 * t853;
     const float t913 = t9 * t900;
-    const float t914 = t10 * t897;
+    const float t914 = t897 * t10;
     const float t915 = t913 - t914;
     const float t916 = t912 - t915;
     const float t917 = t911 - t916;
@@ -1462,14 +1478,14 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float I_zz7 = p->value[57];
     const float t933 = I_zz7 * t932;
     const float t934 = t889 + t933;
-    const float t935 = t15 * t865;
-    const float t936 = t16 * t870;
+    const float t935 = t865 * t15;
+    const float t936 = t870 * t16;
     const float t937 = t935 + t936;
     const float t938 = t872 * t937;
     const float t939 = t14 * t917;
     const float t940 = t13 * t924;
     const float t941 = t939 - t940;
-    const float t942 = t865 * t870;
+    const float t942 = t870 * t865;
     const float t943 = t941 - t942;
     const float t944 = t938 + t943;
     const float t945 = t18 * t944;
@@ -1497,7 +1513,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float q_7_dot = qd[6];
     const float t964 = q_7_dot + t937;
     const float t965 = t964 * t964;
-    const float t966 = t880 + t965;
+    const float t966 = t965 + t880;
     const float c_y7 = p->value[53];
     const float t967 = c_y7 * t966;
     const float t968 = t963 - t967;
@@ -1508,12 +1524,12 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t972 = d_5 * t917;
     const float g = p->value[3];
     const float t973 = g * t8;
-    const float t974 = t851 * t851;
-    const float t975 = q_2_dot * q_2_dot;
+    const float t974 = q_2_dot * q_2_dot;
+    const float t975 = t851 * t851;
     const float t976 = t974 + t975;
     const float t977 = d_3 * t976;
     const float t978 = t973 - t977;
-    const float t979 = t11 * t978;
+    const float t979 = t978 * t11;
     const float t980 = d_3 * t900;
     const float t981 = t9 * t980;
     const float t982 = g * t7;
@@ -1533,11 +1549,11 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t996 = t13 * t995;
     const float t997 = t990 - t996;
     const float t998 = t16 * t997;
-    const float t999 = t12 * t978;
+    const float t999 = t978 * t12;
     const float t1000 = t11 * t986;
     const float t1001 = t999 - t1000;
-    const float t1002 = t858 * t858;
-    const float t1003 = t863 * t863;
+    const float t1002 = t863 * t863;
+    const float t1003 = t858 * t858;
     const float t1004 = t1002 + t1003;
     const float t1005 = d_5 * t1004;
     const float t1006 = t1001 - t1005;
@@ -1577,7 +1593,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1037 = t53 * t1036;
     const float t1038 = t965 - t880;
     const float t1039 = I_xz7 * t1038;
-    const float t1040 = t879 * t964;
+    const float t1040 = t964 * t879;
     const float t1041 = p->value[132];
     const float t1042 = t1040 * t1041;
     const float t1043 = t953 - t1040;
@@ -1599,8 +1615,8 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1058 = t15 * t997;
     const float t1059 = t16 * t1006;
     const float t1060 = t1058 + t1059;
-    const float t1061 = t872 * t872;
-    const float t1062 = t877 * t877;
+    const float t1061 = t877 * t877;
+    const float t1062 = t872 * t872;
     const float t1063 = t1061 + t1062;
     const float t1064 = p->value[133];
     const float t1065 = t1063 * t1064;
@@ -1646,7 +1662,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1101 = d_7 * t1100;
     const float t1102 = t1093 - t1101;
     const float t1103 = t937 * t937;
-    const float t1104 = t1103 - t1062;
+    const float t1104 = t1103 - t1061;
     const float I_yz6 = p->value[50];
     const float t1105 = I_yz6 * t1104;
     const float I_xx6 = p->value[45];
@@ -1668,8 +1684,8 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float c_y6 = p->value[43];
     const float t1118 = c_y6 * t951;
     const float t1119 = t1117 - t1118;
-    const float t1120 = t865 * t865;
-    const float t1121 = t870 * t870;
+    const float t1120 = t870 * t870;
+    const float t1121 = t865 * t865;
     const float t1122 = t1120 + t1121;
     const float c_z6 = p->value[44];
     const float t1123 = c_z6 * t1122;
@@ -1696,7 +1712,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1144 = t18 * t1073;
     const float t1145 = t1143 + t1144;
     const float t1146 = t1142 - t1145;
-    const float t1147 = t1061 - t1103;
+    const float t1147 = t1062 - t1103;
     const float t1148 = I_xy6 * t1147;
     const float I_zz6 = p->value[47];
     const float t1149 = I_zz6 * t943;
@@ -1710,7 +1726,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1157 = t1148 + t1156;
     const float t1158 = c_x6 * t1134;
     const float t1159 = c_z6 * t931;
-    const float t1160 = t1103 + t1062;
+    const float t1160 = t1103 + t1061;
     const float t1161 = c_x6 * t1160;
     const float t1162 = c_y6 * t944;
     const float t1163 = t1161 + t1162;
@@ -1726,7 +1742,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1172 = t164 * t1171;
     const float t1173 = t1138 - t1172;
     const float t1174 = t16 * t1173;
-    const float t1175 = t1062 - t1061;
+    const float t1175 = t1061 - t1062;
     const float t1176 = I_xz6 * t1175;
     const float t1177 = I_yz6 * t944;
     const float t1178 = p->value[137];
@@ -1748,7 +1764,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1193 = t15 * t1192;
     const float t1194 = t1174 - t1193;
     const float t1195 = t876 * t876;
-    const float t1196 = t1195 - t1121;
+    const float t1196 = t1195 - t1120;
     const float I_yz5 = p->value[40];
     const float t1197 = I_yz5 * t1196;
     const float I_xx5 = p->value[35];
@@ -1789,7 +1805,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1227 = t1194 - t1226;
     const float t1228 = c_x5 * t1223;
     const float t1229 = c_y5 * t909;
-    const float t1230 = t1195 + t1121;
+    const float t1230 = t1195 + t1120;
     const float t1231 = c_x5 * t1230;
     const float t1232 = t1229 - t1231;
     const float t1233 = c_z5 * t941;
@@ -1798,7 +1814,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1236 = m_5 * t1235;
     const float t1237 = c_y5 * t1236;
     const float t1238 = t1228 + t1237;
-    const float t1239 = t1120 - t1195;
+    const float t1239 = t1121 - t1195;
     const float t1240 = I_xy5 * t1239;
     const float t1241 = I_yz5 * t941;
     const float t1242 = p->value[139];
@@ -1820,7 +1836,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1256 = t206 * t1255;
     const float t1257 = t1227 - t1256;
     const float t1258 = t14 * t1257;
-    const float t1259 = t1121 - t1120;
+    const float t1259 = t1120 - t1121;
     const float t1260 = I_xz5 * t1259;
     const float t1261 = p->value[140];
     const float t1262 = t942 * t1261;
@@ -1865,7 +1881,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1300 = d_5 * t1299;
     const float t1301 = t1278 - t1300;
     const float t1302 = t869 * t869;
-    const float t1303 = t1302 - t1003;
+    const float t1303 = t1302 - t1002;
     const float I_yz4 = p->value[30];
     const float t1304 = I_yz4 * t1303;
     const float t1305 = p->value[141];
@@ -1887,8 +1903,8 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float c_y4 = p->value[23];
     const float t1317 = c_y4 * t924;
     const float t1318 = t1316 + t1317;
-    const float t1319 = t853 * t853;
-    const float t1320 = t856 * t856;
+    const float t1319 = t856 * t856;
+    const float t1320 = t853 * t853;
     const float t1321 = t1319 + t1320;
     const float c_z4 = p->value[24];
     const float t1322 = c_z4 * t1321;
@@ -1915,7 +1931,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1343 = t1341 - t1342;
     const float t1344 = d_5 * t1343;
     const float t1345 = t1340 - t1344;
-    const float t1346 = t1002 - t1302;
+    const float t1346 = t1003 - t1302;
     const float t1347 = I_xy4 * t1346;
     const float t1348 = p->value[142];
     const float t1349 = t911 * t1348;
@@ -1929,7 +1945,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1356 = t1347 + t1355;
     const float t1357 = c_x4 * t1333;
     const float t1358 = c_y4 * t917;
-    const float t1359 = t1302 + t1003;
+    const float t1359 = t1302 + t1002;
     const float t1360 = c_x4 * t1359;
     const float t1361 = t1358 - t1360;
     const float t1362 = c_z4 * t906;
@@ -1945,7 +1961,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1371 = t400 * t1370;
     const float t1372 = t1337 - t1371;
     const float t1373 = t12 * t1372;
-    const float t1374 = t1003 - t1002;
+    const float t1374 = t1002 - t1003;
     const float t1375 = I_xz4 * t1374;
     const float t1376 = p->value[143];
     const float t1377 = t891 * t1376;
@@ -1967,7 +1983,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1392 = t11 * t1391;
     const float t1393 = t1373 + t1392;
     const float t1394 = t862 * t862;
-    const float t1395 = t1394 - t1320;
+    const float t1395 = t1394 - t1319;
     const float I_yz3 = p->value[20];
     const float t1396 = I_yz3 * t1395;
     const float t1397 = t893 - t892;
@@ -2009,7 +2025,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1427 = t11 * t1372;
     const float t1428 = t12 * t1391;
     const float t1429 = t1427 - t1428;
-    const float t1430 = t1319 - t1394;
+    const float t1430 = t1320 - t1394;
     const float t1431 = I_xy3 * t1430;
     const float t1432 = p->value[145];
     const float t1433 = t893 * t1432;
@@ -2023,7 +2039,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1440 = t1431 + t1439;
     const float t1441 = c_x3 * t1422;
     const float t1442 = c_y3 * t894;
-    const float t1443 = t1394 + t1320;
+    const float t1443 = t1394 + t1319;
     const float t1444 = c_x3 * t1443;
     const float t1445 = t1442 - t1444;
     const float t1446 = c_z3 * t915;
@@ -2061,20 +2077,20 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1474 = m_2 * t1473;
     const float t1475 = c_y2 * t1474;
     const float t1476 = t1466 + t1475;
-    const float I_xz2 = p->value[9];
-    const float t1477 = I_xz2 * t897;
-    const float t1478 = t1476 - t1477;
-    const float t1479 = t1460 + t1478;
-    const float t1480 = p->value[149];
-    const float t1481 = t892 * t1480;
-    const float t1482 = t1479 - t1481;
-    const float t1483 = t855 * t855;
-    const float t1484 = t1483 - t975;
+    const float t1477 = t855 * t855;
+    const float t1478 = t1477 - t974;
     const float I_yz2 = p->value[10];
-    const float t1485 = I_yz2 * t1484;
-    const float t1486 = t1482 - t1485;
+    const float t1479 = I_yz2 * t1478;
+    const float t1480 = t1476 - t1479;
+    const float I_xz2 = p->value[9];
+    const float t1481 = I_xz2 * t897;
+    const float t1482 = t1480 - t1481;
+    const float t1483 = t1460 + t1482;
+    const float t1484 = p->value[149];
+    const float t1485 = t892 * t1484;
+    const float t1486 = t1483 - t1485;
     const float t1487 = t1457 + t1486;
-    const float t1488 = t1320 - t1319;
+    const float t1488 = t1319 - t1320;
     const float t1489 = I_xz3 * t1488;
     const float t1490 = I_xy3 * t904;
     const float t1491 = p->value[150];
@@ -2134,14 +2150,14 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1544 = t1539 + t1543;
     const float t1545 = c_x2 * t1465;
     const float t1546 = c_y2 * t897;
-    const float t1547 = t1483 + t975;
+    const float t1547 = t1477 + t974;
     const float t1548 = c_x2 * t1547;
     const float t1549 = t1546 - t1548;
     const float t1550 = t1549 - t982;
     const float t1551 = m_2 * t1550;
     const float t1552 = c_y2 * t1551;
     const float t1553 = t1545 - t1552;
-    const float t1554 = t974 - t1483;
+    const float t1554 = t975 - t1477;
     const float I_xy2 = p->value[8];
     const float t1555 = I_xy2 * t1554;
     const float t1458 = p->value[146];
@@ -2155,15 +2171,15 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1562 = t1536 - t1561;
     const float t1563 = t7 * t1562;
     const float t1564 = I_yz2 * t897;
-    const float t1565 = t899 * t1480;
-    const float t1566 = p->value[151];
-    const float t1567 = t892 * t1566;
+    const float t1565 = t899 * t1484;
+    const float t1566 = t974 - t975;
+    const float t1567 = I_xz2 * t1566;
     const float t1568 = u_3 - t1567;
-    const float t1569 = t1565 + t1568;
-    const float t1570 = t1564 + t1569;
-    const float t1571 = t975 - t974;
-    const float t1572 = I_xz2 * t1571;
-    const float t1573 = t1570 - t1572;
+    const float t1569 = p->value[151];
+    const float t1570 = t892 * t1569;
+    const float t1571 = t1568 + t1570;
+    const float t1572 = t1565 + t1571;
+    const float t1573 = t1564 + t1572;
     const float t1574 = c_z2 * t1551;
     const float t1575 = t1573 - t1574;
     const float t1576 = c_x2 * t1474;

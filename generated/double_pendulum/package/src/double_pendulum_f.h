@@ -201,6 +201,22 @@ double_pendulum_status double_pendulum_singularity_f(const float q[2], const dou
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -1207,10 +1223,10 @@ double_pendulum_status double_pendulum_forward_dynamics_f(const float q[2], cons
     const float t31 = fabsf(m_2);
     const float t32 = fabsf(l_1);
     const float t33 = t32 * t32;
-    const float t34 = t23 * t33;
+    const float t34 = t33 * t23;
     const float t35 = fabsf(c_2);
     const float t36 = t31 * t33;
-    const float t37 = t29 + t36;
+    const float t37 = t36 + t29;
     const float t38 = t35 * t37;
     const float t39 = t35 * t38;
     const float t40 = t34 + t39;

@@ -219,6 +219,22 @@ front_car_wheelset_status front_car_wheelset_singularity_f(const float q[4], con
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -702,15 +718,15 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
     const float t18 = 1.0f / t14;
     const float t19 = t13 * t18;
     float rest = t19 - t19;
-    const float t20 = t9 * t12;
-    const float t21 = t18 * t20;
+    const float t20 = t9 * t18;
+    const float t21 = t12 * t20;
     rest *= t21;
-    const float t22 = t5 * t18;
-    const float t23 = t12 * t22;
+    const float t22 = t5 * t12;
+    const float t23 = t18 * t22;
     rest *= t23;
     const float t24 = t10 * t18;
     float term = t24 - t24;
-    const float t25 = t9 * t22;
+    const float t25 = t5 * t20;
     term *= t25;
     const float t26 = t7 * t18;
     term *= t26;

@@ -44,6 +44,27 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -321,14 +342,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t24 = t22 + t23;
     const double l_1 = p->value[0];
     if (RAPKM_2RRR_RR_RARELY(!(t24 > 5.679798517591285e-29))) {
-        const double t25 = l_1 * t16;
-        const double t26 = l_1 * t20;
+        const double t25 = l_1 * t20;
+        const double t26 = l_1 * t16;
         const double t27 = t25 * t26;
         const double t28 = t27 * t27;
         const double t29 = l_1 * t12;
-        const double t30 = t25 * t29;
+        const double t30 = t26 * t29;
         const double t31 = t30 * t30;
-        const double t32 = t26 * t29;
+        const double t32 = t25 * t29;
         const double t33 = t32 * t32;
         const double t34 = t31 + t33;
         const double t35 = t28 + t34;

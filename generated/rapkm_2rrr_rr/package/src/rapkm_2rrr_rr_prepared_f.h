@@ -44,6 +44,22 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -313,14 +329,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float t24 = t22 + t23;
     const float l_1 = p->value[0];
     if (RAPKM_2RRR_RR_RARELY_F(!(t24 > 1.6370905e-11f))) {
-        const float t25 = l_1 * t16;
-        const float t26 = l_1 * t20;
+        const float t25 = l_1 * t20;
+        const float t26 = l_1 * t16;
         const float t27 = t25 * t26;
         const float t28 = t27 * t27;
         const float t29 = l_1 * t12;
-        const float t30 = t25 * t29;
+        const float t30 = t26 * t29;
         const float t31 = t30 * t30;
-        const float t32 = t26 * t29;
+        const float t32 = t25 * t29;
         const float t33 = t32 * t32;
         const float t34 = t31 + t33;
         const float t35 = t28 + t34;

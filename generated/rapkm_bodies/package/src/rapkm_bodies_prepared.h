@@ -44,6 +44,27 @@ rapkm_bodies_status rapkm_bodies_inverse_dynamics_prepared(const double q[6], co
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -170,10 +191,10 @@ rapkm_bodies_prepared rapkm_bodies_prepare(const rapkm_bodies_params *p) {
     const double v2 = l_1 * l_1;
     const double v3 = 0.25 * m_1;
     const double v4 = m_2 + v3;
-    const double v5 = v4 * v2;
+    const double v5 = v2 * v4;
     const double v6 = v1 + v5;
     const double v7 = m_payload + v4;
-    const double v8 = v7 * v2;
+    const double v8 = v2 * v7;
     const double v9 = v1 + v8;
     const double v10 = l_2 * m_2;
     const double v11 = 0.5 * v10;

@@ -44,6 +44,22 @@ rapkm_bodies_status rapkm_bodies_inverse_dynamics_prepared_f(const float q[6], c
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -162,10 +178,10 @@ rapkm_bodies_prepared_f rapkm_bodies_prepare_f(const rapkm_bodies_params_f *p) {
     const float v2 = l_1 * l_1;
     const float v3 = 0.25f * m_1;
     const float v4 = m_2 + v3;
-    const float v5 = v4 * v2;
+    const float v5 = v2 * v4;
     const float v6 = v1 + v5;
     const float v7 = m_payload + v4;
-    const float v8 = v7 * v2;
+    const float v8 = v2 * v7;
     const float v9 = v1 + v8;
     const float v10 = l_2 * m_2;
     const float v11 = 0.5f * v10;

@@ -44,6 +44,22 @@ rolling_disc_status rolling_disc_inverse_dynamics_prepared_f(const float q[6], c
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -217,10 +233,10 @@ rolling_disc_status rolling_disc_inverse_dynamics_prepared_f(const float q[6], c
         const float t35 = t34 * t18;
         const float t36 = t35 * t35;
         const float t37 = t33 + t36;
-        const float t38 = t27 * t20;
+        const float t38 = t20 * t27;
         const float t39 = t38 * t38;
         const float t40 = t37 + t39;
-        const float t41 = t27 * t24;
+        const float t41 = t24 * t27;
         const float t42 = t41 * t41;
         const float t43 = t40 + t42;
         const float t44 = R * R;
@@ -234,10 +250,10 @@ rolling_disc_status rolling_disc_inverse_dynamics_prepared_f(const float q[6], c
         const float t52 = t50 + t51;
         const float t53 = t23 * t23;
         const float t54 = t52 + t53;
-        const float t55 = t27 * t19;
+        const float t55 = t19 * t27;
         const float t56 = t55 * t55;
         const float t57 = t54 + t56;
-        const float t58 = t27 * t23;
+        const float t58 = t23 * t27;
         const float t59 = t58 * t58;
         const float t60 = t57 + t59;
         const float t61 = t4 * t44;

@@ -47,6 +47,27 @@ scara_status scara_forward_dynamics_sc(const scara_trig *sc, const double q[4], 
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+#ifndef SYMGEN_DOUBLE_CONSTANTS
+#define SYMGEN_DOUBLE_CONSTANTS
+/* Numbers keep all their digits: no preprocessor knows of -fsingle-precision-constant, a type of negative size does. */
+typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(double) ? 1 : -1];
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -183,7 +204,7 @@ scara_status scara_forward_dynamics_sc(const scara_trig *sc, const double q[4], 
     const double t9 = l_2 * m_2;
     const double t11 = l_2 * m_3;
     const double t19 = 0.5 * t9;
-    const double t20 = t19 + t11;
+    const double t20 = t11 + t19;
     const double t10 = 0.25 * t9;
     const double t12 = t10 + t11;
     const double t13 = l_2 * t12;
@@ -302,18 +323,18 @@ scara_status scara_forward_dynamics_sc(const scara_trig *sc, const double q[4], 
     const double t112 = l_2 * t111;
     const double u_4 = u[3];
     const double t113 = u_4 - t112;
-    const double t114 = 0.5 * q_2_dot;
-    const double t115 = 50.0 * q_2_dot;
-    const double t116 = tanh(t115);
-    const double t117 = t114 + t116;
+    const double t114 = 50.0 * q_2_dot;
+    const double t116 = 0.5 * q_2_dot;
+    const double t115 = tanh(t114);
+    const double t117 = t115 + t116;
     const double u_2 = u[1];
     const double t118 = u_2 - t117;
     const double t119 = t118 + t113;
-    const double t84 = 0.8 * q_1_dot;
-    const double t85 = 50.0 * q_1_dot;
-    const double t86 = tanh(t85);
-    const double t87 = 1.5 * t86;
-    const double t88 = t84 + t87;
+    const double t84 = 50.0 * q_1_dot;
+    const double t87 = 0.8 * q_1_dot;
+    const double t85 = tanh(t84);
+    const double t86 = 1.5 * t85;
+    const double t88 = t86 + t87;
     const double u_1 = u[0];
     const double t89 = u_1 - t88;
     const double t120 = t119 * t16;

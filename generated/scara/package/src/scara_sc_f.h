@@ -47,6 +47,22 @@ scara_status scara_forward_dynamics_sc_f(const scara_trig_f *sc, const float q[4
 #endif
 #endif
 
+/* Every operation is rounded to its own type: x87 does not do so, and keeps what should cancel. 16 is about _Float16. */
+#if defined(__FLT_EVAL_METHOD__)
+#if __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
+#error "rounding needs FLT_EVAL_METHOD 0: compile for x86 with 32 bits by -msse2 -mfpmath=sse, never by -mfpmath=387"
+#endif
+#elif defined(_MSC_VER)
+#if defined(_M_IX86_FP) && _M_IX86_FP < 2
+#error "rounding needs FLT_EVAL_METHOD 0: compile with /arch:SSE2"
+#endif
+#else
+#include <float.h>
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+#error "rounding needs FLT_EVAL_METHOD 0"
+#endif
+#endif
+
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
@@ -183,7 +199,7 @@ scara_status scara_forward_dynamics_sc_f(const scara_trig_f *sc, const float q[4
     const float t9 = l_2 * m_2;
     const float t11 = l_2 * m_3;
     const float t19 = 0.5f * t9;
-    const float t20 = t19 + t11;
+    const float t20 = t11 + t19;
     const float t10 = 0.25f * t9;
     const float t12 = t10 + t11;
     const float t13 = l_2 * t12;
@@ -302,18 +318,18 @@ scara_status scara_forward_dynamics_sc_f(const scara_trig_f *sc, const float q[4
     const float t112 = l_2 * t111;
     const float u_4 = u[3];
     const float t113 = u_4 - t112;
-    const float t114 = 0.5f * q_2_dot;
-    const float t115 = 50.0f * q_2_dot;
-    const float t116 = tanhf(t115);
-    const float t117 = t114 + t116;
+    const float t114 = 50.0f * q_2_dot;
+    const float t116 = 0.5f * q_2_dot;
+    const float t115 = tanhf(t114);
+    const float t117 = t115 + t116;
     const float u_2 = u[1];
     const float t118 = u_2 - t117;
     const float t119 = t118 + t113;
-    const float t84 = 0.8f * q_1_dot;
-    const float t85 = 50.0f * q_1_dot;
-    const float t86 = tanhf(t85);
-    const float t87 = 1.5f * t86;
-    const float t88 = t84 + t87;
+    const float t84 = 50.0f * q_1_dot;
+    const float t87 = 0.8f * q_1_dot;
+    const float t85 = tanhf(t84);
+    const float t86 = 1.5f * t85;
+    const float t88 = t86 + t87;
     const float u_1 = u[0];
     const float t89 = u_1 - t88;
     const float t120 = t119 * t16;
