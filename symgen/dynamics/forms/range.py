@@ -256,9 +256,13 @@ def _symbols_back(mechanics: Mechanics, change: AbsoluteAngles | None) -> dict[S
 
 
 def _positive_sizes(mechanics: Mechanics) -> dict[Scalar, Scalar]:
-    """|p| = p for parameters that are positive."""
+    """|p| = p for parameters that are declared positive.
+
+    Not for those that are so by nature: an offset in metres may be turned round at run time, and the size of a
+    denominator that is not negative then is what keeps its test.
+    """
     graph = mechanics.graph
-    positive = [graph.symbol(p.name) for p in mechanics.model.parameters if p.name in mechanics.positive]
+    positive = [graph.symbol(p.name) for p in mechanics.model.parameters if p.range is not None and p.range[0] > 0]
     return {graph.function("abs", (p,)): p for p in positive}
 
 
