@@ -25,7 +25,7 @@ from symgen.graph.traverse import topological
 
 # a, or a + b i where b is not 0
 Element: TypeAlias = int | tuple[int, int]
-# None where something is divided by 0, or where nothing is known of an angle: of the fourth inside of angles
+# None where something is divided by 0, or of what is unknown
 Value: TypeAlias = Element | None
 
 # A constant that is written with pi is m / WHOLE + n pi / WHOLE + ... with whole m and n.
@@ -73,10 +73,14 @@ class ExactValues:
 
     With `signs` a sign is that of the value, and a wrong one passes at half of the points; else |x| and copysign(x, y)
     are random numbers as other functions are.
+
+    `unknown` holds the scalars of which nothing can be said: angles are numbers to the third inside of angles, and of
+    a constant such as 6 / pi, of which only the rational number is left, the half turns are not to be seen.
     """
 
     def __init__(self, seed: int = 0, field: Field = FIELD, signs: bool = True) -> None:
         self._field, self._seed, self._signs = field, seed, signs
+        self.unknown: set[Scalar] = set()
         self._known: dict[Scalar, Value] = {}
         # inside of angles, numbers are those of the field of angles
         self._inside = None if field.angles is None else ExactValues(seed, field.angles, signs)
@@ -110,11 +114,18 @@ class ExactValues:
         if node.op == "symbol":
             return self._opaque("symbol", node.payload)
         if node.op in ("sin", "cos"):
-            pair = self._pair(node.args[0])
-            return None if pair is None else pair[node.op == "sin"]
+            if (pair := self._pair(node.args[0])) is not None:
+                return pair[node.op == "sin"]
+            if not self._undefined(node.args[0]):
+                self.unknown.add(node)
+            return None
         given = [self._known[a] for a in node.args]
         args = [a for a in given if a is not None]
-        return None if len(args) < len(given) else self._operation(node, args)
+        if len(args) == len(given):
+            return self._operation(node, args)
+        if any(a in self.unknown for a in node.args):
+            self.unknown.add(node)
+        return None
 
     def _operation(self, node: Scalar, args: list[Element]) -> Value:
         first, second = (*args, 0)[:2]
@@ -192,6 +203,11 @@ class ExactValues:
             inside = self._inside
             self._pairs[angle] = None if inside is None else self._turned(angle, inside._known[angle])
         return self._pairs[angle]
+
+    def _undefined(self, angle: Scalar) -> bool:
+        """Whether something is divided by 0 in the angle."""
+        inside = self._inside
+        return inside is not None and inside._known[angle] is None and angle not in inside.unknown
 
     def _turned(self, angle: Scalar, value: Value) -> tuple[int, int] | None:
         """The point of an angle that is a number of the field of angles, and of the multiple of pi beside it."""

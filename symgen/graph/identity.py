@@ -45,14 +45,23 @@ def same_values(rule: str, before: Sequence[Scalar], after: Sequence[Scalar]) ->
     ]
     differ = [pair for pair in differ if (value := _value(pair[0], 0)) is None or value != _value(pair[1], 0)]
     for seed in range(1, 1 + POINTS if differ else 1):
-        values = [(_value(one, seed), _value(other, seed)) for one, other in differ]
-        if wrong := [k for k, (one, other) in enumerate(values) if one is not None and one != other]:
-            raise SymgenBug(f"{rule}: changes the value of {len(wrong)} of {len(before)} scalars")
+        if wrong := sum(_changed(one, other, seed) for one, other in differ):
+            raise SymgenBug(f"{rule}: changes the value of {wrong} of {len(before)} scalars")
+
+
+def _changed(one: Scalar, other: Scalar, seed: int) -> bool:
+    """Whether two scalars are known to differ at a point; where the first is not defined the second may be anything."""
+    before, after = _value(one, seed), _value(other, seed)
+    return before is not None and before != after and other not in _point(other, seed).unknown
 
 
 def _value(scalar: Scalar, seed: int) -> Value:
-    """The value at a point; what is known there stays with the graph, as most scalars are met again."""
+    return _point(scalar, seed)([scalar])[0]
+
+
+def _point(scalar: Scalar, seed: int) -> ExactValues:
+    """The point of a seed; the values that are known there stay with the graph, as most scalars are met again."""
     points = scalar.graph.points
     if seed not in points:
         points[seed] = ExactValues(seed, signs=seed > 0)
-    return points[seed]([scalar])[0]
+    return points[seed]

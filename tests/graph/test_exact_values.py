@@ -210,3 +210,22 @@ def test_what_is_rounded_first_is_the_same_number() -> None:
     same_values("writing", [graph.rounded(total) * y], [total * y])
     with pytest.raises(SymgenBug, match="writing: changes the value of 1 of 1 scalars"):
         same_values("writing", [graph.rounded(total) * y], [total * x])
+
+
+@pytest.mark.parametrize("written", [Fraction(6) / PI, 1 / PI**2, PI / (1 + PI), 1 + 1 / (2 * PI)])
+def test_constants_whose_half_turns_are_not_seen_decide_nothing(written: Fraction) -> None:
+    graph = Graph()
+    with every_identity_evaluated():
+        plain = graph.raw("cos", (graph.raw("sqrt", (graph.const(written**2),)),))
+        same_values("the constructors", [plain], [graph.function("cos", (graph.const(written),))])
+        # what does not stand in an angle is compared as ever
+        with pytest.raises(SymgenBug, match="doubling: changes the value"):
+            same_values("doubling", [graph.const(written)], [graph.const(2 * written)])
+
+
+def test_dividing_by_zero_is_no_identity() -> None:
+    graph = Graph()
+    x = graph.symbol("x")
+    nothing = graph.raw("sub", (x, x))
+    with pytest.raises(SymgenBug, match="dividing: changes the value"):
+        same_values("dividing", [graph.function("cos", (x,))], [graph.raw("cos", (graph.raw("div", (x, nothing)),))])
