@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from symgen.emit.scalars import C_TYPE
 from symgen.emit.statements import CStatements
-from symgen.ir.kernel import Block, Function, Kernel, Literal, Program, Scalar, Statement
+from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
 from symgen.naming import c_identifiers, macro_name
 from symgen.records import dataclass
 
@@ -85,14 +85,12 @@ def pair_body(scalar: Scalar, function: Function, name: str) -> tuple[str, tuple
 
 
 def leading_group(kernel: Kernel) -> tuple[Statement, ...]:
-    """The pairs that stand side by side before anything needs one of them; empty if too few, or of constants alone."""
+    """The pairs that stand side by side before anything needs one of them; empty if too few."""
     for block in kernel.blocks:
         for place, statement in enumerate(block.statements):
             if statement.operation == "sincos":
                 group = _run(block.statements[place:])
-                # an array of constants alone is copied by memcpy where code is to be small
-                known = all(isinstance(pair.operands[0], Literal) for pair in group)
-                return group if len(group) >= SMALLEST_GROUP and not known else ()
+                return group if len(group) >= SMALLEST_GROUP else ()
     return ()
 
 

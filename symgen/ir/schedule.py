@@ -16,6 +16,7 @@ from symgen.graph.angles import share_angles
 from symgen.graph.scalar import Graph
 from symgen.graph.scalar import Scalar as Node
 from symgen.graph.traverse import topological
+from symgen.ir.constants import with_constants_evaluated
 from symgen.ir.kernel import (
     UNIT_ROUNDOFF,
     Argument,
@@ -167,7 +168,8 @@ def _side_by_side(mechanics: Mechanics, derived: Derived) -> Kernel | None:
         return None
     from symgen.ir.alike import alike_kernel  # models given by energies start without it
 
-    return alike_kernel(derived, derived.alike, _arguments(mechanics, derived.name))
+    kernel = alike_kernel(derived, derived.alike, _arguments(mechanics, derived.name))
+    return None if kernel is None else with_constants_evaluated(kernel)
 
 
 def _ordered_kernel(mechanics: Mechanics, derived: Derived, limits: _Limits) -> Kernel:
@@ -214,7 +216,7 @@ def _kernel(mechanics: Mechanics, derived: Derived, limits: _Limits, apart: bool
     )
     kernel = relaxed(written)
     same_kernel(f"writing the statements of {derived.name}", _meant(outputs, tests, image), Lifted(kernel))
-    return kernel
+    return with_constants_evaluated(kernel)
 
 
 def _meant(outputs: Sequence[Node], tests: Sequence[Test], image: Mapping[Node, Node]) -> Meant[Node]:
