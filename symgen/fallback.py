@@ -13,6 +13,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any, TypeAlias
 
+from symgen.diagnostics import SymgenBug
 from symgen.draft import Draft
 from symgen.dynamics.alternatives import TIERS, Alternative, Alternatives
 from symgen.dynamics.catalogue import scalars
@@ -22,12 +23,12 @@ from symgen.ir.kernel import Kernel, Scalar
 from symgen.records import dataclass
 from symgen.results import AUTO, Options
 from symgen.verify.certificate import Certificate, ErrorRecord, Fault, LeftOut
+from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
-from symgen.verify.interpreted import measured, wrong_exactly
+from symgen.verify.interpreted import measured
 from symgen.verify.tolerance import FACTOR
 
 REJECTED = "verification rejects it"
-WRONG = "; wrong in exact arithmetic too: a fault of symgen, please report it"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
 # What keeping a margin may cost, in operations.
@@ -78,8 +79,8 @@ class Fallback:
         tried, passing = self._tried[quantity], self._passing[quantity]
         known, kernels = len(tried), draft.kernels(quantity)
         self._weighed.add(quantity)
-        wrong = wrong_exactly(kernels["float64"], expected)
-        tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})" + WRONG * wrong))
+        _check_algebra(kernels["float64"], draft.way(quantity), expected, faults[0].state)
+        tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})"))
         self._kernels[quantity].append(kernels)
         if all(fault.scalar == "float32" for fault in faults):
             passing.append(_Candidate(0.0, ("float64",), draft.taken(quantity), kernels))
@@ -150,11 +151,12 @@ class Fallback:
             if scalar not in expected.scalars:
                 passed.append(scalar)
                 continue
-            largest, fault = measured(kernel, draft.programs[scalar].sincos, scalar, expected)
+            record, fault = measured(kernel, draft.programs[scalar].sincos, scalar, expected)
             if fault is None:
                 passed.append(scalar)
-                worst = max(worst, largest)
+                worst = max(worst, record.largest)
                 continue
+            _check_algebra(kernels["float64"], way.choice.way, expected, record.worst_state)
             self._tried[way.choice.quantity].append((way.choice.way, f"{fault.what} ({fault.target})"))
             if scalar == "float64":
                 break  # float32 alone is of no use: the other type is what Python and the report are made of
@@ -167,6 +169,12 @@ class Fallback:
         if "float64" not in without:
             return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
         return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"
+
+
+def _check_algebra(kernel: Kernel, way: str, expected: Expected, worst: int) -> None:
+    """Raises SymgenBug where a rejected kernel computes something else: falling back would hide wrong algebra."""
+    if wrong := difference(kernel, expected, worst):
+        raise SymgenBug(f"{kernel.name} by {way}: {wrong}, in exact arithmetic")
 
 
 def as_recorded(draft: Draft, recorded: Mapping[str, Any]) -> Draft:

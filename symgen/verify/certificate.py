@@ -50,11 +50,15 @@ class ConditionRecord:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One thing that is wrong: what, with which quantity on which target; both are empty where all of it is."""
+    """One thing that is wrong: what, with which quantity on which target; both are empty where all of it is.
+
+    `state` is one of the states at which it shows.
+    """
 
     what: str
     quantity: str = ""
     target: str = ""
+    state: int = 0
 
     @property
     def scalar(self) -> Scalar:

@@ -55,6 +55,7 @@ def faults_of(record: ErrorRecord, outcomes: Sequence[Outcome], samples: Sequenc
             f"(singularity measures {first:.3g}, {second:.3g})",
             record.quantity,
             record.target,
+            index,
         )
     elif not record.largest <= FACTOR:
         yield Fault(
@@ -62,6 +63,7 @@ def faults_of(record: ErrorRecord, outcomes: Sequence[Outcome], samples: Sequenc
             f"{FACTOR:g} is allowed (relative error {record.largest_relative:.3g})",
             record.quantity,
             record.target,
+            record.worst_state,
         )
 
 

@@ -15,7 +15,7 @@ from symgen.verify.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference_manifold import admissible, exceeds, onto_manifold, starts
 from symgen.verify.reference_quantities import NEED_GRADIENTS
 from symgen.verify.reference_system import ParameterValues, default_parameters
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference_tape import ball, precision
 
 FEWEST_STATES = 8
 USUAL_STATES = 64
@@ -54,7 +54,8 @@ def sample_states(reference: Reference, quantities: Sequence[str], count: int, s
     """`count` states (fewer when V is hard to find), rounded to float64.
 
     Rates and accelerations are projected onto the constraints in the even ones and arbitrary in the others; every
-    fourth is moved off V by about 1e-3, as measured states are, unless the constraints depend on each other.
+    fourth is moved off V by about 1e-3, as measured states are, unless the constraints depend on each other or the
+    inputs reach more directions there than on V: what they give is defined on V alone then.
     Raises VerificationError when fewer than 8 are found.
     """
     with precision(SAMPLING_BITS):
@@ -241,7 +242,9 @@ def _regular(
     shifts = [generator.uniform(-1, 1) for _ in model.coordinates]
     admissible = index % 2 == 0
     if index % 4 == 3 and reference.system.r_geometric and reference.ranks.constraints == model.r:
-        q = [x + DRIFT * s * max(abs(x), 0.1) for x, s in zip(q, shifts, strict=True)]
+        moved = [x + DRIFT * s * max(abs(x), 0.1) for x, s in zip(q, shifts, strict=True)]
+        if not exceeds(reference.system, reference.ranks, list(map(ball, moved)), parameters, reference.literals()):
+            q = moved
     zero = (0.0,) * model.m
     state = State(tuple(q), tuple(rates), tuple(accelerations), zero, tuple(parameters))
     try:

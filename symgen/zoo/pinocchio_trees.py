@@ -54,8 +54,12 @@ def disagreement(blocks: Mapping[str, Any], parameters: Mapping[str, float], dic
         values |= dict(zip(system.rate_names, qd, strict=True))
         flat = np.array(system.tape.evaluate(found.flat, values, Floats()))
         mass, bias = tree.forces(q, qd)
-        for one, other in ((flat[: n * n], mass.reshape(-1)), (flat[n * n : n * n + n], bias)):
-            scale = float(np.abs(other).max(initial=0.0)) or 1.0
+        # what the rates do may cancel in every entry: rounding is that of masses times squares of rates
+        heavy = np.abs(mass).max(initial=0.0)
+        moving = heavy * np.abs(qd).max(initial=0.0) ** 2
+        pairs = ((flat[: n * n], mass.reshape(-1), heavy), (flat[n * n : n * n + n], bias, moving))
+        for one, other, least in pairs:
+            scale = max(float(np.abs(other).max(initial=0.0)), float(least)) or 1.0
             worst = max(worst, float(np.abs(one - other).max()) / scale)
     return worst
 

@@ -54,6 +54,23 @@ def test_dependent_constraints_get_states_without_drift() -> None:
         assert norm(residual) < 1e-14
 
 
+def test_states_stay_where_the_inputs_reach_no_more_than_on_the_constraints() -> None:
+    # on x = y both forces push along the same line; beside it they do not
+    reference = Reference(
+        build(
+            "two_pushes",
+            "x y a b",
+            "x_dot**2 + y_dot**2 + a_dot**2 + b_dot**2",
+            geometric=("x - y",),
+            inputs={"F": {"a": "cos(x)", "b": "sin(x)"}, "G": {"a": "cos(y)", "b": "sin(y)"}},
+        )
+    )
+    assert reference.ranks.actuation == 1
+    for sample in sample_states(reference, ["inverse_dynamics"], 16):
+        residual = reference.matrices(sample.state, ["constraint_residual"])["constraint_residual"]
+        assert norm(residual) < 1e-14
+
+
 def test_joints_that_cannot_move_have_no_rate() -> None:
     # a triangle of two cranks is rigid beside a slider: what projection leaves of its rates is noise
     reference = Reference(

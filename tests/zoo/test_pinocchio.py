@@ -31,6 +31,23 @@ def test_trees_agree() -> None:
     assert max(found) < SAME
 
 
+def test_forces_that_are_nothing_but_rounding_agree() -> None:
+    # nothing pulls, and every centre of mass lies on its axis
+    text = """
+joints:
+  slide: {type: prismatic, axis: [1, 2, 0], coordinate: s}
+  turn: {type: revolute, parent: slide, at: [0.3, 0, 0.7], axis: y, coordinate: a}
+  other: {type: revolute, at: [0, 0.78, 0.25], axis: [0, 3, 4], coordinate: b}
+bodies:
+  slide: {mass: 1.3, com: [0, 0.2, 0.1]}
+  turn: {mass: 2.1, inertia: {xx: 0.3, yy: 0.08, zz: 0.3}}
+  other: {mass: 4.2, inertia: {xx: 0.2, yy: 0.2, zz: 0.2}}
+"""
+    told = disagreement(yaml.load(text, Loader=yaml.BaseLoader), {}, Dice("test", 0))
+    assert told is not None
+    assert told < SAME
+
+
 def test_another_mechanism_is_told(monkeypatch) -> None:
     index = next(index for index in range(25) if compared(index) is not None)
     axis = pinocchio_trees._Tree._axis
