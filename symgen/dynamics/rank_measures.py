@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from fractions import Fraction
-from itertools import combinations
-
-from symgen.dynamics.blocks import components
 from symgen.dynamics.driven import driven_minors
-from symgen.dynamics.exterior import ActuationForms, RowForms, small_family, square, unit, wedge_all
+from symgen.dynamics.exterior import ActuationForms, RowForms, small_family
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.minor_sums import squared_minors
 from symgen.dynamics.pivoted import elementary_symmetric, reflected
 from symgen.dynamics.spaces import HouseholderSpace, NullSpace
-from symgen.graph.matrix import Vector, dot, matmul, transpose
-from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.matrix import Vector, dot
+from symgen.graph.scalar import Scalar
 
 
 def rank_measures(mechanics: Mechanics, generic: Genericity, space: NullSpace) -> Vector:
@@ -60,34 +56,9 @@ def _actuation_measure(mechanics: Mechanics, generic: Genericity, projected: Sca
     graph, inputs = mechanics.graph, mechanics.inputs
     if generic.alpha == 0:
         return graph.one
-    whole = _squared_minors(graph, inputs, generic.alpha)
+    whole = squared_minors(graph, inputs, generic.alpha)
+    rows = mechanics.constraint_jacobian
+    if all(dot(graph, row, column).is_zero for row in rows for column in inputs):
+        # every input drives along the constraints: nothing is lost, and two ways to round it would differ
+        projected = whole
     return graph.function("ratio_or_zero", (projected, whole))
-
-
-def _squared_minors(graph: Graph, columns: Sequence[Vector], degree: int) -> Scalar:
-    """The sum of the squared minors of that size: all of them where they are few, else by blocks of columns."""
-    if small_family([[0]], columns, degree):
-        return graph.sum(
-            square(graph, wedge_all(unit(graph), [columns[k] for k in subset]))
-            for subset in combinations(range(len(columns)), degree)
-        )
-    # those of columns that share no coordinate multiply
-    sums = [graph.one, *(graph.zero for _ in range(degree))]
-    for block in components(transpose(tuple(columns), len(columns[0]))):
-        own = _of_block(graph, [columns[k] for k in block.columns], degree)
-        sums = [graph.sum(sums[k - i] * x for i, x in enumerate(own[: k + 1])) for k in range(degree + 1)]
-    return sums[degree]
-
-
-def _of_block(graph: Graph, columns: Sequence[Vector], degree: int) -> list[Scalar]:
-    """The sums of squared minors of each size up to `degree`, from traces of powers of A^T A (Newton's identities)."""
-    if len(columns) == 1:
-        return [graph.one, dot(graph, columns[0], columns[0])]
-    gram = tuple(tuple(dot(graph, a, b) for b in columns) for a in columns)
-    power, traces, found = gram, list[Scalar](), [graph.one]
-    for k in range(1, min(degree, len(columns)) + 1):
-        power = gram if k == 1 else matmul(graph, power, gram, len(columns))
-        traces.append(graph.sum(power[i][i] for i in range(len(columns))))
-        terms = (found[k - i] * traces[i - 1] * (-1) ** (i - 1) for i in range(1, k + 1))
-        found.append(graph.sum(terms) * Fraction(1, k))
-    return found
