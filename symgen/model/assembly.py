@@ -30,7 +30,8 @@ class Assembly:
     first where that is singular.  `regular` is whether any of them is: else ranks drop wherever the constraints hold.
     `others` has one configuration for each other combination of ranks that whole branches have.  `bound` is what no
     configuration exceeds: the ranks of B and of [B; M^T] off the constraints, where q is free.  `start` is where the
-    declared start leads, with its ranks, where it is singular.
+    declared start leads, with its ranks, where it is singular.  `tied` are parameters for whose default values
+    alone the loops close, because rows depend on each other.
     """
 
     ranks: Ranks
@@ -39,6 +40,7 @@ class Assembly:
     bound: tuple[int, int] = (0, 0)
     start: Place | None = None
     regular: bool = True
+    tied: tuple[str, ...] = ()
 
     @property
     def has_branches(self) -> bool:

@@ -67,7 +67,7 @@ class _Search:
         sizes = self._without_noise(typical(samples))
         self._scales = Scales(sizes)
         self._closer = Closer(mechanics.residuals, sizes[: self._r_geometric], self._widths)
-        self._bound = self._bounds(samples)
+        self._bound = self._bounds([*samples, *self._with_other_parameters()])
 
     def result(self) -> Assembly | Open | None:
         if not self._usable:
@@ -93,6 +93,13 @@ class _Search:
             if found == TYPICAL_POINTS:
                 return
 
+    def _with_other_parameters(self) -> Iterator[list[Row]]:
+        """The same for other values of the parameters: rows may depend on each other for the default ones only."""
+        for q, parameters in self._mechanics.anywhere(TYPICAL_POINTS):
+            rows = self._rows(q, self._mechanics.having(parameters))
+            if rows is not None:
+                yield rows
+
     def _without_noise(self, sizes: list[Row]) -> list[Row]:
         """Rows that are zero but for rounding are empty: those of no size beside others, and those that are small and
         change altogether where q hardly does; a row in small units does not."""
@@ -116,9 +123,10 @@ class _Search:
         alone = max((clear_rank(rows[:r], NEGLIGIBLE) or 0 for rows in scaled), default=0)
         return alone, max((clear_rank(rows, NEGLIGIBLE) or 0 for rows in scaled), default=0)
 
-    def _rows(self, q: Sequence[float]) -> list[Row] | None:
+    def _rows(self, q: Sequence[float], other: Mechanics | None = None) -> list[Row] | None:
+        mechanics = other or self._mechanics
         try:
-            rows = [*self._mechanics.rows(q), *self._mechanics.columns(q, self._inputs)]
+            rows = [*mechanics.rows(q), *mechanics.columns(q, self._inputs)]
         except (ArithmeticError, ValueError):
             return None
         return rows if all(math.isfinite(value) for row in rows for value in row.values()) else None

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.assembly import Assembly
 from symgen.model.body_checks import check_bodies
 from symgen.model.branches import branches
+from symgen.model.empty_rows import check_empty_rows
 from symgen.model.expression import Expression
 from symgen.model.feasibility import check_motion
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Model
+from symgen.model.names import shown_names
 from symgen.model.reading import key_span, member
 from symgen.model.redundancy import check_redundancy
 from symgen.model.scope import Scope
 from symgen.model.source import MappingNode
-from symgen.model.structure import check_domain, check_geometric, check_kinetic_energy, check_nonholonomic
+from symgen.model.structure import check_domain, check_kinetic_energy, check_nonholonomic
+from symgen.model.tied import tied_parameters
 from symgen.model.walk import exact_value
 
 NEEDS_CONSTRAINTS = frozenset(
@@ -52,7 +55,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     """
     if not model.coordinates:
         return model
-    mechanics = Mechanics(
+    written = mechanics = Mechanics(
         model.coordinates,
         model.parameters,
         model.definitions,
@@ -80,9 +83,14 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         return model
     if kinetic is not None and not (model.mechanism.has_mass and exact_value(kinetic) == 0):
         _add(scope, check_kinetic_energy(mechanics, kinetic))
-    for row in model.constraints:
-        check = check_geometric if row.kind == "geometric" else check_nonholonomic
-        _add(scope, check(mechanics, row))
+    rolling = (row for row in model.constraints if row.kind == "nonholonomic")
+    not_linear = [mistake for row in rolling for mistake in check_nonholonomic(mechanics, row)]
+    _add(scope, not_linear)
+    if not not_linear and (whole or not model.mechanism.frames):
+        rows, told = check_empty_rows(mechanics)
+        _add(scope, told)
+        model = replace(model, constraints=rows)
+        mechanics = mechanics.having(mechanics.defaults, rows)
     massive = model.mechanism.has_mass and (kinetic is not None or tree.get("kinetic_energy") is None)
     if whole and (massive or kinetic is not None) and len(scope.mistakes) == before:
         found = branches(mechanics, model.inputs, {name: float(value) for name, value in model.configuration})
@@ -90,8 +98,23 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         if isinstance(found, Assembly) and len(scope.mistakes) == before:
             if model.allocation is not None:
                 _add(scope, check_redundancy(mechanics, found, model.inputs, model.allocation))
+            found = replace(found, tied=tied_parameters(written, mechanics, found))
+            _add(scope, _told_of_tied(model, found.tied))
             return replace(model, assembly=found)
     return model
+
+
+def _told_of_tied(model: Model, tied: Iterable[str]) -> Iterator[Notice]:
+    """The ranges of parameters that cannot have any value but one."""
+    these = [parameter for parameter in model.parameters if parameter.name in tied and parameter.range is not None]
+    if these:
+        its = "its" if len(these) == 1 else "their"
+        verb = "keeps" if len(these) == 1 else "keep"
+        yield Notice(
+            f"{shown_names(p.name for p in these)} {verb} {its} default in spite of {its} range: rows that depend on "
+            "each other can be closed for no other value",
+            these[0].span,
+        )
 
 
 def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:

@@ -10,7 +10,7 @@ from symgen.model.body_checks import inertia_span
 from symgen.model.branches import Open
 from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
-from symgen.model.names import counted
+from symgen.model.names import counted, shown_names
 
 # Configurations at which masses are looked at, and how many say that a coordinate is held.
 SAMPLES, ENOUGH = 5, 3
@@ -231,8 +231,9 @@ def _held(mechanics: Mechanics, regular: list[tuple[list[float], Rows]], span: S
         held = {i for i in held if all(abs(motion[i]) < HELD for motion in basis)}
     places = [(mechanics.coordinates[i].name, regular[0][0][i]) for i in sorted(held)]
     if places:
-        names = ", ".join(f"`{name}`" for name, _ in places)
-        listed = ", ".join(f"{name} = {value:.4g}" for name, value in places)
+        names = shown_names(name for name, _ in places)
+        listed = ", ".join(f"{name} = {value:.4g}" for name, value in places[:MOST_SHOWN])
+        listed += ", ..." if len(places) > MOST_SHOWN else ""
         yield Notice(
             f"{names} cannot move: the constraints hold {listed}; if that is not meant, check axes, lengths and loops, "
             f"else leave the {'coordinates' if len(places) > 1 else 'coordinate'} out",

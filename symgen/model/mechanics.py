@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
+from types import MappingProxyType
 
 from symgen.model.algebra import Expansion, Polynomial
 from symgen.model.body_checks import unsound_bodies
@@ -39,12 +40,32 @@ class Mechanics:
         self.geometric = tuple(row for row in constraints if row.kind == "geometric")
         self.mechanism = mechanism
         self._kinetic = kinetic_energy
+        self.definitions = definitions
         self._definitions = {definition.name: definition.value for definition in definitions}
         self._index = {coordinate.name: index for index, coordinate in enumerate(coordinates)}
         self._rates = frozenset(coordinate.rate for coordinate in coordinates)
-        self._parameters = parameters
+        self.parameters = parameters
         self._expanded: dict[int, tuple[Expression, list[Polynomial]]] = {}
         self.defaults = default_values(parameters)
+
+    def having(
+        self,
+        defaults: dict[str, float],
+        constraints: tuple[ConstraintRow, ...] | None = None,
+        definitions: tuple[Definition, ...] | None = None,
+        mechanism: Mechanism | None = None,
+    ) -> Mechanics:
+        """The same with other default parameters, and with other parts where these are given."""
+        other = Mechanics(
+            self.coordinates,
+            self.parameters,
+            self.definitions if definitions is None else definitions,
+            self.constraints if constraints is None else constraints,
+            self._kinetic,
+            self.mechanism if mechanism is None else mechanism,
+        )
+        other.defaults = defaults
+        return other
 
     def expansion(self, q: Sequence[float], parameters: dict[str, float]) -> Expansion:
         """Polynomials in the rates at a configuration."""
@@ -160,7 +181,7 @@ class Mechanics:
         generator = random.Random(SEED + 1)
         for _ in range(count):
             q = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
-            yield q, {p.name: _drawn(p, self.defaults[p.name], generator) for p in self._parameters}
+            yield q, {p.name: _drawn(p, self.defaults[p.name], generator) for p in self.parameters}
 
     def _kinematics(self, values: dict[str, float]) -> FloatKinematics:
         # frames use definitions, definitions may use points: those that frames use are evaluated without components
@@ -170,12 +191,19 @@ class Mechanics:
         return {coordinate.name: value for coordinate, value in zip(self.coordinates, q, strict=True)}
 
 
-def default_values(parameters: tuple[Parameter, ...]) -> dict[str, float]:
-    """The parameters' defaults in floats; one that cannot be evaluated (a mistake reported elsewhere) counts as 1."""
+def default_values(
+    parameters: tuple[Parameter, ...], chosen: Mapping[str, float] = MappingProxyType({})
+) -> dict[str, float]:
+    """The parameters' defaults in floats, where some are `chosen` others follow from these.
+
+    One that cannot be evaluated (a mistake reported elsewhere) counts as 1.
+    """
     values: dict[str, float] = {}
     for parameter in parameters:
         try:
-            values[parameter.name] = evaluate(parameter.value, values)
+            values[parameter.name] = (
+                chosen[parameter.name] if parameter.name in chosen else evaluate(parameter.value, values)
+            )
         except (ArithmeticError, ValueError):
             values[parameter.name] = 1.0
     return values

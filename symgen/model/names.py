@@ -15,6 +15,7 @@ if TYPE_CHECKING:  # the command line corrects misspelt options too, and needs n
 
 MAXIMUM_NAME = 40
 MOST_LISTED = 10  # names in a remedy
+SHORTEST_RUN = 4  # of names that count on, shown by their first and last
 NAME_PATTERN = "[A-Za-z][A-Za-z0-9_]*"
 QUOTING = "inside { } and [ ] quote an expression or text that has a comma, colon, bracket or #, or use block style"
 _NAME = re.compile(NAME_PATTERN, re.ASCII)
@@ -42,6 +43,29 @@ RESERVED: dict[str, str] = {
 def counted(number: int, noun: str) -> str:
     """`1 row`, `2 rows`."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def shown_names(names: Iterable[str]) -> str:
+    """Names in backticks; those that count on are shown as `b_1` .. `b_10`."""
+    shown: list[str] = []
+    run: list[str] = []
+
+    def close() -> None:
+        shown.extend([f"`{run[0]}` .. `{run[-1]}`"] if len(run) >= SHORTEST_RUN else [f"`{name}`" for name in run])
+        run.clear()
+
+    for name in names:
+        if run and _successor(run[-1]) != name:
+            close()
+        run.append(name)
+    close()
+    return ", ".join(shown)
+
+
+def _successor(name: str) -> str | None:
+    """The name with the number at its end one higher."""
+    digits = re.search(r"(0|[1-9][0-9]*)$", name)
+    return None if digits is None else f"{name[: digits.start()]}{int(digits[0]) + 1}"
 
 
 def is_name(text: str) -> bool:

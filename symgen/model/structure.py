@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from symgen.diagnostics import Mistake, Notice
-from symgen.model.algebra import BEYOND, RELATIVE_ZERO, Monomial, NotPolynomialError, Polynomial, is_zero
+from symgen.diagnostics import Mistake
+from symgen.model.algebra import BEYOND, Monomial, NotPolynomialError, Polynomial, is_zero
 from symgen.model.expression import Binary, Expression, Negation
-from symgen.model.mechanics import ATTEMPTS, POINTS, Mechanics
+from symgen.model.mechanics import Mechanics
 from symgen.model.model import ConstraintRow
 
 
@@ -20,35 +20,13 @@ def check_kinetic_energy(mechanics: Mechanics, kinetic: Expression) -> Iterator[
         yield Mistake("the kinetic energy is zero", "write the kinetic energy of the masses", kinetic.span)
 
 
-def check_nonholonomic(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mistake | Notice]:
-    """A row must be linear and homogeneous in the rates; one that is zero says nothing."""
+def check_nonholonomic(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mistake]:
+    """A row must be linear and homogeneous in the rates."""
     message = f"the constraint `{row.name}` is not linear in the rates"
     remedy = (
         "write a sum of rates with coefficients of coordinates and parameters, = 0; g(q) = 0 belongs to `geometric`"
     )
-    mistakes = list(_check_degree(mechanics, row.expression, 1, message, remedy))
-    yield from mistakes
-    if not mistakes and _is_zero(mechanics.polynomials(row.expression)):
-        yield Notice(f"the constraint `{row.name}` is zero for all motions and says nothing", row.span)
-
-
-def check_geometric(mechanics: Mechanics, row: ConstraintRow) -> Iterator[Mistake | Notice]:
-    """A row that does not depend on the configuration is either nothing or a contradiction."""
-    try:
-        with_defaults = list(_values(mechanics, row.expression, mechanics.defaults))
-        with_others = list(_values(mechanics, row.expression, None))
-    except NotPolynomialError:
-        return
-    if not with_defaults or any(
-        abs(value - with_defaults[0][0]) > RELATIVE_ZERO * (size + with_defaults[0][1]) for value, size in with_defaults
-    ):
-        return
-    if all(is_zero(value) for value in with_defaults + with_others):
-        yield Notice(f"the constraint `{row.name}` is zero for all configurations and says nothing", row.span)
-    else:
-        demand = f"{with_defaults[0][0]:.6g} = 0"
-        message = f"the constraint `{row.name}` does not depend on the configuration: it demands {demand}"
-        yield Mistake(message, "write an expression of coordinates that can become zero", row.span)
+    yield from _check_degree(mechanics, row.expression, 1, message, remedy)
 
 
 def check_domain(mechanics: Mechanics, expression: Expression, what: str) -> Iterator[Mistake]:
@@ -108,21 +86,6 @@ def _summands(expression: Expression) -> Iterable[Expression]:
             yield from _summands(operand)
         case _:
             yield expression
-
-
-def _values(
-    mechanics: Mechanics, expression: Expression, parameters: dict[str, float] | None
-) -> Iterator[tuple[float, float]]:
-    """Value and size of an expression without rates at a few random configurations, with those or random parameters."""
-    found = 0
-    for q, others in mechanics.anywhere(ATTEMPTS):
-        try:
-            yield mechanics.expansion(q, parameters or others).of(expression).get((), (0.0, 0.0))
-        except (ArithmeticError, ValueError):
-            continue
-        found += 1
-        if found == POINTS:
-            return
 
 
 def _is_zero(polynomials: Iterable[Polynomial]) -> bool:

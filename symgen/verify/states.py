@@ -107,7 +107,10 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
     system = reference.system
     points = starts(system, generator, 6 * count + 60)
     literals = reference.literals()
-    varied = ParameterValues(reference.model, [p.name for p in reference.model.parameters if p.range is not None])
+    known = reference.model.assembly
+    tied = () if known is None else known.tied
+    ranged = [p.name for p in reference.model.parameters if p.range is not None and p.name not in tied]
+    varied = ParameterValues(reference.model, ranged)
     usual = [float(x) for x in _parameters(varied, generator, vary=False)]
     typical = _row_lengths(reference, points[:TYPICAL_POINTS], usual)
     least = _least_measures(reference, points[:TYPICAL_POINTS], usual)

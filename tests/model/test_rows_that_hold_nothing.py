@@ -1,0 +1,129 @@
+"""Rows whose gradients vanish up to the rounding of the file's numbers, and parameters that loops tie."""
+
+from __future__ import annotations
+
+import pytest
+
+from symgen.diagnostics import ModelError
+from symgen.model.load import load_text
+from symgen.model.model import Model
+
+ARM = """model: held
+parameters:
+  l: {value: 0.7, range: [0.5, 0.9]}
+  w: {value: 0.1}
+  twist: {value: 0}
+joints:
+  p: {type: revolute, at: [0.1, 0, 0], axis: x, coordinate: a}
+  q: {type: revolute, parent: p, at: [0.2, l, 0], axis: x, coordinate: b}
+  r: {type: revolute, parent: q, at: [0, 0.6, 0], axis: x, coordinate: c, rotation: [[y, {BENT}]]}
+bodies:
+  p: {mass: 1, com: [0, 0.3, 0], inertia: {xx: 0.1}}
+  q: {mass: 1, com: [0, 0.3, 0], inertia: {xx: 0.1}}
+  r: {mass: 1, com: [0, 0.2, 0], inertia: {xx: 0.1}}
+gravity: [0, 0, -9.81]
+frames:
+  dock: {FRAME}
+points:
+  tip: {frame: r, at: [0, 0.5, 0]}
+loops:
+  hold: {type: revolute, between: [r, dock], axis: x}
+inputs:
+  drive: {joint: a}
+configuration: {a: 0.2, b: 0.9, c: 0.7}
+"""
+# parallel to x but for the rounding of the axis and the angle
+TURNED = "{translation: [0.3, 0.9, 0.4], rotation: [[[0.36, 0.48, 0.8], 0.9273], [[0.36, 0.48, 0.8], -0.9273]]}"
+
+
+def _model(frame: str, bent: str = "0") -> Model:
+    return load_text(ARM.replace("{FRAME}", frame).replace("{BENT}", bent), "held.yaml")
+
+
+def _rows(model: Model) -> dict[str, bool]:
+    """Names of rows, and whether they are 0 = 0."""
+    return {row.name: "Number(value=Fraction(0" in repr(row.expression) for row in model.constraints}
+
+
+def test_a_row_that_rounding_leaves_is_the_empty_row() -> None:
+    """0.1 + 0.2 - 0.3 is 5.6e-17, and so are the tilts of an axis that is turned there and back."""
+    model = _model(TURNED)
+    rows = _rows(model)
+    assert rows["hold_x"]
+    assert not rows["hold_y"]
+    assert all(empty for name, empty in rows.items() if "tilt" in name)
+    assert model.assembly is not None
+    assert model.assembly.ranks.constraints == 2
+    told = [notice.message for notice in model.notices if "say" in notice.message]
+    assert len(told) == 1, "one message for a loop"
+    assert "zero for all configurations" in told[0]
+
+
+def test_a_gap_that_no_motion_closes_is_a_mistake() -> None:
+    """A millionth is no rounding."""
+    with pytest.raises(ModelError, match="`hold_x` does not depend on the configuration: it demands 1e-06 = 0"):
+        _model("{translation: [0.299999, 0.9, 0.4]}")
+
+
+def test_a_row_that_holds_for_the_default_lengths_alone_ties_them() -> None:
+    """Without it the machine moves as it does with it; the length is no longer free."""
+    model = _model("{translation: [w + 0.2, 0.9, 0.4]}")
+    assert _rows(model)["hold_x"]
+    assert model.assembly is not None
+    assert model.assembly.tied == ("w",), "l moves the other rows, which the angles make up for"
+    assert any("hold_x` does not depend on the configuration" in notice.message for notice in model.notices)
+
+
+def test_a_row_that_counts_for_other_parameters_is_told_by_them() -> None:
+    """With a bent link the mechanism has more constraints: kernels for both cannot be one."""
+    with pytest.raises(ModelError, match=r"`hold_tilt_y`.*: `twist` would change the number of constraints"):
+        _model("{translation: [0.3, 0.9, 0.4]}", "twist")
+
+
+def test_rows_in_any_units_are_rows() -> None:
+    """A row is not taken for rounding because it is small."""
+    text = """model: units
+coordinates: {x: {}, y: {}, z: {}}
+kinetic_energy: x_dot**2 + y_dot**2 + z_dot**2
+constraints:
+  geometric:
+    small: 1e-17*(x - y**2)
+    apart: (x + 6.4e6) - (z + 6.4e6)
+    large: 1e20*(x - y**2) + 1e20*(y**2 - x)
+  nonholonomic:
+    none: (sin(pi/6) - 1/2)*x_dot + 1e-9*0*y_dot
+"""
+    model = load_text(text, "units.yaml")
+    assert _rows(model) == {"small": False, "apart": False, "large": True, "none": True}
+
+
+def test_a_range_that_cannot_be_used_is_told() -> None:
+    """Three cranks on one coupler: each length closes for its value alone, a length they share for any."""
+    cranks = "".join(
+        f"    x_{i}: {length}*cos(a_{i}) - x\n    y_{i}: {length}*sin(a_{i}) - y\n"
+        for i, length in enumerate(("l", "l", "l_3"))
+    )
+    text = f"""model: cranks
+coordinates:
+  x: {{unit: m}}
+  y: {{unit: m}}
+  a_0: {{unit: rad}}
+  a_1: {{unit: rad}}
+  a_2: {{unit: rad}}
+parameters:
+  l: {{value: 0.5, range: [0.4, 0.6]}}
+  l_3: {{value: l, range: [0.4, 0.6]}}
+  m: {{value: 2, range: [1, 3]}}
+kinetic_energy: m/2*(x_dot**2 + y_dot**2) + (a_0_dot**2 + a_1_dot**2 + a_2_dot**2)/10
+constraints:
+  geometric:
+{cranks}
+configuration: {{a_0: 0.5, a_1: 0.5, a_2: 0.5, x: 0.4, y: 0.2}}
+"""
+    model = load_text(text, "cranks.yaml")
+    assert model.assembly is not None
+    told = [notice.message for notice in model.notices if "in spite of" in notice.message]
+    assert model.assembly.tied == ("l_3",)
+    assert told == [
+        "`l_3` keeps its default in spite of its range: rows that depend on each other can be closed for no other value"
+    ]
