@@ -246,7 +246,8 @@ def _regular(
     admissible = index % 2 == 0
     if index % 4 == 3 and reference.system.r_geometric and reference.ranks.constraints == model.r:
         moved = [x + DRIFT * s * max(abs(x), 0.1) for x, s in zip(q, shifts, strict=True)]
-        if not exceeds(reference.system, reference.ranks, list(map(ball, moved)), parameters, reference.literals()):
+        given = [*map(ball, moved)], [*map(ball, parameters)]
+        if not exceeds(reference.system, reference.ranks, *given, reference.literals()):
             q = moved
     zero = (0.0,) * model.m
     state = State(tuple(q), tuple(rates), tuple(accelerations), zero, tuple(parameters))

@@ -60,9 +60,10 @@ def test_states_stay_where_the_inputs_reach_no_more_than_on_the_constraints() ->
         build(
             "two_pushes",
             "x y a b",
-            "x_dot**2 + y_dot**2 + a_dot**2 + b_dot**2",
+            "x_dot**2 + y_dot**2 + m*a_dot**2 + b_dot**2",
+            parameters={"m": "3", "s": "0.7"},
             geometric=("x - y",),
-            inputs={"F": {"a": "cos(x)", "b": "sin(x)"}, "G": {"a": "cos(y)", "b": "sin(y)"}},
+            inputs={"F": {"a": "sqrt(s)*cos(x)", "b": "sqrt(s)*sin(x)"}, "G": {"a": "cos(y)", "b": "sin(y)"}},
         )
     )
     assert reference.ranks.actuation == 1
