@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from symgen.verify.certificate import LeftOut
 
 
+CARRIED = ", rounding errors carried along"
+
+
 @dataclass(frozen=True, slots=True)
 class Draft:
     """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way."""
@@ -43,7 +46,8 @@ class Draft:
     def way(self, quantity: str) -> str:
         """The way a quantity takes, and its form where that says more."""
         choice = self.choice(quantity)
-        return f"{choice.form} along {choice.way}" if choice.form not in ("", choice.way) else choice.way
+        way = f"{choice.form} along {choice.way}" if choice.form not in ("", choice.way) else choice.way
+        return way + CARRIED * bool(choice.compensated)
 
     def taken(self, quantity: str) -> Alternative:
         """The way a quantity takes, as it stands."""
@@ -62,7 +66,13 @@ class Draft:
         programs = schedule(alternative.mechanics, [alternative.derived], scalars)
         if self.trig == "libm":
             programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
-        return {scalar: program.kernels[0] for scalar, program in programs.items()}
+        kernels = {scalar: program.kernels[0] for scalar, program in programs.items()}
+        if not (marks := alternative.choice.compensated):
+            return kernels
+        from symgen.ir.compensated import compensated, marked  # few models need it
+
+        carrying = {s: compensated(kernels[s], s, marked(kernels[s], bits)) for s, bits in marks if s in kernels}
+        return {**kernels, **carrying}
 
     def along(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Draft:
         """The draft with a quantity along another way, by kernels of `kernels_along`."""

@@ -2,7 +2,8 @@
 
 Another way is held against the same states by interpretation before anything is printed or compiled; the files that
 come of it are then verified like any others.  A way that needs most of what is allowed at these states will need more
-at others: it is taken only where no other way keeps a margin.  Where no way passes in float32, float64 stays.
+at others: it is taken only where no other way keeps a margin.  Where none does, one that loses digits carries along
+what rounding takes of them.  Where no way passes in float32, float64 stays.
 """
 
 from __future__ import annotations
@@ -14,18 +15,21 @@ from fractions import Fraction
 from typing import Any, TypeAlias
 
 from symgen.diagnostics import SymgenBug
-from symgen.draft import Draft
+from symgen.draft import CARRIED, Draft
 from symgen.dynamics.alternatives import TIERS, Alternative, Alternatives
 from symgen.dynamics.catalogue import scalars
 from symgen.dynamics.select import Rejection
 from symgen.graph.traverse import cost
+from symgen.ir.compensated import mark
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.records import dataclass
 from symgen.results import AUTO, Options
 from symgen.verify.certificate import Certificate, ErrorRecord, Fault, LeftOut
+from symgen.verify.comparison import INACCURATE
 from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import measured
+from symgen.verify.rounding import losing
 from symgen.verify.tolerance import FACTOR
 
 REJECTED = "verification rejects it"
@@ -33,6 +37,9 @@ REJECTED = "verification rejects it"
 MARGIN = FACTOR / 2
 # What keeping a margin may cost, in operations.
 MARGIN_WORTH = Fraction(1, 2)
+# Ways that are tried once more with their rounding errors, and the statements that may come of one.
+CARRYING = 3
+LONGEST = 20_000
 Kernels: TypeAlias = Mapping[Scalar, Kernel]
 
 
@@ -58,6 +65,8 @@ class Fallback:
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
         self._kernels: defaultdict[str, list[Kernels]] = defaultdict(list)
         self._weighed: set[str] = set()
+        self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
+        self._carried: set[str] = set()
 
     def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
         """The draft with other ways for what is rejected, or for what keeps no margin; None where nothing is better."""
@@ -82,6 +91,8 @@ class Fallback:
         _check_algebra(kernels["float64"], draft.way(quantity), expected, faults[0].state)
         tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})"))
         self._kernels[quantity].append(kernels)
+        if known == 0 and all(fault.what.startswith(INACCURATE) for fault in faults):
+            self._inaccurate[quantity].append(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
             passing.append(_Candidate(0.0, ("float64",), draft.taken(quantity), kernels))
         found = self._next(draft, quantity, expected)
@@ -105,6 +116,9 @@ class Fallback:
                     return one
                 if "float64" in one.scalars:
                     passing.append(one)
+        for one in self._carrying(draft, quantity, expected):
+            if one.scalars == needed and one.largest <= MARGIN:
+                return one
         if not passing:
             return None
         best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
@@ -143,6 +157,26 @@ class Fallback:
                 self._kernels[quantity].append(kernels)
                 yield self._measured(draft, way, kernels, expected)
 
+    def _carrying(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
+        """The ways that lose digits, with the rounding errors of the statements where they do; the shortest first."""
+        if quantity in self._carried or self._options.forms.get(quantity, AUTO) != AUTO:
+            return
+        self._carried.add(quantity)
+        sincos = {scalar: program.sincos for scalar, program in draft.programs.items()}
+        found: list[tuple[int, Alternative, Kernels]] = []
+        for way in self._inaccurate[quantity][:CARRYING]:
+            self._progress(f"where {quantity} loses digits, {way.choice.way}")
+            plain = draft.kernels_along(way, tuple(draft.kernels(quantity)))
+            lost = {s: losing(kernel, sincos[s], s, expected) for s, kernel in plain.items() if s in expected.scalars}
+            marks = tuple((s, mark(plain[s], targets)) for s, targets in lost.items() if targets)
+            way = replace(way, choice=replace(way.choice, compensated=marks))
+            carrying = draft.kernels_along(way, tuple(plain))
+            length = max(len(kernel.statements) for kernel in carrying.values())
+            if marks and length <= LONGEST:
+                found.append((length, way, carrying))
+        for _, way, kernels in sorted(found, key=lambda one: one[0]):
+            yield self._measured(draft, way, kernels, expected)
+
     def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: list[Scalar] = []
@@ -156,8 +190,11 @@ class Fallback:
                 passed.append(scalar)
                 worst = max(worst, record.largest)
                 continue
-            _check_algebra(kernels["float64"], way.choice.way, expected, record.worst_state)
-            self._tried[way.choice.quantity].append((way.choice.way, f"{fault.what} ({fault.target})"))
+            name = way.choice.way + CARRIED * bool(way.choice.compensated)
+            _check_algebra(kernels["float64"], name, expected, record.worst_state)
+            self._tried[way.choice.quantity].append((name, f"{fault.what} ({fault.target})"))
+            if not record.refused and way not in self._inaccurate[way.choice.quantity]:
+                self._inaccurate[way.choice.quantity].append(way)
             if scalar == "float64":
                 break  # float32 alone is of no use: the other type is what Python and the report are made of
         return _Candidate(worst, tuple(passed), way, kernels)
@@ -190,9 +227,13 @@ def as_recorded(draft: Draft, recorded: Mapping[str, Any]) -> Draft:
     others = Alternatives(draft.model, draft.derivations.generic, draft.derivations.inverse)
     for quantity in dict.fromkeys(one.quantity for one in rejected if one.quantity in present):
         kernel = recorded["kernels"].get(quantity)
-        other = None if kernel is None else others.named(quantity, kernel["way"])
-        if other is not None and draft.choice(quantity).way != other.choice.way:
-            draft = draft.along(other, draft.kernels_along(other, tuple(draft.programs)))
+        way = None if kernel is None else others.named(quantity, kernel["way"])
+        if way is None or draft.choice(quantity).way == way.choice.way:
+            way = draft.taken(quantity)
+        if kernel is not None:
+            marks = tuple(kernel.get("rounding_errors_carried", {}).items())
+            way = replace(way, choice=replace(way.choice, compensated=marks))
+            draft = draft.along(way, draft.kernels_along(way, tuple(draft.programs)))
         if quantity in left_out:
             draft = draft.without(quantity, left_out[quantity], REJECTED)
     return draft.rejecting(rejected)

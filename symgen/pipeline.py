@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
-from symgen.draft import Draft
+from symgen.draft import CARRIED, Draft
 from symgen.dynamics.catalogue import BY_NAME
 from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.inverse import FormChoice
@@ -396,7 +396,8 @@ def _replaced(draft: Draft) -> tuple[Notice, ...]:
         tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
         if tried:
             others = ", ".join(tried)
-            found.append(Notice(f"{choice.quantity} takes {choice.way}: verification speaks against {others}"))
+            way = choice.way + CARRIED * bool(choice.compensated)
+            found.append(Notice(f"{choice.quantity} takes {way}: verification speaks against {others}"))
     return tuple(found)
 
 

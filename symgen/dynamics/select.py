@@ -32,6 +32,7 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
 from symgen.graph.traverse import cost
+from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -45,12 +46,16 @@ STRUCTURED_WORTH = Fraction(1, 20)
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Which way a quantity took, and the counted cost of each way tried; q_ddot and lambda have a form along it."""
+    """Which way a quantity took, and the counted cost of each way tried; q_ddot and lambda have a form along it.
+
+    `compensated` marks by scalar type the statements whose rounding errors are carried along, where there are any.
+    """
 
     quantity: str
     way: str
     costs: tuple[tuple[str, int], ...]
     form: str = ""
+    compensated: tuple[tuple[Scalar, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -163,15 +163,14 @@ class ExactValues:
         return self._field.positive(y if x == 0 else x)
 
     def _root(self, a: Element, number: Fraction | None) -> Element:
-        """The positive root; of what is negative here, and of multiples of i, any positive one."""
+        """The positive root, or i times one; of multiples of i, any positive one."""
         field = self._field
         if isinstance(a, int) and number is not None:
             root = Fraction(isqrt(max(0, number.numerator)), isqrt(number.denominator))
             if root * root == number:
                 return field.number(root) or 0
+        if isinstance(a, int):
             return field.root(a) if field.positive(a) else (0, field.root(-a))
-        if isinstance(a, int) and field.positive(a):
-            return field.root(a)
         return pow(self._opaque("sqrt", a), 2, field.prime)
 
     def _whole(self, a: int, b: int) -> Element:

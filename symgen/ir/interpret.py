@@ -95,10 +95,7 @@ class Interpreter:
         self, kernel: Kernel, arguments: Mapping[str, Sequence[float]], parameters: Sequence[float]
     ) -> tuple[Status, list[float]]:
         """The status and, where it is OK, the outputs."""
-        values: dict[str, float] = {}
-        for load in kernel.loads:
-            source = parameters if load.argument == "p" else arguments[load.argument]
-            values[load.local] = self._round(source[load.index])
+        values = self._loaded(kernel, arguments, parameters)
         for block in kernel.blocks:
             status = self._block(block, values)
             if status is not Status.OK:
@@ -107,6 +104,21 @@ class Interpreter:
         if not all(map(math.isfinite, outputs)):
             return Status.NOT_FINITE, []
         return Status.OK, outputs
+
+    def values(
+        self, kernel: Kernel, arguments: Mapping[str, Sequence[float]], parameters: Sequence[float]
+    ) -> dict[str, float]:
+        """What every local of a regular state takes, whatever the checks say."""
+        values = self._loaded(kernel, arguments, parameters)
+        for statement in kernel.statements:
+            self._statement(statement, values)
+        return values
+
+    def _loaded(
+        self, kernel: Kernel, arguments: Mapping[str, Sequence[float]], parameters: Sequence[float]
+    ) -> dict[str, float]:
+        sources = {**arguments, "p": parameters}
+        return {load.local: self._round(sources[load.argument][load.index]) for load in kernel.loads}
 
     def _block(self, block: Block, values: dict[str, float]) -> Status:
         for statement in block.statements:

@@ -16,6 +16,8 @@ from symgen.verify.tolerance import FACTOR, Expectation
 
 Results: TypeAlias = Mapping[str, Sequence[Outcome]]
 INFINITE = float("inf")
+# How faults begin that are a matter of digits.
+INACCURATE = "error"
 
 
 def compare(quantity: str, target: str, expected: Sequence[Expectation], outcomes: Sequence[Outcome]) -> ErrorRecord:
@@ -59,7 +61,7 @@ def faults_of(record: ErrorRecord, outcomes: Sequence[Outcome], samples: Sequenc
         )
     elif not record.largest <= FACTOR:
         yield Fault(
-            f"error {record.largest:.3g} times d + eps |y*| at state {record.worst_state}, "
+            f"{INACCURATE} {record.largest:.3g} times d + eps |y*| at state {record.worst_state}, "
             f"{FACTOR:g} is allowed (relative error {record.largest_relative:.3g})",
             record.quantity,
             record.target,

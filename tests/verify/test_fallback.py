@@ -98,6 +98,19 @@ def narrow(motion: Motion) -> Motion:
     return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 4)) for value in motion.multipliers))
 
 
+def losing_digits(motion: Motion) -> Motion:
+    """λ that loses digits in roots, products and sums: times 1 + 2^12 (sqrt(3 r)^2 - 3 r)."""
+    graph = motion.multipliers[0].graph
+    r = graph.const(3) * graph.symbol("r")
+    root = graph.raw("sqrt", (r,))
+    nothing = graph.raw("sub", (graph.raw("mul", (root, root)), r))
+    share = graph.raw("mul", (graph.const(2**12), nothing))
+    return replace(
+        motion,
+        multipliers=tuple(graph.raw("add", (value, graph.raw("mul", (value, share)))) for value in motion.multipliers),
+    )
+
+
 def lossy(value: Scalar, factor: Fraction) -> Scalar:
     """The value times 1 + factor (cosh^2 - sinh^2 - 1)."""
     graph = value.graph
@@ -291,6 +304,30 @@ def test_check_takes_over_the_way_that_verification_led_to(
     source = tmp_path / "out/yoke/c/yoke.c"
     source.write_text(source.read_text(encoding="utf-8").replace(" + ", " - ", 1), encoding="utf-8")
     assert cli.main([*common, "--check"]) == 1
+
+
+def test_where_every_way_loses_digits_one_carries_its_rounding_errors(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    usual = derived(made(yoke))["kernels"]
+    spoil_choice(monkeypatch, losing_digits)
+    spoil_named(monkeypatch, losing_digits)
+    common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8"]
+    assert cli.main(common) == 0
+    assert "rounding errors carried along: verification speaks against" in capsys.readouterr().err
+    folder = tmp_path / "out/yoke"
+    content = json.loads((folder / "derivation.json").read_bytes())
+    kernel = content["kernels"]["multipliers"]
+    assert set(kernel["rounding_errors_carried"]) == {"float64", "float32"}
+    assert {one["quantity"] for one in content["rejected"]} == {"multipliers"}
+    # nothing else pays for it
+    assert {name: one for name, one in content["kernels"].items() if name != "multipliers"} == {
+        name: one for name, one in usual.items() if name != "multipliers"
+    }
+    certificate = json.loads((folder / "certificate.json").read_bytes())
+    assert certificate["passed"]
+    assert max(e["largest"] for e in certificate["errors"] if e["quantity"] == "multipliers") <= 8
+    assert cli.main([*common, "--quiet", "--check"]) == 0
 
 
 def test_a_form_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
