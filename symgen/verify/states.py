@@ -7,7 +7,7 @@ import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
-from math import comb, isfinite, sqrt
+from math import comb, isfinite, pi, sqrt
 from typing import Any
 
 from symgen.ir.kernel import Scalar
@@ -24,6 +24,8 @@ REGULAR = 1e-3
 SAMPLING_BITS = 128
 DRIFT = 1e-3
 REST = 1e-25
+# How far angles may lie outside of their ranges in states.
+TURNS = 2
 TYPICAL_POINTS = 8
 PROJECTED = ("admissible_velocity", "admissible_acceleration")
 
@@ -131,6 +133,8 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
         # lengths that others follow from are rounded afterwards: a linkage may close for their exact values alone
         q = onto_manifold(system, start, exact, literals, rounded=reference.ranks.rounded)
         if q is None or exceeds(system, reference.ranks, q, exact, literals):
+            continue
+        if _turned_away(reference, q):
             continue
         in_range = _in_ranges(reference, q)
         place = _settled(q, [c.range for c in reference.model.coordinates])
@@ -315,3 +319,11 @@ def _in_ranges(reference: Reference, q: Sequence[Any]) -> bool:
         if not low - slack <= x <= high + slack:
             return False
     return True
+
+
+def _turned_away(reference: Reference, q: Sequence[Any]) -> bool:
+    """Whether an angle is turns outside of its range, where one step after another leads and nothing new is met."""
+    return any(
+        c.is_angle and not float(c.range[0]) - TURNS * 2 * pi <= x <= float(c.range[1]) + TURNS * 2 * pi
+        for x, c in zip(q, reference.model.coordinates, strict=True)
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from fractions import Fraction
+from math import pi
 from random import Random
 
 import pytest
@@ -176,3 +177,25 @@ def test_states_are_found_where_most_branches_hold_the_drive() -> None:
     found = sample_states(reference, ("inverse_dynamics",), 12)
     assert len(found) == 12
     assert all(sample.measures[1] > 0 for sample in found)
+
+
+def test_angles_far_outside_of_their_ranges_are_not_taken() -> None:
+    # near a pose where rows depend on each other, a step that is to satisfy them throws angles turns away
+    model = load_text(
+        """
+model: closed_chain
+coordinates: {a: {unit: rad, range: [-2.35, -1.29]}, b: {unit: rad}, c: {unit: rad}, d: {unit: rad}, e: {unit: rad}}
+parameters: {l: {value: 1, range: [0.7, 1.4]}}
+kinetic_energy: a_dot**2 + b_dot**2 + c_dot**2 + d_dot**2 + e_dot**2
+constraints:
+  geometric:
+    rod: l**2*(cos(b) + cos(c))**2 + l**2*(sin(b) + sin(c))**2 - 2.141474403335406
+    close_x: l*(cos(a) + cos(b) + cos(c)) + 0.0646334804616911
+    close_y: l*(sin(a) + sin(b) + sin(c)) - 0.4971771243905144
+inputs: {motor: {acts_on: {d: 1}}}
+configuration: {a: -1.92, b: 0.63, c: 2.13, d: -2.38, e: -0.71}
+""",
+        "closed_chain.yaml",
+    )
+    samples = sample_states(Reference(model), ["mass_matrix"], 64)
+    assert max(abs(x) for sample in samples for x in sample.state.q) <= 5 * pi + 0.1
