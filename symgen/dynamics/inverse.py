@@ -175,7 +175,10 @@ class InverseDynamics:
             lost = (name for name in verdicts if verdicts[name].lost)
             chosen = next(lost, None)
         if chosen is None:
-            return "no form is valid at every regular state"
+            if not offers:
+                return "this system has none of the forms that are chosen by themselves"
+            # a status where it is singular is told, and better than no u at all
+            chosen = min(verdicts, key=lambda name: weights[name])
         best = offers[chosen]
         shorter = self._factored(best) if "minor" in offers else None
         if shorter is not None:

@@ -6,6 +6,9 @@ same code for every state).  What rounding leaves of a long row that follows fro
 of its own.  A fixed choice of rows would be a parametrisation; this one follows the configuration.  What is left of the
 other rows, zero on V and of the size of the drift beside it, is dropped.  With B = L Q_1^T, L of full column rank,
 B^+ = Q_1 L^+ comes from a second factorisation, of L (complete orthogonal decomposition).
+
+Rows of what inputs do along the constraints are no rows of their own: they are components in an orthonormal basis, one
+of which may vanish at any configuration.  Of those the longest is taken as it is.
 """
 
 from __future__ import annotations
@@ -24,17 +27,20 @@ class PivotedReflections(Reflections):
     """`rank` reflections, each made from the row with the longest remainder.
 
     `lengths` are the squared lengths of the rows chosen, `coefficients` L: the rows in terms of the directions taken,
-    `rest` what is left of the rows beside these directions.
+    `rest` what is left of the rows beside these directions.  With `own` remainders count beside the rows' lengths.
     """
 
-    def __init__(self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False) -> None:
+    def __init__(
+        self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+    ) -> None:
         super().__init__(graph, (), n, everywhere)
         remaining = list(rows)
         squares = [dot(graph, row, row) for row in rows]
         self.lengths: list[Scalar] = []
         for k in range(rank):
             left = [dot(graph, row[k:], row[k:]) for row in remaining]
-            chosen = longest(graph, [graph.function("ratio_or_zero", pair) for pair in zip(left, squares, strict=True)])
+            shares = [graph.function("ratio_or_zero", pair) for pair in zip(left, squares, strict=True)]
+            chosen = longest(graph, shares if own else left)
             pairs = list(zip(chosen, remaining, strict=True))
             tail = tuple(graph.sum(c * row[i] for c, row in pairs) for i in range(k, n))
             self.lengths.append(graph.sum(c * square for c, square in zip(chosen, squares, strict=True)))
@@ -73,11 +79,13 @@ def longest(graph: Graph, sizes: Sequence[Scalar]) -> list[Scalar]:
 class PivotedSpace(HouseholderSpace):
     """By reflections of as many rows as the rank, chosen by length at each configuration."""
 
-    def __init__(self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False) -> None:
+    def __init__(
+        self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+    ) -> None:
         self.graph, self.rows, self.n, self.rank = graph, rows, n, rank
         self.delta = n - rank
         self._everywhere = everywhere
-        self._pivoted = PivotedReflections(graph, rows, n, rank, everywhere)
+        self._pivoted = PivotedReflections(graph, rows, n, rank, everywhere, own)
         self.reflections = self._pivoted
 
     @cached_property
@@ -126,11 +134,16 @@ class PivotedSpace(HouseholderSpace):
         return self._inner.apply((*y, *(self.graph.zero,) * (len(self.rows) - self.rank)))
 
 
-def reflected(graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False) -> HouseholderSpace:
-    """The null space by reflections, with pivoting only where rows depend on each other."""
+def reflected(
+    graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+) -> HouseholderSpace:
+    """The null space by reflections, with pivoting only where rows depend on each other.
+
+    With `own` each row counts by what is left of its own length.
+    """
     if rank == len(rows):
         return HouseholderSpace(graph, rows, n, everywhere)
-    return PivotedSpace(graph, rows, n, rank, everywhere)
+    return PivotedSpace(graph, rows, n, rank, everywhere, own)
 
 
 def elementary_symmetric(graph: Graph, values: Sequence[Scalar], degree: int) -> Scalar:

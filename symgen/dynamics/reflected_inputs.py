@@ -29,7 +29,7 @@ class ReflectedInputs:
         self._columns = tuple(columns)
         self._by_columns = degree == len(self._columns) < size
         rows = self._columns if self._by_columns else transpose(self._columns, size)
-        self._space: HouseholderSpace = reflected(graph, rows, len(rows[0]), degree, everywhere)
+        self._space: HouseholderSpace = reflected(graph, rows, len(rows[0]), degree, everywhere, own=False)
 
     def cancelled(self, _cancel: Callable[[Scalar], Scalar]) -> ReflectedInputs:
         """Nothing is multiplied out."""

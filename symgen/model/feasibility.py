@@ -144,7 +144,14 @@ def _check_masses(
     if not definite_somewhere:
         names = [f"`{c.name}`" for c in mechanics.coordinates if c.name in still]
         alone = len(names) == 1
-        moving = f"{names[0]} does" if alone else f"{', '.join(names) or 'the coordinates'} move together"
+        if not names:
+            yield Mistake(
+                "the accelerations cannot be told: some of the masses vanish beside others in double precision",
+                "check the units of masses and inertias; what weighs that little may have none",
+                span,
+            )
+            return
+        moving = f"{names[0]} does" if alone else f"{', '.join(names)} move together"
         each = not alone and all(_alone(mechanics, regular, name) for name in still)
         if each:
             moving = f"{', '.join(names[:-1])} or {names[-1]} does"

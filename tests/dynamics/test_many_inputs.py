@@ -9,7 +9,8 @@ import pytest
 
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.exterior import LARGEST_FAMILY, ActuationForms, RowForms, small_family
-from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.genericity import Genericity, genericity
+from symgen.dynamics.inverse import InverseDynamics, Offer
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.rank_measures import rank_measures
@@ -39,6 +40,37 @@ def test_least_norm_and_least_squares(size: int, count: int, degree: int) -> Non
     assert found[:-1] == pytest.approx(np.linalg.pinv(matrix, rcond=1e-10) @ force, rel=1e-9, abs=1e-10)
     forms = ActuationForms(RowForms(graph, (), size, 0), columns, degree)
     assert found[-1] == pytest.approx(Evaluator([forms.square()])(values)[0], rel=1e-8)
+
+
+@pytest.mark.parametrize("place", [0, 3, 5])
+def test_a_component_that_all_but_vanishes_is_not_divided_by(place: int) -> None:
+    # what rounding leaves of a component that is 0 at this configuration points anywhere
+    source = np.random.default_rng(5)
+    matrix = source.normal(size=(6, 4)) @ source.normal(size=(4, 6))
+    matrix[place] = 1e-15 * source.normal(size=6)
+    force = source.normal(size=6)
+    graph = Graph()
+    columns = [symbols(graph, f"a_{k}", 6) for k in range(6)]
+    equations = ReflectedInputs(graph, columns, 6, 4, everywhere=False)
+    values = {f"a_{k}_{i}": matrix[i, k] for k in range(6) for i in range(6)}
+    values |= {f"f_{i}": force[i] for i in range(6)}
+    found = Evaluator(equations.solve(symbols(graph, "f", 6)))(values)
+    assert found == pytest.approx(np.linalg.pinv(matrix, rcond=1e-10) @ force, rel=1e-9, abs=1e-10)
+
+
+def test_a_form_is_found_where_components_of_inputs_vanish_in_turn() -> None:
+    # one force turns from x to y, another does what the first drive does
+    names = [*(f"q_{k}" for k in range(7)), "x", "y"]
+    parts = ["model: turning_push", "coordinates:", *(f"  {name}: {{unit: rad}}" for name in names)]
+    parts += ["kinetic_energy: " + " + ".join(f"{name}_dot**2*(2 + sin({name}))" for name in names), "inputs:"]
+    parts += [f"  u_{k}: {{acts_on: {{q_{k}: 1, q_{(k + 1) % 7}: 0.5 + cos(q_{k})/4}}}}" for k in range(7)]
+    parts += ["  push: {acts_on: {x: cos(q_0), y: sin(q_0)}}", "  again: {acts_on: {x: -cos(q_0), y: -sin(q_0)}}"]
+    parts += ["  same: {acts_on: {q_0: 1, q_1: 0.5 + cos(q_0)/4}}"]
+    model = load_text("\n".join(parts) + "\n", "turning_push.yaml")
+    inverse = InverseDynamics(model, genericity(Mechanics(model)))
+    offer = inverse.offer("minor")
+    assert isinstance(offer, Offer)
+    assert inverse.verdict(offer).singular == ()
 
 
 def test_the_number_of_products_decides() -> None:
@@ -103,5 +135,3 @@ def test_directions_cost_by_their_cube() -> None:
         return len(mechanics.graph) - before
 
     assert nodes(26) < 10 * nodes(13)
-
-

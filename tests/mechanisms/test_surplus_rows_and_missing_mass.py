@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from shipped import ROOT
 
+from symgen.diagnostics import ModelError
 from symgen.dynamics.genericity import genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.select import derive_quantities
@@ -167,6 +168,17 @@ def test_a_sleeve_without_mass_passes_its_force_on() -> None:
     qdd = found["forward_dynamics"]
     back = kernels(sleeve, state(sleeve, [*place, angles[1], *q], [*speed, rates[1], *qd], qdd, u))
     assert back["inverse_dynamics"] == pytest.approx(u, rel=1e-11)
+
+
+def test_masses_that_vanish_beside_others_are_told() -> None:
+    text = """
+model: star_and_grains
+coordinates: {a: {unit: m}, b: {unit: m}, c: {unit: m}}
+kinetic_energy: 1e70*b_dot**2 + cos(a)*a_dot*b_dot/2 + 2*a_dot**2 + c_dot**2 + cos(a)*c_dot*b_dot/2
+constraints: {geometric: {held: b + c - sin(a)}}
+"""
+    with pytest.raises(ModelError, match="accelerations cannot be told: some of the masses vanish"):
+        load_text(text, "star_and_grains.yaml")
 
 
 def test_states_are_found_under_both_wheels_of_an_axle() -> None:
