@@ -11,7 +11,9 @@ from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.inverse import AUTOMATIC, FormChoice, InverseDynamics, Offer, derived_on, moved
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.select import Choice, block_way, finished, ways
+from symgen.graph.matrix import flatten
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -20,6 +22,7 @@ from symgen.records import dataclass
 INPUTS = (AUTOMATIC, ("printed", "weighted", "kkt"))
 MOTION = (("minor", "schur_qr", "nullspace", BY_FRAMES), ("schur_ldl", "shifted", "kkt"))
 OTHERS = (("minors", "householder", "blocks"), ())
+WEIGHTED = (("minors", "householder", "blocks", "schur_qr"), ())
 TIERS = 2
 
 
@@ -63,7 +66,9 @@ class Alternatives:
     def _named(self, quantity: str, name: str) -> Alternative | None:
         if quantity == "inverse_dynamics":
             return self._of_inputs(name)
-        return self._of_motion(quantity, name) if quantity in MOTIONS else self._along(quantity, name)
+        if quantity in MOTIONS:
+            return self._of_motion(quantity, name)
+        return self._by_elimination(quantity) if name == "schur_qr" else self._along(quantity, name)
 
     def _of_inputs(self, name: str) -> Alternative | None:
         """A form of u that is nowhere singular."""
@@ -104,7 +109,24 @@ class Alternatives:
         return Alternative(Choice(quantity, name, costs), mechanics, finished(mechanics, self._generic, derived))
 
 
+    def _by_elimination(self, quantity: str) -> Alternative | None:
+        """A weighted projection as accelerations."""
+        from symgen.dynamics.forms.weighted_projection import weighted_projection  # few models need it
+
+        mechanics = Mechanics(self._model)
+        space = reflected(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, self._generic.rank)
+        found = weighted_projection(mechanics, self._generic, quantity, space.guards)
+        if found is None:
+            return None
+        matrix, guards = found
+        derived = Derived(quantity, (len(matrix), len(matrix[0])), flatten(matrix), guards)
+        costs = (("schur_qr", cost(scalars(derived)).weight),)
+        return Alternative(Choice(quantity, "schur_qr", costs), mechanics, finished(mechanics, self._generic, derived))
+
+
 def _tiers(quantity: str) -> tuple[tuple[str, ...], ...]:
     if quantity == "inverse_dynamics":
         return INPUTS
-    return MOTION if quantity in MOTIONS else OTHERS
+    if quantity in MOTIONS:
+        return MOTION
+    return WEIGHTED if quantity in ("weighted_pseudoinverse", "weighted_nullspace_projector") else OTHERS

@@ -39,27 +39,40 @@ class Factor(Protocol):
         """The solution of L^T x = b."""
 
 
+class SchurQR:
+    """By A = V R: valid wherever G is positive definite and B has its generic `rank`, for any right-hand sides."""
+
+    def __init__(self, problem: Problem, rank: int) -> None:
+        self._graph = problem.graph
+        self._factor = OrderedCholesky(problem.graph, problem.mass_matrix)
+        columns = [self._factor.lowered(row) for row in problem.rows]
+        self._elimination = _Elimination(problem, self._factor, columns, rank)
+
+    def motion(self, force: Vector, bias: Vector) -> Motion:
+        """The solution of G q_ddot + B^T lambda = f, B q_ddot = -a."""
+        graph, factor, elimination, rows = self._graph, self._factor, self._elimination, self._elimination.rows
+        asked = elimination.asked(bias)
+
+        def left_over(x: Vector, multipliers: Vector) -> Solution:
+            # by L and D, because an inner entry of G has lost what it holds of light bodies; by B, because its columns
+            # may be of very different size, which L^-1 mixes
+            forces = subtract_vectors(factor.lowered(less_forces(graph, force, rows, multipliers)), x)
+            return forces, missing(graph, rows, asked, elimination.accelerations(x))
+
+        return elimination.motion(factor.lowered(force), asked, left_over)
+
+
 def schur_qr(problem: Problem, rank: int) -> Motion:
-    """By A = V R: valid wherever G is positive definite and B has its generic `rank`."""
-    graph, force = problem.graph, problem.force
-    factor = OrderedCholesky(graph, problem.mass_matrix)
-    elimination = _Elimination(problem, factor, [factor.lowered(row) for row in problem.rows], rank)
-    rows = elimination.rows
-
-    def left_over(x: Vector, multipliers: Vector) -> Solution:
-        # by L and D, because an inner entry of G has lost what it holds of light bodies; by B, because its columns may
-        # be of very different size, which L^-1 mixes
-        forces = subtract_vectors(factor.lowered(less_forces(graph, force, rows, multipliers)), x)
-        return forces, missing(graph, rows, elimination.asked, elimination.accelerations(x))
-
-    return elimination.motion(factor.lowered(force), left_over)
+    """q_ddot and lambda of a system's own right-hand sides."""
+    return SchurQR(problem, rank).motion(problem.force, problem.bias)
 
 
 def along_factor(problem: Problem, factor: Factor, columns: Sequence[Vector], force: Vector) -> Motion:
     """The same for any factor of G; `columns` are those of A, `force` is L^-1 f."""
     elimination = _Elimination(problem, factor, columns, problem.r)
+    asked = elimination.asked(problem.bias)
     return elimination.motion(
-        force, of_columns(problem.graph, columns, elimination.weights, force, elimination.asked)
+        force, asked, of_columns(problem.graph, columns, elimination.weights, force, asked)
     )
 
 
@@ -77,18 +90,21 @@ class _Elimination:
         )
         self._all_rows = problem.rows
         self.rows = self._orthogonal.chosen(problem.rows)
-        self.asked = self._orthogonal.asked(problem.rows, tuple(-a for a in problem.bias))
         # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
         regular = (self._orthogonal.regularity(),) if r > min(rank, LONGEST_PRODUCT) else problem.guards
         self._guards = (*regular, *factor.guards)
+
+    def asked(self, bias: Vector) -> Vector:
+        """What the rows that are solved with ask for."""
+        return self._orthogonal.asked(self._all_rows, tuple(-a for a in bias))
 
     def accelerations(self, x: Vector) -> Vector:
         """q_ddot of x = D L^T q_ddot."""
         return self._factor.raised(tuple(entry * weight for entry, weight in zip(x, self.weights, strict=True)))
 
-    def motion(self, force: Vector, left_over: Callable[[Vector, Vector], Solution]) -> Motion:
+    def motion(self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution]) -> Motion:
         """q_ddot and lambda for L^-1 f; `left_over` is what a solution leaves of the right-hand sides."""
-        solution = self._orthogonal.solve(force, self.asked)
+        solution = self._orthogonal.solve(force, asked)
         if self._r:
             solution = refined(self._graph, solution, left_over, self._orthogonal.solve)
         x, multipliers = solution

@@ -1,0 +1,48 @@
+"""B_G^+ (17) and N_{B,G} (19) as accelerations: what a row asks for, or a force causes, solved for and refined.
+
+The columns of B_G^+ are the solutions of G x + B^T lambda = 0, B x = e_k; those of N_{B,G} the solutions of
+G x + B^T lambda = G e_j, B x = 0.  I - K G and K G, by any K, lose digits that these keep.
+"""
+
+from __future__ import annotations
+
+from symgen.dynamics.forms.absolute import in_absolute_angles, motion_brought_back
+from symgen.dynamics.forms.definiteness import positive_definite
+from symgen.dynamics.forms.motion import Motion, Problem
+from symgen.dynamics.forms.schur import SchurQR
+from symgen.dynamics.genericity import Genericity
+from symgen.dynamics.guards import Guard
+from symgen.dynamics.mechanics import Mechanics
+from symgen.graph.matrix import Matrix, identity, matvec, transpose
+from symgen.graph.scalar import Scalar
+
+PSEUDOINVERSE, PROJECTOR = "weighted_pseudoinverse", "weighted_nullspace_projector"
+
+
+def weighted_projection(
+    mechanics: Mechanics, generic: Genericity, quantity: str, before: tuple[Guard, ...]
+) -> tuple[Matrix, tuple[Guard, ...]] | None:
+    """One of both quantities on the graph of `mechanics` with its guards; None where G is not positive definite.
+
+    `before` tell where B loses rank.  G is factorised in absolute angles, as for the form of the same name of q_ddot.
+    """
+    if not mechanics.r or not positive_definite(mechanics):
+        return None
+    changed = in_absolute_angles(mechanics.model)
+    there = changed or mechanics.apart()
+    solver = SchurQR(Problem(there, ()), generic.rank)
+    found = [motion_brought_back(mechanics.graph, changed, motion) for motion in _motions(there, solver, quantity)]
+    guards = tuple(dict.fromkeys((*before, *(guard for motion in found for guard in motion.guards))))
+    return transpose(tuple(motion.accelerations for motion in found), mechanics.n), guards
+
+
+def _motions(mechanics: Mechanics, solver: SchurQR, quantity: str) -> list[Motion]:
+    """The solution for each right-hand side."""
+    graph, n, r = mechanics.graph, mechanics.n, mechanics.r
+    nothing: tuple[tuple[Scalar, ...], tuple[Scalar, ...]] = (graph.zero,) * n, (graph.zero,) * r
+    if quantity == PSEUDOINVERSE:
+        return [solver.motion(nothing[0], tuple(-x for x in unit)) for unit in identity(graph, r)]
+    units = identity(graph, n)
+    if mechanics.change is not None:
+        units = tuple(map(mechanics.change.absolute, units))
+    return [solver.motion(matvec(graph, mechanics.mass_matrix, unit), nothing[1]) for unit in units]
