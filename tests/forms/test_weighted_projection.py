@@ -1,4 +1,4 @@
-"""B_G^+ and N_{B,G} as accelerations: right where masses are far apart and joints relative, rows that depend included."""
+"""B_G^+ and N_{B,G} as accelerations: right where masses are far apart, joints relative, rows dependent."""
 
 from __future__ import annotations
 
