@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
-from symgen.verify.interpreted import EXACT
+from symgen.verify.exactness import EXACT
 from symgen.verify.reference_tape import ball
 
 FLIPPED = {"add": "sub", "sub": "add"}
