@@ -102,15 +102,20 @@ class _Search:
 
     def _without_noise(self, sizes: list[Row]) -> list[Row]:
         """Rows that are zero but for rounding are empty: those of no size beside others, and those that are small and
-        change altogether where q hardly does; a row in small units does not."""
+        change altogether where q hardly does; a row in small units does not.
+
+        The units of inputs are no measure of constraints.
+        """
         largest = max((value for row in sizes for value in row.values()), default=0.0)
+        r = len(self._mechanics.constraints)
+        constraining = max((value for row in sizes[:r] for value in row.values()), default=0.0)
         place = self._anywhere(whole=False)
         beside = [x + NUDGE * width for x, width in zip(place, self._widths, strict=True)]
         here, there = self._rows(place), self._rows(beside)
         found = []
         for i, row in enumerate(sizes):
             most = max(row.values(), default=0.0)
-            keep = most > NO_SIZE * largest
+            keep = most > NO_SIZE * (constraining if i < r else largest)
             if keep and most < SMALL * largest and here is not None and there is not None:
                 moved = max((abs(value - there[i].get(j, 0.0)) for j, value in here[i].items()), default=0.0)
                 keep = moved <= CHANGED * max(map(abs, here[i].values()), default=0.0)

@@ -129,6 +129,19 @@ def test_a_branch_of_greater_rank_gives_a_status() -> None:
     assert inverse(model, [0.3, -0.5, 0.0, 0.0, 0.1])[0] == Status.CONSTRAINT_RANK
 
 
+@pytest.mark.parametrize("gain", ["4e-12", "1", "6e13", "3e24"])
+def test_the_unit_of_an_input_is_no_measure_of_constraints(gain: str) -> None:
+    text = """
+model: guided
+coordinates: {x: {unit: rad}, a: {unit: rad}}
+kinetic_energy: x_dot**2 + 2*a_dot**2
+constraints: {geometric: {guide: 2.3*x - sin(a)}}
+inputs: {drive: {acts_on: {a: GAIN}}}
+"""
+    found = genericity(Mechanics(load_text(text.replace("GAIN", gain), "guided.yaml")))
+    assert (found.rank, found.alpha) == (1, 1)
+
+
 def test_inputs_that_do_more_on_a_branch_nobody_found_give_a_status() -> None:
     """A torque on the coupler, as if only the parallelogram were known, where it does no work."""
     text = row_of_four_bars(1, ground="0.7").replace("acts_on: {a0: 1}", "acts_on: {b1: 1}")
