@@ -42,8 +42,8 @@ class Rows:
         self, scope: Scope, mechanism: Mechanism, coordinates: tuple[Coordinate, ...], known: tuple[Definition, ...]
     ) -> None:
         self._scope = scope
-        formulas = Formulas(coordinates, {definition.name: definition.value for definition in known})
-        self._kinematics: Kinematics[Formula, Form] = Kinematics(mechanism, formulas)
+        self._formulas = Formulas(coordinates, {definition.name: definition.value for definition in known})
+        self._kinematics: Kinematics[Formula, Form] = Kinematics(mechanism, self._formulas)
 
     def of_loops(self, tree: MappingNode) -> Iterator[ConstraintRow]:
         """The rows that close the loops."""
@@ -131,6 +131,8 @@ class Rows:
         if upright:
             yield "along", minus(rate("vx"), _scaled(radius, rate("wy")))
             yield "across", plus(rate("vy"), _scaled(radius, rate("wx")))
+            if self._formulas.rate(self._value(Component(frame, "z").name)):
+                yield "height", minus(Name(f"{frame}.z"), radius)
             return
         # the spin does not show in the axes of what carries the wheel
         still = parent != WORLD and exact_value(self._value(Component(frame, f"r{column}{column}", parent).name)) == 1

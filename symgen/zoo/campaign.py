@@ -16,6 +16,7 @@ from symgen.zoo.cases import case_of
 from symgen.zoo.describe import Description
 from symgen.zoo.families import draw
 from symgen.zoo.records import Record
+from symgen.zoo.refusals import judged
 from symgen.zoo.run import run_command
 from symgen.zoo.shrink import shrink
 from symgen.zoo.verdict import FAILED, REFUSED, Verdict, verdict_of, without_numbers
@@ -38,9 +39,11 @@ def judge(description: Description, model: Path) -> tuple[Verdict, float, float]
     """Writes the model file, runs the command beside it and looks at the numbers; verdict, CPU seconds, megabytes."""
     model.parent.mkdir(parents=True, exist_ok=True)
     model.write_text(description.text, encoding="utf-8")
+    for name, text in description.files.items():
+        (model.parent / name).write_text(text, encoding="utf-8")
     folder = model.with_suffix("")
     run = run_command(model, folder)
-    verdict = verdict_of(run)
+    verdict = judged(description, verdict_of(run))
     if not verdict.failed and verdict.ending != REFUSED:
         verdict, told = _witnessed(description, folder, verdict)
         (folder / "stderr").write_text(told + run.err, encoding="utf-8")
@@ -53,7 +56,7 @@ def _witnessed(description: Description, folder: Path, verdict: Verdict) -> tupl
     if not (made / "derivation.json").exists():
         return Verdict(FAILED, "nothing written"), ""
     try:
-        checked = check(description.text, made, description.start, description.text)
+        checked = check(description, made)
     except Exception as fault:  # a draw on which the witness itself breaks must not end a campaign of a thousand
         return Verdict(FAILED, "fault of the zoo", without_numbers(f"{type(fault).__name__}: {fault}")), f"{fault!r}\n"
     if checked.findings:

@@ -11,11 +11,13 @@ import yaml
 
 # blocks in the order in which people write them
 ORDER = (
-    "model", "description", "coordinates", "parameters", "definitions", "gravity", "frames", "joints", "bodies",
+    "model", "description", "urdf", "coordinates", "parameters", "definitions", "gravity", "frames", "joints", "bodies",
     "rotor_inertias", "points", "loops", "rolling", "springs", "friction", "forces", "kinetic_energy",
     "potential_energy", "constraints", "inputs", "allocation", "applied_forces", "outputs", "independent_velocities",
     "configuration", "ranges", "tolerances", "trig_range",
 )  # fmt: skip
+# the mark of a draw that must be refused
+MISTAKE = "mistake on purpose"
 PLAIN = re.compile(r"[A-Za-z_0-9.+*/() -]+")
 
 
@@ -34,11 +36,15 @@ class Description:
     """A model file as data: blocks of mappings, lists, texts and sums.
 
     `start` is a configuration that satisfies the constraints by construction, whether the file tells it or not.
+    `marks` say what the text does not show: how loops were closed, which mistake was made on purpose. `files` stand
+    beside the model file.
     """
 
     family: str
     blocks: Mapping[str, Any]
     start: Mapping[str, float] = field(default_factory=dict)
+    marks: tuple[str, ...] = ()
+    files: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def text(self) -> str:

@@ -15,6 +15,8 @@ class Dice:
 
     def __init__(self, *seed: object) -> None:
         self._random = random.Random(" ".join(map(str, seed)))
+        # whether masses of this draw are decades apart
+        self.extreme = False
 
     def chance(self, probability: float) -> bool:
         """True with this probability."""
@@ -56,12 +58,14 @@ class Dice:
 
     def mass(self, extreme: bool = False) -> str:
         """A mass in kilograms; `extreme` ones are nine decades apart."""
-        if extreme:
-            return self.choice(("1e-6", "1e-3", "1", "1e3"))
+        if extreme or (self.extreme and self.chance(0.7)):
+            return self.choice(("1e-6", "1e-6", "1e-3", "1", "1e3", "1e3"))
         return "1" if self.chance(0.15) else self.number(0.1, 8, 2)
 
     def angle(self) -> float:
-        """An angle with two decimals, away from multiples of a quarter turn."""
+        """An angle with two decimals, mostly away from multiples of a quarter turn."""
+        if self.chance(0.03):
+            return self.choice((0.0, math.pi / 2, -math.pi / 2))
         quarter = self.whole(-2, 1)
         return round(quarter * math.pi / 2 + self._random.uniform(0.25, 1.3), 2)
 

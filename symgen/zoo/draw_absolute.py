@@ -13,6 +13,7 @@ from symgen.zoo.sketch import Sketch
 def absolute_coordinates(dice: Dice) -> Description:
     """Rods in the plane, each with the place of its centre and its angle; joints are rows."""
     sketch = Sketch(dice, "absolute_coordinates")
+    sketch.mark("absolute coordinates")
     kinetic, potential = [], []
     end = ("0", "0")
     drives: list[dict[str, str]] = []
@@ -46,7 +47,7 @@ def absolute_coordinates(dice: Dice) -> Description:
     sketch.blocks["potential_energy"] = Terms(tuple(potential))
     for k, column in enumerate(dice.sample(drives, dice.whole(1, count)), 1):
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"acts_on": column}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def points_and_rods(dice: Dice) -> Description:
@@ -90,7 +91,7 @@ def points_and_rods(dice: Dice) -> Description:
             length = "sqrt(" + " + ".join(f"({name} - 5)**2" for name in names) + ")"
             column = {name: f"(5 - {name})/{length}" for name in names}
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"acts_on": column}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def _bracketed(text: str) -> str:
@@ -119,6 +120,7 @@ def gyroscope(dice: Dice) -> Description:
     else:
         half = dice.uniform(0.2, 1.2)
         axis = dice.choice(((1.0, 0.0, 0.0), (0.6, 0.8, 0.0), (0.0, 0.6, 0.8)))
+        sketch.mark("quaternion")
         values = (math.cos(half), *(math.sin(half) * part for part in axis))
         names = w, x, y, z = [sketch.coordinate(f"e_{k}", value, "rad") for k, value in enumerate(values)]
         for name in names:
@@ -144,4 +146,4 @@ def gyroscope(dice: Dice) -> Description:
     sketch.blocks["potential_energy"] = Terms((f"{sketch.parameter('mgl', '4')}*{height}",))
     for k, column in enumerate(dice.sample(columns, dice.whole(1, 3)), 1):
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"acts_on": column}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)

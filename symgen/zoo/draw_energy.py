@@ -7,6 +7,7 @@ from functools import partial
 
 from symgen.zoo.describe import Description, Terms
 from symgen.zoo.dice import Dice, decimal
+from symgen.zoo.draw_potentials import potentials
 from symgen.zoo.endings import finish
 from symgen.zoo.sketch import Sketch
 
@@ -29,19 +30,25 @@ def planar_energies(dice: Dice) -> Description:
     """A tree of links in a vertical plane with up to four loops."""
     sketch = Sketch(dice, "planar_energies")
     sketch.inlined = dice.chance(0.35)
-    links = _tree(sketch, dice.whole(1, dice.choice((3, 5, 8))))
-    loops = min(dice.weighted({0: 4, 1: 4, 2: 2, 3: 1, 4: 0.5}), (len(links) - 1) // 2)
+    links = _tree(sketch, dice.whole(1, dice.choice((3, 5, 8, 12))))
+    loops = min(dice.weighted({0: 4, 1: 4, 2: 3, 3: 2, 4: 1.5}), (len(links) - 1) // 2)
+    if dice.chance(0.06):
+        # what cannot move is refused
+        for link in links:
+            sketch.row(f"hold_{link.coordinate}", link.coordinate)
     for index in range(loops):
-        sketch.that_moves(partial(_loop, sketch, links, index), oddly=0.05)
+        sketch.that_moves(partial(_loop, sketch, links, index), oddly=0.8)
     _potentials(sketch, links)
     _surplus(sketch)
     _inputs(sketch, links)
-    return finish(sketch.dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def _tree(sketch: Sketch, count: int) -> list[Link]:
     dice = sketch.dice
     absolute = dice.chance(0.5)
+    if count > 2:
+        sketch.mark("absolute angles" if absolute else "relative angles")
     extreme, equal = dice.chance(0.06), dice.chance(0.15)
     shared = sketch.parameter("l", dice.length()) if equal else ""
     massless = dice.chance(0.12)
@@ -157,7 +164,10 @@ def _loop(sketch: Sketch, links: list[Link], index: int) -> int:
                 return 0
             one, two = dice.sample(alike, 2)
             ratio = dice.choice(("1", "2", "-3", "0.5"))
+            sketch.mark("coupling")
             sketch.row(f"gear_{index}", f"{one} - {ratio}*{two}" if ratio[0] != "-" else f"{one} + {ratio[1:]}*{two}")
+    if kind != "angle":
+        sketch.mark("loop in the plane")
     return 2 if kind in ("ground", "meet") else 1
 
 
@@ -169,27 +179,9 @@ def _depth(links: list[Link], index: int) -> int:
 def _potentials(sketch: Sketch, links: list[Link]) -> None:
     """Springs and stranger potentials."""
     dice = sketch.dice
-    terms: list[str] = []
-    for _ in range(dice.weighted({0: 5, 1: 3, 2: 1})):
-        link = dice.choice(links)
-        x, y = link.tip
-        k = sketch.parameter("k", dice.choice(("50", "0", "1e4", "1e-5", "3", "200")))
-        # the exponential of a length is refused, and rightly
-        angle = dice.choice([each.coordinate for each in links if not each.slides] or ["0.3"])
-        terms.append(
-            dice.choice(
-                (
-                    f"{k}/2*({link.coordinate} - 0.3)**2",
-                    f"{k}*sqrt(({x} - 3)**2 + ({y} - 4)**2)",
-                    f"{k}*exp(-{angle}**2)",
-                    f"{k}*atan2({y} - 5, {x} + 6)**2",
-                    f"{k}*tanh({angle})",
-                    f"{k}*log(1 + {angle}**2)",
-                    f"{k}*sin({angle})**2",
-                    f"{k}*cosh({angle}/2)",
-                )
-            )
-        )
+    link = dice.choice(links)
+    angles = [each.coordinate for each in links if not each.slides]
+    terms = potentials(sketch, angles, [each.coordinate for each in links if each.slides], link.tip)
     old = sketch.blocks["potential_energy"]
     sketch.blocks["potential_energy"] = Terms((*old.terms, *terms))
     if not sketch.blocks["potential_energy"].terms:

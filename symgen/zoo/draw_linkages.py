@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 from symgen.zoo.describe import Description, Terms
@@ -14,7 +15,9 @@ from symgen.zoo.sketch import Sketch
 def parallelogram_energies(dice: Dice) -> Description:
     """A coupler on three to five equal and parallel cranks, given by energies in absolute angles."""
     sketch = Sketch(dice, "parallelogram_energies")
-    cranks = dice.whole(2, 5)
+    cranks = dice.weighted({2: 4, 3: 2, 4: 1, 5: 1})
+    if cranks > 2:
+        sketch.mark("parallelogram with several cranks")
     angle = dice.angle()
     names = [sketch.coordinate(f"a_{k}", angle) for k in range(1, cranks + 1)]
     turns = dice.chance(0.7)
@@ -41,12 +44,19 @@ def parallelogram_energies(dice: Dice) -> Description:
         rows[sketch.name(f"x_{k}")] = f"{length}*cos({before}){offset[0]} - {length}*cos({name})"
         rows[sketch.name(f"y_{k}")] = f"{length}*sin({before}){offset[1]} - {length}*sin({name})"
     _drives(sketch, names)
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    description = finish(sketch)
+    if cranks == 2 and dice.chance(0.5):
+        # all bars on one line: two branches meet there, and both have the same ranks
+        flat = dict.fromkeys(sketch.start, "0")
+        told = {**description.blocks, "configuration": flat}
+        return replace(description, blocks=told, marks=(*description.marks, "start at a singular pose"))
+    return description
 
 
 def common_pin(dice: Dice) -> Description:
     """Cranks of one length about one axle that share a pin, whose place is among the coordinates."""
     sketch = Sketch(dice, "common_pin")
+    sketch.mark("cranks on a common pin")
     angle, length = dice.angle(), dice.length()
     bar = sketch.parameter("l", length)
     x = sketch.coordinate("x", float(length) * math.cos(angle), "m")
@@ -61,7 +71,7 @@ def common_pin(dice: Dice) -> Description:
     sketch.blocks["kinetic_energy"] = Terms(tuple(kinetic))
     sketch.blocks["potential_energy"] = Terms((f"9.81*{y}",))
     _drives(sketch, names)
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def double_four_bar(dice: Dice) -> Description:
@@ -71,6 +81,7 @@ def double_four_bar(dice: Dice) -> Description:
     crank = sketch.coordinate("a", dice.angle())
     r = sketch.parameter("r", dice.number(0.1, 0.3, 2))
     relative = dice.chance(0.5)
+    sketch.mark("relative angles" if relative else "absolute angles")
     kinetic, potential, drives = [f"0.02/2*{crank}_dot**2"], [], [crank]
     for k in range(1, dice.whole(2, 3) + 1):
         b, c = sketch.coordinate(f"b_{k}", dice.angle()), sketch.coordinate(f"c_{k}", dice.angle())
@@ -80,6 +91,7 @@ def double_four_bar(dice: Dice) -> Description:
         rate = f"({crank}_dot + {b}_dot)" if relative else f"{b}_dot"
         rocker = sketch.definition(f"w_{k}", f"{th} + {c}") if relative else c
         rocker_rate = f"({rate} + {c}_dot)" if relative else f"{c}_dot"
+        sketch.mark("loop in the plane")
         sketch.row(f"x_{k}", f"{r}*cos({crank}) + {bar}*cos({th}) - {h}*cos({rocker})")
         sketch.row(f"y_{k}", f"{r}*sin({crank}) + {bar}*sin({th}) - {h}*sin({rocker})")
         mass = sketch.parameter(f"m_{k}", dice.mass())
@@ -91,7 +103,7 @@ def double_four_bar(dice: Dice) -> Description:
     sketch.blocks["kinetic_energy"] = Terms(tuple(kinetic))
     sketch.blocks["potential_energy"] = Terms(tuple(potential))
     _drives(sketch, drives)
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def _drives(sketch: Sketch, names: list[str]) -> None:
@@ -111,6 +123,7 @@ def parallelogram_bodies(dice: Dice) -> Description:
     sketch.blocks["gravity"] = ["0", "-9.81", "0"]
     in_a_row = dice.chance(0.4)
     count = dice.whole(2, 4)
+    sketch.mark("parallelogram with several cranks")
     cranks = [_joint(sketch, f"crank_{k}", f"a_{k}", angle, at=[_times(k, d), "0", "0"]) for k in range(count + 1)]
     for crank in cranks:
         sketch.block("bodies")[crank] = {"mass": m, "com": [f"{bar}/2", "0", "0"], "inertia": {"zz": "0.02"}}
@@ -123,11 +136,12 @@ def parallelogram_bodies(dice: Dice) -> Description:
             end = sketch.name(f"end_{k}_{other}")
             sketch.block("points")[tip] = {"frame": cranks[other], "at": [bar, "0", "0"]}
             sketch.block("points")[end] = {"frame": rod, "at": [_times(other - k, d), "0", "0"]}
+            sketch.mark("loop in the plane")
             sketch.block("loops")[sketch.name(f"pin_{k}_{other}")] = {"type": "point", "between": [end, tip]}
     drives = dice.sample([name for name in sketch.start if name.startswith("a_")], dice.whole(1, 3)) or ["a_0"]
     for k, name in enumerate(drives, 1):
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"joint": name}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def _times(factor: int, length: str) -> str:
@@ -159,7 +173,7 @@ def bennett(dice: Dice) -> Description:
     ratio = math.sin((float(beta) + float(alpha)) / 2) / math.sin((float(beta) - float(alpha)) / 2)
     second = 2 * math.atan(ratio / math.tan(first / 2))
     _ring(sketch, (a, b, a, b), (alpha, beta, alpha, beta), (first, second, -first, -second))
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def bricard(dice: Dice) -> Description:
@@ -170,7 +184,7 @@ def bricard(dice: Dice) -> Description:
     # cos t1 + cos t2 + cos t1 cos t2 = 0
     two = -math.acos(-math.cos(one) / (1 + math.cos(one)))
     _ring(sketch, (a,) * 6, ("pi/2", "-pi/2") * 3, (one, two) * 3)
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def _ring(sketch: Sketch, lengths: tuple[str, ...], twists: tuple[str, ...], angles: tuple[float, ...]) -> None:
@@ -193,6 +207,7 @@ def _ring(sketch: Sketch, lengths: tuple[str, ...], twists: tuple[str, ...], ang
         end: {"parent": before, "translation": [lengths[-2], "0", "0"], "rotation": [["x", twists[-2]]]},
         dock: {"translation": [f"-{lengths[-1]}", "0", "0"], "rotation": [["x", back]]},
     }
+    sketch.mark("loop in space")
     sketch.block("loops")[sketch.name("ring")] = {"type": "revolute", "between": [end, dock]}
     for k, name in enumerate(dice.sample(list(sketch.start), dice.weighted({1: 5, 2: 2})), 1):
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"joint": name}
@@ -223,15 +238,17 @@ def sarrus(dice: Dice) -> Description:
         sketch.block("frames")[end] = {"parent": knee, "translation": ["0", "0", bar]}
         place = {1: [f"-{d}", d, "0"], 2: ["0", f"2*{d}", "0"]}[k]
         sketch.block("frames")[dock] = {"parent": platform, "translation": place}
+        sketch.mark("loop in space")
         sketch.block("loops")[sketch.name(f"hinge_{k}")] = {"type": "revolute", "between": [end, dock], "axis": axis}
     for k, name in enumerate(dice.sample(list(sketch.start), dice.weighted({1: 5, 2: 2, 3: 1})), 1):
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"joint": name}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def legged_platform(dice: Dice) -> Description:
     """A planar platform on two to four legs with two links each, as bodies."""
     sketch = Sketch(dice, "legged_platform")
+    sketch.mark("platform on legs")
     sketch.blocks["gravity"] = ["0", "-9.81", "0"] if dice.chance(0.6) else ["0", "0", "-9.81"]
     x, y, phi = (sketch.name(name) for name in ("x", "y", "phi"))
     sketch.start |= {x: 0.1, y: 0.2, phi: round(dice.uniform(-0.5, 0.5), 2)}
@@ -259,7 +276,8 @@ def legged_platform(dice: Dice) -> Description:
         tip = sketch.name(f"tip_{k}")
         sketch.block("points")[tip] = {"frame": rod, "at": [r, "0", "0"]}
         between = dice.shuffled([tip, corner])
+        sketch.mark("loop in the plane")
         sketch.block("loops")[sketch.name(f"leg_{k}")] = {"type": "point", "between": between}
     for k, name in enumerate(dice.sample(proximal, dice.whole(1, legs)), 1):
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"joint": name}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)

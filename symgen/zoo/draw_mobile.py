@@ -7,7 +7,7 @@ from typing import Any
 
 from symgen.zoo.describe import Description, Terms
 from symgen.zoo.dice import Dice, decimal
-from symgen.zoo.endings import finish
+from symgen.zoo.endings import allocate, finish
 from symgen.zoo.sketch import Sketch
 
 
@@ -56,7 +56,7 @@ def car_with_trailers(dice: Dice) -> Description:
     sketch.blocks["kinetic_energy"] = Terms(tuple(kinetic))
     for k, column in enumerate(dice.sample(inputs, dice.whole(1, len(inputs))), 1):
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"acts_on": column}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def wheeled_bodies(dice: Dice) -> Description:
@@ -107,7 +107,7 @@ def wheeled_bodies(dice: Dice) -> Description:
         sketch.block("rolling")[sketch.name(f"ground_{k}")] = {"frame": wheel, "radius": r}
         if dice.chance(0.8):
             sketch.block("inputs")[sketch.name(f"u_{k}")] = {"joint": spin}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def disc(dice: Dice) -> Description:
@@ -147,7 +147,7 @@ def disc(dice: Dice) -> Description:
         if axes:
             entry["axes"] = axes
         sketch.block("inputs")[sketch.name(f"u_{k}")] = entry
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)
 
 
 def cable_robot(dice: Dice) -> Description:
@@ -179,14 +179,8 @@ def cable_robot(dice: Dice) -> Description:
         sketch.block("points")[hook] = {"frame": platform, "at": near}
         sketch.block("inputs")[sketch.name(f"cable_{k}")] = {"unit": "N", "cable": dice.shuffled([pulley, hook])}
     if count > freedom and dice.chance(0.5):
-        allocation: dict[str, Any] = {}
-        if dice.chance(0.6):
-            allocation["weights"] = {dice.choice(list(sketch.blocks["inputs"])): "3"}
-        if count == freedom + 1 and dice.chance(0.6):
-            allocation["preload"] = "5"
-        if allocation:
-            sketch.blocks["allocation"] = allocation
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+        allocate(sketch)
+    return finish(sketch)
 
 
 def geared(dice: Dice) -> Description:
@@ -203,6 +197,7 @@ def geared(dice: Dice) -> Description:
     if dice.chance(0.5):
         sketch.blocks["potential_energy"] = Terms(tuple(f"{dice.mass()}*cos({name})" for name in dice.sample(names, 2)))
     for k in range(dice.whole(1, count - 1)):
+        sketch.mark("coupling")
         terms = [
             f"{dice.choice(('1', '-1', '2', '0.5', '-3'))}*{{{j}}}" for j in range(dice.weighted({2: 4, 3: 2, 4: 1}))
         ]
@@ -217,4 +212,4 @@ def geared(dice: Dice) -> Description:
     for k in range(dice.whole(1, count)):
         column = {name: dice.choice(("1", "-1", "2")) for name in dice.sample(names, dice.whole(1, 2))}
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"acts_on": column}
-    return finish(dice, sketch.family, sketch.blocks, sketch.start)
+    return finish(sketch)

@@ -20,15 +20,16 @@ from symgen.zoo.draw_linkages import (
     sarrus,
 )
 from symgen.zoo.draw_mobile import cable_robot, car_with_trailers, disc, geared, wheeled_bodies
+from symgen.zoo.draw_robots import robot_files
 
 FAMILIES: dict[str, tuple[float, Callable[[Dice], Description]]] = {
     "planar_energies": (6, planar_energies),
     "tree_bodies": (4, tree_bodies),
     "planar_bodies": (4, planar_bodies),
     "spatial_bodies": (4, spatial_bodies),
-    "parallelogram_energies": (1, parallelogram_energies),
+    "parallelogram_energies": (1.3, parallelogram_energies),
     "parallelogram_bodies": (1, parallelogram_bodies),
-    "common_pin": (0.5, common_pin),
+    "common_pin": (0.8, common_pin),
     "double_four_bar": (1, double_four_bar),
     "bennett": (0.5, bennett),
     "bricard": (0.5, bricard),
@@ -42,6 +43,7 @@ FAMILIES: dict[str, tuple[float, Callable[[Dice], Description]]] = {
     "absolute_coordinates": (1.5, absolute_coordinates),
     "points_and_rods": (1.5, points_and_rods),
     "gyroscope": (0.7, gyroscope),
+    "robot_files": (1.5, robot_files),
 }
 
 

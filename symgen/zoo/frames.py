@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -14,6 +14,8 @@ Vector = tuple[Node, Node, Node]
 Matrix = tuple[Vector, Vector, Vector]
 Read = Callable[[str], Node]
 TWO = Fraction(2)
+# no name of a file has a space in it
+BASE = " base"
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,11 @@ class Frames:
             self._poses[each] = self._placed(self._relative[each])
         return self._poses[name]
 
+    def carrier(self, name: str) -> str:
+        """The frame of the file that a frame moves on."""
+        parent = self._relative[name].parent
+        return self._relative[parent].parent if parent.endswith(BASE) else parent
+
     def place(self, frame: str, at: Vector) -> Vector:
         """A point of a frame in the world."""
         pose = self.pose(frame)
@@ -165,7 +172,10 @@ def read_frames(tape: Tape, blocks: Mapping[str, Any], read: Read) -> dict[str, 
             turns = tuple((unit_axis(tape, axis, read), read(angle)) for axis, angle in rotation)
             found[name] = Relative(parent, translation, turns)
     for name, entry in (blocks.get("joints") or {}).items():
-        found[entry.get("child", name)] = _joint(tape, entry, read)
+        child = entry.get("child", name)
+        base, moved = _joint(tape, entry, read)
+        found[child + BASE] = base
+        found[child] = replace(moved, parent=child + BASE)
     return found
 
 
@@ -174,28 +184,27 @@ def joint_coordinates(entry: Mapping[str, Any]) -> list[str]:
     return [entry["coordinate"]] if "coordinate" in entry else list(entry.get("coordinates", ()))
 
 
-def _joint(tape: Tape, entry: Mapping[str, Any], read: Read) -> Relative:
+def _joint(tape: Tape, entry: Mapping[str, Any], read: Read) -> tuple[Relative, Relative]:
+    """The frame that the fixed turns of a joint lead to, and what moves on it."""
     kind = entry["type"]
     at = read_vector(tape, entry.get("at"), read)
-    turns = [(unit_axis(tape, axis, read), read(angle)) for axis, angle in entry.get("rotation") or []]
+    turns = tuple((unit_axis(tape, axis, read), read(angle)) for axis, angle in entry.get("rotation") or [])
+    base = Relative(entry.get("parent", "world"), at, turns)
     axis = unit_axis(tape, entry.get("axis", "z"), read)
-    parent = entry.get("parent", "world")
+    still = (tape.zero, tape.zero, tape.zero)
     q = [read(name) for name in joint_coordinates(entry)]
     if kind == "revolute":
-        return Relative(parent, at, (*turns, (axis, q[0])))
-    if turns and kind != "fixed":
-        raise NotReadError(f"a joint of type {kind} with fixed turns")
+        return base, Relative("", still, ((axis, q[0]),))
     if kind == "prismatic":
-        return Relative(parent, plus(at, scaled(q[0], axis)), ())
+        return base, Relative("", scaled(q[0], axis), ())
     if kind == "cylindrical":
-        return Relative(parent, plus(at, scaled(q[0], axis)), ((axis, q[1]),))
+        return base, Relative("", scaled(q[0], axis), ((axis, q[1]),))
     if kind == "planar":
-        z = unit_axis(tape, "z", read)
-        return Relative(parent, plus(at, (q[0], q[1], tape.zero)), ((z, q[2]),))
+        return base, Relative("", (q[0], q[1], tape.zero), ((unit_axis(tape, "z", read), q[2]),))
     if kind == "spherical":
-        return Relative(parent, at, (), (q[0], q[1], q[2], q[3]))
+        return base, Relative("", still, (), (q[0], q[1], q[2], q[3]))
     if kind == "floating":
-        return Relative(parent, plus(at, (q[0], q[1], q[2])), (), (q[3], q[4], q[5], q[6]))
+        return base, Relative("", (q[0], q[1], q[2]), (), (q[3], q[4], q[5], q[6]))
     raise NotReadError(f"a joint of type {kind}")
 
 

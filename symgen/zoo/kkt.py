@@ -88,10 +88,17 @@ def split(at: Numbers, rank: int, one: Any) -> Split:
 
 
 def inverse_dynamics(
-    at: Numbers, parts: Split, accelerations: Vector, rank: int, weights: Sequence[Any] | None = None
+    at: Numbers,
+    parts: Split,
+    accelerations: Vector,
+    rank: int,
+    weights: Sequence[Any] | None = None,
+    near: Sequence[Any] | None = None,
 ) -> tuple[Vector, list[float]]:
-    """u, and what tells how far the inputs are apart."""
+    """u, the nearest to `near` (absent: to 0) in the norm of the weights, and what tells how far inputs are apart."""
     load = [x + b for x, b in zip(times(at.mass, accelerations), at.bias, strict=True)]
+    if near is not None:
+        load = [x - y for x, y in zip(load, times(at.control, near), strict=True)]
     m = len(at.control[0])
     projected = [times(transposed(at.control, m), direction) for direction in parts.free]
     if weights is not None:
@@ -99,6 +106,8 @@ def inverse_dynamics(
     u, pivots = least(projected, times(parts.free, load), m, rank)
     if weights is not None:
         u = [x / weight**0.5 for x, weight in zip(u, weights, strict=True)]
+    if near is not None:
+        u = [x + y for x, y in zip(u, near, strict=True)]
     return u, pivots
 
 

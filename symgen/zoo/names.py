@@ -7,20 +7,36 @@ from collections.abc import Iterable
 from symgen.zoo.dice import Dice
 
 # not reserved by the language of models, so they must work
-LEGAL = (
-    "I", "N", "F", "E", "EOF", "NULL", "BIG_ENDIAN", "DBL_EPSILON", "FLT_MAX", "HUGE_VAL", "INFINITY", "NAN", "M_PI",
-    "INPUT", "OUTPUT", "HIGH", "LOW", "PI", "TWO_PI", "DEG_TO_RAD", "EULER", "B0", "B1", "B11", "A0", "LED_BUILTIN",
-    "F_CPU", "DEFAULT", "bit", "word", "byte", "boolean", "sq", "y0", "y1", "yn", "j0", "j1", "jn", "gamma", "lgamma",
-    "errno", "stdin", "signal", "linux", "unix", "i386", "min", "max", "abs", "round", "fabs", "fmax", "isnan",
-    "isfinite", "fn", "impl", "mut", "trait", "crate", "self", "cls", "np", "p", "q", "qd", "qdd", "u", "G", "B", "M",
-    "Q", "C", "status", "ready", "count", "stride", "index", "result", "size", "len", "range", "print", "list", "dict",
-    "enum_", "sc", "out", "x1", "x2", "t1", "v0", "w", "S", "s", "c", "sin_a", "cos_a", "one", "Status", "StateError",
-    "Parameters", "PARAMETERS", "functools", "ctypes", "os", "sys", "dataclass", "float_", "double_", "uint8_t",
-    "size_t", "assert_", "defined", "pragma", "main", "memcpy", "setup", "loop", "delay", "millis", "e", "pi_", "d1",
-    "OK", "NOT_FINITE", "CONSTRAINT_RANK", "det", "rank", "k", "h", "g", "nan", "inf", "object", "id", "map", "array",
-)  # fmt: skip
+LEGAL_BY_LANGUAGE = {
+    "C": (
+        "I", "EOF", "NULL", "BIG_ENDIAN", "DBL_EPSILON", "FLT_MAX", "HUGE_VAL", "INFINITY", "NAN", "M_PI", "y0", "y1",
+        "yn", "j0", "j1", "jn", "gamma", "lgamma", "errno", "stdin", "signal", "linux", "unix", "i386", "fabs", "fmax",
+        "isnan", "isfinite", "uint8_t", "size_t", "defined", "pragma", "main", "memcpy", "TIM2", "DAC", "assert_", "OK",
+        "nan", "PAGE_SIZE", "OVERFLOW", "RAND_MAX", "complex", "asm_", "major", "index", "CHAR_BIT", "SIGINT",
+    ),
+    "Rust": ("fn", "impl", "mut", "trait", "crate", "self", "pub", "loop", "match", "dyn", "where", "mod", "f64",
+             "move", "ref", "unsafe", "Self", "box", "let", "super", "u8", "usize", "vec"),
+    "Python": (
+        "cls", "np", "range", "print", "list", "dict", "functools", "ctypes", "os", "sys", "dataclass", "object", "id",
+        "map", "inf", "len", "array", "abs", "min", "max", "round", "type", "numpy", "math", "None_", "match_",
+    ),
+    "Arduino": (
+        "INPUT", "OUTPUT", "HIGH", "LOW", "PI", "TWO_PI", "DEG_TO_RAD", "EULER", "B0", "B1", "B11", "A0", "F_CPU",
+        "LED_BUILTIN", "DEFAULT", "bit", "word", "byte", "boolean", "sq", "setup", "delay", "millis", "F", "interrupts",
+    ),
+    "the generated code": (
+        "p", "q", "qd", "qdd", "u", "G", "B", "M", "Q", "C", "status", "ready", "count", "stride", "result", "size",
+        "enum_", "sc", "out", "x1", "x2", "t1", "v0", "w", "S", "s", "c", "sin_a", "cos_a", "one", "Status",
+        "StateError", "Parameters", "PARAMETERS", "float_", "double_", "e", "pi_", "d1", "NOT_FINITE",
+        "CONSTRAINT_RANK", "det", "rank", "k", "h", "g", "N", "E", "zoo_params", "lambda_", "time",
+    ),
+}  # fmt: skip
+LEGAL = tuple(dict.fromkeys(name for names in LEGAL_BY_LANGUAGE.values() for name in names))
 # reserved by the language of models, and nothing that Python could not read
-ILLEGAL = ("int", "namespace", "register", "short", "template", "volatile", "t", "sin")
+ILLEGAL = (
+    "int", "namespace", "register", "short", "template", "volatile", "t", "sin", "static",
+    "double", "extern", "union", "delete", "typename",
+)  # fmt: skip
 
 
 class Namer:

@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from symgen.zoo.dice import Dice
 from symgen.zoo.expressions import NotReadError, read_expression
+from symgen.zoo.fields import Floats
 from symgen.zoo.frames import (
     Frames,
     Matrix,
@@ -26,6 +28,8 @@ from symgen.zoo.frames import (
 )
 from symgen.zoo.tape import Node, Tape
 
+# configurations at which an identity is looked at, and what rounding leaves of it
+TRIES, ROUNDING = 4, 1e-12
 PLACES = {"x": 0, "y": 1, "z": 2}
 VELOCITIES = {"vx": 0, "vy": 1, "vz": 2}
 TURNING = {"wx": 0, "wy": 1, "wz": 2}
@@ -226,7 +230,10 @@ class System:
         return rows
 
     def _wheel(self, name: str, entry: Mapping[str, Any]) -> list[Row]:
-        """No slip at the lowest point of the wheel, and its height; in the axes of the world."""
+        """No slip at the lowest point of the wheel, and its height.
+
+        In the axes of the frame that carries the wheel where that stays upright and the axle level, else of the world.
+        """
         tape = self.tape
         pose = self.frames.pose(entry["frame"])
         radius = self.read(entry["radius"])
@@ -236,11 +243,24 @@ class System:
         side = tape.call("sqrt", tape.one - axle[2] * axle[2])
         arm = scaled(radius / side, down)
         slip = plus(self.frames.rates(pose.origin), cross(pose.turning, arm))
-        return [
-            Row(f"{name}_height", True, pose.origin[2] - radius * side),
-            Row(f"{name}_along", False, slip[0]),
-            Row(f"{name}_across", False, slip[1]),
-        ]
+        carrier = transposed(self.frames.pose(self.frames.carrier(entry["frame"])).axes)
+        if self._vanishes(axle[2]) and self._vanishes(carrier[2][2] - tape.one):
+            slip = turned(carrier, slip)
+        height = pose.origin[2] - radius * side
+        rows = [] if self._still(height) else [Row(f"{name}_height", True, height)]
+        return [*rows, Row(f"{name}_along", False, slip[0]), Row(f"{name}_across", False, slip[1])]
+
+    def _still(self, node: Node) -> bool:
+        """Whether a value is the same in every configuration."""
+        return all(self._vanishes(part) for part in self.tape.gradient(node, self.coordinates))
+
+    def _vanishes(self, node: Node) -> bool:
+        """Whether a value is 0 in every configuration: at a few, to rounding."""
+        for seed in range(TRIES):
+            values = {name: Dice(seed, name).uniform(0.3, 1.2) for name in (*self.coordinates, *self.parameters)}
+            if abs(self.tape.evaluate([node], values, Floats())[0]) > ROUNDING:
+                return False
+        return True
 
     @cached_property
     def kinetic_energy(self) -> Node:

@@ -14,6 +14,7 @@ from symgen.zoo.mechanics import equations
 from symgen.zoo.names import Namer
 from symgen.zoo.reader import System
 from symgen.zoo.tape import Node
+from symgen.zoo.urdf_file import expanded
 
 # rows that are none, and rows that are as good as dependent
 FLAT, DEPENDENT = 1e-12, 1e-3
@@ -25,9 +26,16 @@ class Sketch:
 
     def __init__(self, dice: Dice, family: str) -> None:
         self.dice, self.family = dice, family
-        self.name = Namer(dice, 0.5 if dice.chance(0.12) else 0)
+        self.name = Namer(dice, 0.5 if dice.chance(0.15) else 0)
+        dice.extreme = dice.chance(0.08)
         self.blocks: dict[str, Any] = {"model": "zoo"}
         self.start: dict[str, float] = {}
+        self.marks: list[str] = []
+        self.files: dict[str, str] = {}
+
+    def mark(self, text: str) -> None:
+        """Says of the drawing what its text does not show."""
+        self.marks.append(text)
 
     def block(self, name: str) -> dict[str, Any]:
         """A block, made where it is missing."""
@@ -43,7 +51,8 @@ class Sketch:
 
     def parameter(self, plain: str, value: str, positive: bool = True) -> str:
         """A parameter, or its value as a literal."""
-        if self.dice.chance(0.2):
+        # 1, 2, 4 and 1/2 are pure numbers wherever they stand, never lengths or masses
+        if value not in ("1", "2", "4", "0.5") and self.dice.chance(0.2):
             return value if not value.startswith("-") else f"({value})"
         name = self.name(plain)
         entry: dict[str, Any] = {"value": value}
@@ -64,7 +73,7 @@ class Sketch:
 
     def measured(self, text: str) -> float:
         """What an expression is at the start."""
-        system = System(self.blocks)
+        system = System(expanded(self.blocks, self.files))
         return self.values(system, [system.read(text)])[0]
 
     def values(self, system: System, nodes: list[Node]) -> list[float]:
@@ -77,18 +86,18 @@ class Sketch:
 
     def place(self, owner: str) -> list[float]:
         """Where a point or the origin of a frame is at the start."""
-        system = System(self.blocks)
+        system = System(expanded(self.blocks, self.files))
         return self.values(system, list(system.place(owner)))
 
     def axes(self, frame: str) -> list[list[float]]:
         """The attitude of a frame at the start, as rows of its matrix."""
-        system = System(self.blocks)
+        system = System(expanded(self.blocks, self.files))
         flat = self.values(system, [entry for row in system.frames.pose(frame).axes for entry in row])
         return [flat[0:3], flat[3:6], flat[6:9]]
 
     def rank(self, away: float = 0.0) -> int:
         """The rank of the constraint Jacobian at the start, or at a place that is about so far away from it."""
-        system = System(self.blocks)
+        system = System(expanded(self.blocks, self.files))
         rows = equations(system).rows
         values = {name: value + self.dice.uniform(-away, away) for name, value in self.start.items()}
         values |= dict.fromkeys(system.rate_names, 0.0)
@@ -112,11 +121,14 @@ class Sketch:
         How many rows it has; 0 where none is found.
         """
         for _ in range(TRIES):
-            before = deepcopy(self.blocks)
+            before, marks = deepcopy(self.blocks), list(self.marks)
             rows = close()
-            if not rows or not self.locked() or self.dice.chance(oddly):
+            if not rows or not self.locked():
                 return rows
-            self.blocks = before
+            if self.dice.chance(oddly):
+                self.mark("locked loop")
+                return rows
+            self.blocks, self.marks = before, marks
         return 0
 
     def row(self, plain: str, text: str, measured: bool = True) -> str:
@@ -126,8 +138,8 @@ class Sketch:
             if abs(value) > 1e-12 or self.dice.chance(0.5):
                 place = self.parameter(f"{plain}_at", exact(value), positive=False)
                 text = f"{text} - {place}"
-        if self.dice.chance(0.08):
-            text = f"{self.dice.choice(('1e-6', '1e6', '1e-3', '250'))}*({text})"
+        if self.dice.chance(0.12):
+            text = f"{self.dice.choice(('1e-6', '1e6', '1e-6', '1e6', '1e-3', '250'))}*({text})"
         name = self.name(plain)
         self.block("constraints").setdefault("geometric", {})[name] = text
         return name

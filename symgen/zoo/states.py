@@ -20,6 +20,8 @@ STEPS = 30
 REFINEMENTS = 3
 CLOSED = 1e-12
 SAME = 1e-8
+# a step that shows whether V is smooth, and how much further than its square Newton's method may lead
+SHORT, STRAY = 1e-4, 1e3
 # how far rows, inputs and masses are apart at states that are compared, unless the model has none of the kind
 REGULAR = 1e-3
 # a walk stays about as near as the ranges that the documentation takes for granted
@@ -49,7 +51,7 @@ class Walker:
 
     def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[State], Ranks]:
         """So many regular states, fewer where they are hard to find; and the generic ranks that were met."""
-        points = self._points(parameters, 3 * count + 6)
+        points = self.points(parameters, 3 * count + 6)
         ranks = Ranks(
             max((self._rank(self._numbers(q, parameters)) for q in points), default=0),
             max((self._reached(self._numbers(q, parameters)) for q in points), default=0),
@@ -64,7 +66,7 @@ class Walker:
                 break
         return found, ranks
 
-    def _points(self, parameters: Mapping[str, float], count: int) -> list[Any]:
+    def points(self, parameters: Mapping[str, float], count: int) -> list[Any]:
         """Configurations on V: the start, then steps along V, back to the start where a walk leaves its ranges."""
         here = self._closed(self._start, parameters)
         if here is None:
@@ -81,6 +83,18 @@ class Walker:
             else:
                 here = first
         return points
+
+    def is_regular(self, q: Any, parameters: Mapping[str, float]) -> bool:
+        """Whether V is smooth at a configuration, of the dimension that its rows there say."""
+        free = self._free(q, parameters)
+        for _ in range(3):
+            step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
+            there = self._closed(q + SHORT * step, parameters)
+            if there is None or np.abs(there - q - SHORT * step).max() > STRAY * SHORT**2:
+                return False
+            if self._rank(self._numbers(there, parameters)) != self._rank(self._numbers(q, parameters)):
+                return False
+        return bool(free.shape[1] > 0)
 
     def _inside(self, q: Any) -> bool:
         for name, value in zip(self._system.coordinates, q, strict=True):
@@ -135,7 +149,7 @@ class Walker:
             return q
         number = self._balls.number
         names = self._system.coordinates
-        rank = _rank_of(_normalized(np.array(self._numbers(q, parameters).rows[:geometric])), SAME)
+        rank = rank_of(normalized(np.array(self._numbers(q, parameters).rows[:geometric])), SAME)
         with precision():
             fixed = {name: number(Fraction(value)) for name, value in parameters.items()}
             fixed |= dict.fromkeys(self._system.rate_names, number(Fraction(0)))
@@ -148,11 +162,11 @@ class Walker:
 
     def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
         at = self._numbers(q, parameters)
-        return _null_space(at)
+        return null_space(at)
 
     @staticmethod
     def _rank(at: Numbers, threshold: float = SAME) -> int:
-        return _rank_of(_normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), threshold)
+        return rank_of(normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), threshold)
 
     @staticmethod
     def _reached(at: Numbers, threshold: float = SAME) -> int:
@@ -161,10 +175,10 @@ class Walker:
             return 0
         lengths = np.linalg.norm(control, axis=0)
         lengths[lengths == 0] = 1
-        return _rank_of((_null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
+        return rank_of((null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
 
     def _state(self, q: Any, at: Numbers, parameters: Mapping[str, float]) -> State:
-        free = _null_space(at)
+        free = null_space(at)
         spread = [self._dice.uniform(-1.5, 1.5) for _ in range(free.shape[1])]
         qd = free @ np.array(spread)
         moving = self._numbers(q, parameters, qd)
@@ -175,20 +189,23 @@ class Walker:
         return State(*(tuple(map(float, part)) for part in (q, qd, qdd, u, parameters.values())))
 
 
-def _normalized(rows: Any) -> Any:
+def normalized(rows: Any) -> Any:
+    """Rows of length 1; those that vanish left out."""
     lengths = np.linalg.norm(rows, axis=1)
     return rows[lengths > NOTHING] / lengths[lengths > NOTHING, None]
 
 
-def _null_space(at: Numbers) -> Any:
-    rows: Any = _normalized(np.array(at.rows, dtype=float).reshape(-1, at.n))
+def null_space(at: Numbers) -> Any:
+    """Orthonormal columns that span the velocities which the constraints allow."""
+    rows: Any = normalized(np.array(at.rows, dtype=float).reshape(-1, at.n))
     if not rows.size:
         return np.eye(at.n)
     values, directions = np.linalg.svd(rows)[1:]
     return directions[int((values > SAME * values.max()).sum()) :].T
 
 
-def _rank_of(rows: Any, threshold: float, absolute: bool = False) -> int:
+def rank_of(rows: Any, threshold: float, absolute: bool = False) -> int:
+    """How many singular values are above the threshold, relative to the largest unless it is `absolute`."""
     if not rows.size:
         return 0
     values = np.linalg.svd(rows, compute_uv=False)

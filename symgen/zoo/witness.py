@@ -11,16 +11,19 @@ from typing import Any
 
 import yaml
 
+from symgen.zoo.allocation import directed, members, preloads
+from symgen.zoo.describe import Description
 from symgen.zoo.dice import Dice
 from symgen.zoo.expressions import NotReadError
 from symgen.zoo.fields import Balls, Floats, precision
 from symgen.zoo.generated import Answer, Target, targets
-from symgen.zoo.kkt import Evaluator, Ranks, Split, internal_force, inverse_dynamics, motion, split
+from symgen.zoo.kkt import Evaluator, Ranks, Split, inverse_dynamics, motion, split
 from symgen.zoo.mechanics import equations
 from symgen.zoo.pinocchio_trees import SAME, disagreement
 from symgen.zoo.reader import System
 from symgen.zoo.states import State, Walker, rounded
 from symgen.zoo.tape import Program
+from symgen.zoo.urdf_file import expanded
 
 STATES = 20
 PERTURBATIONS = 8
@@ -59,14 +62,22 @@ class Truth:
 class Witness:
     """A model file read by the zoo alone."""
 
-    def __init__(self, text: str, start: Mapping[str, float] | None = None, seed: object = 0) -> None:
-        blocks: Mapping[str, Any] = yaml.load(text, Loader=yaml.BaseLoader)
+    def __init__(
+        self,
+        text: str,
+        start: Mapping[str, float] | None = None,
+        seed: object = 0,
+        files: Mapping[str, str] | None = None,
+    ) -> None:
+        given: Mapping[str, Any] = yaml.load(text, Loader=yaml.BaseLoader)
+        self._given, self._files = given, files or {}
+        blocks = expanded(given, self._files)
         self._system = System(blocks)
         self._equations = equations(self._system)
         self._evaluate = Evaluator(Program(self._system.tape, self._equations.flat), self._equations)
         self._seed = seed
-        given = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
-        self._start = {**given, **(start or {})}
+        told = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
+        self._start = {**told, **(start or {})}
         self._balls = Balls()
 
     def check(self, folder: Path, count: int = STATES) -> Checked:
@@ -76,7 +87,7 @@ class Witness:
         walker = Walker(self._system, self._evaluate, self._start, Dice("states", self._seed))
         found, ranks = walker.states(defaults, count)
         findings: list[Finding] = []
-        other = disagreement(blocks, defaults, Dice("Pinocchio", self._seed))
+        other = disagreement(self._given, defaults, Dice("Pinocchio", self._seed), self._files)
         if other is not None and other > SAME:
             findings.append(Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}"))
         largest = 0.0
@@ -109,15 +120,7 @@ class Witness:
         return values
 
     def _allocation(self) -> dict[str, float]:
-        """Weights and preloads as members of the parameters, in the order of the documentation."""
-        block = self._system.blocks.get("allocation") or {}
-        found = {f"weight_{name}": self._float(text) for name, text in (block.get("weights") or {}).items()}
-        preload = block.get("preload")
-        if isinstance(preload, str):
-            found["preload"] = self._float(preload)
-        elif preload is not None:
-            found |= {f"preload_{name}": self._float(text) for name, text in preload.items()}
-        return found
+        return members(self._system.blocks.get("allocation") or {}, self._float)
 
     def _float(self, text: str) -> float:
         return float(self._system.tape.evaluate([self._system.read(text)], {}, Floats())[0])
@@ -196,30 +199,22 @@ class Witness:
         clear = min((*parts.pivots, *pivots[-1:]), default=1.0)
         if quantity == "forward_dynamics":
             return Truth(accelerations, clear)
-        return Truth(multipliers, clear) if self._rows_are_known() else None
+        return Truth(multipliers, clear)
 
     def _inputs(
         self, at: Any, parts: Split, accelerations: list[Any], ranks: Ranks, values: Mapping[str, Any]
-    ) -> Truth | None:
+    ) -> Truth:
         """u, as the model's allocation says."""
         one = self._balls.number(Fraction(1))
         inputs = self._system.inputs
         block = self._system.blocks.get("allocation") or {}
-        if "limits" in block or isinstance(block.get("preload"), Mapping):
-            return None
-        weights = [values.get(f"weight_{name}", one) for name in inputs]
-        weighted = "weights" in block
-        u, pivots = inverse_dynamics(at, parts, accelerations, ranks.actuation, weights if weighted else None)
-        if "preload" in block:
-            along = internal_force(at, weights)
-            u = [x + values["preload"] * z for x, z in zip(u, along, strict=True)]
+        weights = [values.get(f"weight_{name}", one) for name in inputs] if "weights" in block else None
+        near = preloads(inputs, block, values, one * 0)
+        u, pivots = inverse_dynamics(at, parts, accelerations, ranks.actuation, weights, near)
+        u = directed(at, u, inputs, block, values, one)
         # where the inputs reach nothing, u is a plain 0
         u = [x + 0 * one for x in u]
         return Truth(u, min((*parts.pivots, *pivots), default=1.0))
-
-    def _rows_are_known(self) -> bool:
-        """Rows of wheels stand in axes of symgen's choice: the text does not define their multipliers."""
-        return not self._system.blocks.get("rolling")
 
 
 def _sign(dice: Dice) -> int:
@@ -234,10 +229,11 @@ def _distance(values: Sequence[Any], exact: Sequence[Any]) -> float:
     return _norm([float((x - y).mid()) for x, y in zip(exact, values, strict=True)])
 
 
-def check(text: str, folder: Path, start: Mapping[str, float], seed: object) -> Checked:
+def check(description: Description, folder: Path) -> Checked:
     """What the witness says of the files in a folder; a part of the language that it does not read is no failure."""
+    text = description.text
     try:
-        return Witness(text, start, seed).check(folder)
+        return Witness(text, description.start, text, description.files).check(folder)
     except NotReadError:
         return Checked(0, 0.0, ())
 

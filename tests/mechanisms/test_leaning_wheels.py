@@ -79,3 +79,24 @@ def test_a_disc_stays_upright_above_the_published_speed() -> None:
     critical = math.sqrt(9.81 / (3 * 0.4))
     assert abs(growth(critical)) < 1e-6 * abs(growth(0))
     assert growth(0.9 * critical) > 0 > growth(1.1 * critical)
+
+
+LEVEL = """
+model: carriage
+gravity: [0, 0, -9.81]
+definitions: {high: 0.5 + h}
+coordinates: {s: {}, h: {}, spin: {}}
+frames:
+  box: {translation: [s, 0, PLACE]}
+  wheel: {parent: box, translation: [0.3, 0, -0.25], rotation: [[y, spin]]}
+bodies: {box: {mass: 4}, wheel: {mass: 1, inertia: {yy: 0.02}}}
+rolling: {ground: {frame: wheel, radius: 0.25}}
+KINETIC
+"""
+
+
+@pytest.mark.parametrize(("place", "names"), [("high", ["along", "height"]), ("0.5", ["along"])])
+def test_a_level_wheel_that_could_lift_is_held_on_the_ground(place: str, names: list[str]) -> None:
+    other = "" if place == "high" else "kinetic_energy: h_dot**2"
+    model = load_text(LEVEL.replace("PLACE", place).replace("KINETIC", other), "carriage.yaml")
+    assert sorted(row.name for row in model.constraints) == [f"ground_{name}" for name in names]

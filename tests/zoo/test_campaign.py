@@ -99,6 +99,6 @@ def test_a_failing_draw_leaves_its_file_and_a_small_case(ends, tmp_path: Path) -
 def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch) -> None:
     ends(Run(0, "", "", 1, 1))
     monkeypatch.setattr(campaign, "_witnessed", lambda *_: (Verdict(VERIFIED), ""))
-    record, _ = one_draw(Campaign(1, tmp_path), 0)
+    record, _ = one_draw(Campaign(1, tmp_path, "disc"), 0)
     assert not record.failed
     assert not list(tmp_path.iterdir())

@@ -15,13 +15,14 @@ from symgen.zoo.families import FAMILIES, draw
 from symgen.zoo.fields import Floats
 from symgen.zoo.mechanics import equations
 from symgen.zoo.reader import System
+from symgen.zoo.urdf_file import expanded
 
 DRAWS = range(3)
 
 
 def numbers(description: Description) -> tuple[System, list[float], np.ndarray, np.ndarray]:
     """Residuals, B and G at the start, read back from the text."""
-    system = System(yaml.load(description.text, Loader=yaml.BaseLoader))
+    system = System(expanded(yaml.load(description.text, Loader=yaml.BaseLoader), description.files))
     found = equations(system)
     values = {**description.start, **{name: 0.1 * k for k, name in enumerate(system.rate_names, 1)}}
     for name, node in system.parameters.items():

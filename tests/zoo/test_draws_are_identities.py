@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from symgen.diagnostics import ModelError
@@ -10,7 +12,7 @@ from symgen.graph.identity import every_identity_evaluated
 from symgen.ir.given_trig import given_trig
 from symgen.ir.prepare import prepare
 from symgen.ir.schedule import schedule
-from symgen.model.load import load_text
+from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.zoo.families import FAMILIES, draw
 
@@ -19,19 +21,22 @@ SEED = 20
 SLOW = ("spatial_bodies", "bricard", "cable_robot", "parallelogram_bodies", "legged_platform")
 
 
-def _first(family: str) -> Model:
+def _first(family: str, folder: Path) -> Model:
     """The first draw that is not refused, as some are on purpose."""
     for index in range(12):
         try:
-            return load_text(draw(SEED, index, family).text, "zoo.yaml")
+            description = draw(SEED, index, family)
+            for name, text in {**description.files, "zoo.yaml": description.text}.items():
+                (folder / name).write_text(text)
+            return load_model(folder / "zoo.yaml")
         except ModelError:
             continue
     raise AssertionError(f"all draws of {family} are refused")
 
 
 @pytest.mark.parametrize("family", [family for family in FAMILIES if family not in SLOW])
-def test_every_rewriting_of_a_draw_is_an_identity(family: str) -> None:
-    model = _first(family)
+def test_every_rewriting_of_a_draw_is_an_identity(family: str, tmp_path: Path) -> None:
+    model = _first(family, tmp_path)
     with every_identity_evaluated():
         derivations = derive_quantities(model, model.outputs)
         program = schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"]

@@ -148,3 +148,46 @@ def test_a_wrong_number_and_a_false_status_are_found(generated: Path, tmp_path: 
         checked = Witness(SYSTEM).check(folder)
         assert [finding.kind for finding in checked.findings] == [kind]
         assert "inverse_dynamics" in checked.findings[0].text
+
+
+WHEEL = """
+model: hopper
+coordinates: {x: {unit: m}, z: {unit: m}, spin: {unit: rad}, swing: {unit: rad}}
+gravity: [0, 0, -9.81]
+frames:
+  hub: {translation: [x, 0, 0.3 + z]}
+  wheel: {parent: hub, rotation: [[y, spin]]}
+  arm: {parent: hub, rotation: [[y, swing]]}
+bodies:
+  wheel: {mass: 3, inertia: {yy: 0.1}}
+  arm: {mass: 1.5, com: [0, 0, -0.4], inertia: {yy: 0.02}}
+rolling: {ground: {frame: wheel, radius: 0.25}}
+inputs:
+  hold: {torque_on: arm, direction: [0, 1, 0], reaction: wheel}
+  push: {acts_on: {x: 1}}
+  drive: {torque_on: wheel, direction: [0, 1, 0]}
+allocation: {weights: {push: 2}, preload: 3, limits: {drive: [-1, 1]}}
+outputs: [inverse_dynamics, forward_dynamics, multipliers]
+configuration: {z: -0.05}
+"""
+
+
+def test_a_wheel_that_could_lift_is_held() -> None:
+    """Rows in the order of the documentation: the height first, then along; nothing is said across the plane."""
+    system = System(yaml.load(WHEEL, Loader=yaml.BaseLoader))
+    assert [row.name for row in system.rows] == ["ground_height", "ground_along"]
+    found = equations(system)
+    values = dict.fromkeys((*system.coordinates, *system.rate_names), 0.2)
+    rows = [system.tape.evaluate(row, values, Floats()) for row in found.rows]
+    assert rows[0] == pytest.approx([0, 1, 0, 0])
+    assert rows[1] == pytest.approx([1, 0, -0.25, 0])
+
+
+@pytest.mark.slow
+def test_multipliers_of_wheels_and_limited_inputs_are_compared(tmp_path: Path) -> None:
+    (tmp_path / "hopper.yaml").write_text(WHEEL)
+    run = run_command(tmp_path / "hopper.yaml", tmp_path / "out")
+    assert run.code == 0, run.err
+    checked = Witness(WHEEL).check(tmp_path / "out" / "hopper", count=8)
+    assert checked.states == 8
+    assert checked.findings == ()

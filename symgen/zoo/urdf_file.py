@@ -1,0 +1,112 @@
+"""A robot description read by the witness: its links and joints as blocks of the model language."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+from xml.etree import ElementTree
+
+QUARTER, NEAR = math.pi / 2, 1e-8
+ZERO = "0 0 0"
+
+
+def expanded(blocks: Mapping[str, Any], files: Mapping[str, str]) -> dict[str, Any]:
+    """The blocks with the robot of `urdf` in them, as the documentation says what becomes of it."""
+    given = blocks.get("urdf")
+    if not given:
+        return dict(blocks)
+    entry = {"file": given} if isinstance(given, str) else given
+    robot = ElementTree.fromstring(files[entry["file"]])
+    made = _robot(robot, entry)
+    links = {link.get("name", "") for link in robot.iter("link")}
+    root = next(iter(links - {joint.find("child").get("link") for joint in robot.iter("joint")}))  # type: ignore[union-attr]
+    placed = {*(blocks.get("frames") or {}), *(e.get("child", n) for n, e in (blocks.get("joints") or {}).items())}
+    if root != "world" and root not in placed:
+        made["frames"] = {root: {}, **made["frames"]}
+    found = {key: value for key, value in blocks.items() if key != "urdf"}
+    for name, block in made.items():
+        if not block:
+            continue
+        if name == "constraints":
+            old = found.get(name) or {}
+            found[name] = {**old, "geometric": {**block["geometric"], **(old.get("geometric") or {})}}
+        else:
+            found[name] = {**block, **(found.get(name) or {})}
+    return found
+
+
+def _robot(robot: ElementTree.Element, entry: Mapping[str, Any]) -> dict[str, Any]:
+    frames: dict[str, Any] = {}
+    joints: dict[str, Any] = {}
+    bodies: dict[str, Any] = {}
+    friction: dict[str, Any] = {}
+    ranges: dict[str, Any] = {}
+    rows: dict[str, str] = {}
+    for joint in robot.iter("joint"):
+        name, kind = joint.get("name", ""), joint.get("type")
+        parent, child = (_of(joint, what, "link") for what in ("parent", "child"))
+        place, turns = _origin(joint)
+        if kind == "fixed":
+            frames[child] = {"parent": parent, "translation": place, "rotation": turns}
+            continue
+        axis = _of(joint, "axis", "xyz", "1 0 0").split()
+        motion = {"type": "prismatic" if kind == "prismatic" else "revolute", "axis": axis, "coordinate": name}
+        joints[name] = {**motion, "parent": parent, "child": child, "at": place, "rotation": turns}
+        friction |= dict(_friction(joint, name, entry))
+        ranges |= dict(_limits(joint, name))
+        mimic = joint.find("mimic")
+        if mimic is not None:
+            follows = f"{mimic.get('multiplier', '1')}*{mimic.get('joint')} + {mimic.get('offset', '0')}"
+            rows[f"{name}_mimic"] = f"{name} - ({follows})"
+    for link in robot.iter("link"):
+        inertial = link.find("inertial")
+        if inertial is None:
+            continue
+        place, turns = _origin(inertial)
+        name = f"{link.get('name')} inertial"
+        frames[name] = {"parent": link.get("name"), "translation": place, "rotation": turns}
+        tensor = inertial.find("inertia")
+        bodies[name] = {
+            "mass": _of(inertial, "mass", "value"),
+            "inertia": {key[1:]: value for key, value in (tensor.attrib if tensor is not None else {}).items()},
+        }
+    constraints = {"geometric": rows} if rows else {}
+    return {
+        "frames": frames, "joints": joints, "bodies": bodies, "friction": friction, "ranges": ranges,
+        "constraints": constraints,
+    }  # fmt: skip
+
+
+def _of(element: ElementTree.Element, what: str, attribute: str, otherwise: str = "") -> str:
+    found = element.find(what)
+    return otherwise if found is None else found.get(attribute, otherwise)
+
+
+def _origin(element: ElementTree.Element) -> tuple[list[str], list[Any]]:
+    """Translation, and yaw, pitch, roll about the axes reached so far."""
+    place = _of(element, "origin", "xyz", ZERO).split()
+    angles = _of(element, "origin", "rpy", ZERO).split()
+    turns = [[axis, _angle(text)] for axis, text in zip("xyz", angles, strict=True) if float(text)]
+    return place, turns[::-1]
+
+
+def _angle(text: str) -> str:
+    """Angles within 1e-8 of a multiple of a quarter turn stand for it."""
+    count = round(float(text) / QUARTER)
+    return f"{count}*pi/2" if count and abs(float(text) - count * QUARTER) < NEAR else text
+
+
+def _friction(joint: ElementTree.Element, name: str, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    damping, dry = (_of(joint, "dynamics", key, "0") for key in ("damping", "friction"))
+    found = {"viscous": damping} if float(damping) else {}
+    if float(dry):
+        found |= {"coulomb": dry, "width": str(entry["friction_width"])}
+    if found:
+        yield name, found
+
+
+def _limits(joint: ElementTree.Element, name: str) -> Iterator[tuple[str, Any]]:
+    limit = joint.find("limit")
+    if limit is not None and joint.get("type") != "continuous" and "lower" in limit.attrib:
+        yield name, [limit.get("lower"), limit.get("upper")]

@@ -1,0 +1,49 @@
+"""Weights, preloads and limits of the witness, against conditions that define them."""
+
+from __future__ import annotations
+
+from symgen.zoo.allocation import directed, members, preloads
+from symgen.zoo.kkt import Numbers, inverse_dynamics, split
+
+# one mass, driven by three forces along it
+AT = Numbers([[2.0]], [], [[1.0, 2.0, -1.0]], [0.5], [], [])
+PAIR = Numbers([[2.0]], [], [[1.0, 1.0]], [0.0], [], [])
+LOAD = 2.0 * 3.0 + 0.5
+
+
+def test_members_stand_in_the_order_of_the_documentation() -> None:
+    block = {"limits": {"a": ["-1", "2"]}, "preload": "3", "weights": {"b": "4"}}
+    assert list(members(block, float).items()) == [
+        ("weight_b", 4), ("preload", 3), ("limit_a_lower", -1), ("limit_a_upper", 2),
+    ]  # fmt: skip
+
+
+def test_inputs_are_the_nearest_to_their_preloads() -> None:
+    near = preloads(("a", "b", "c"), {"preload": {"b": "5"}}, {"preload_b": 5.0}, 0.0)
+    weights = [1.0, 3.0, 0.5]
+    u, _ = inverse_dynamics(AT, split(AT, 0, 1.0), [3.0], 1, weights, near)
+    assert abs(u[0] + 2 * u[1] - u[2] - LOAD) < 1e-12
+    # W (u - near) is along the row
+    along = [weight * (x - y) for weight, x, y in zip(weights, u, near or (), strict=True)]
+    assert abs(along[1] - 2 * along[0]) < 1e-12
+    assert abs(along[2] + along[0]) < 1e-12
+
+
+def test_limits_move_the_internal_force_as_little_as_they_must() -> None:
+    names = ("a", "b")
+
+    def shared(limits: dict[str, tuple[float, float]], preload: float) -> list[float]:
+        ends = {
+            f"limit_{k}_{end}": x for k, pair in limits.items() for end, x in zip(("lower", "upper"), pair, strict=True)
+        }
+        block = {"preload": "p", "limits": dict.fromkeys(limits, ("", ""))}
+        found = directed(PAIR, [3.0, 3.0], names, block, {"preload": preload, **ends}, 1.0)
+        return [round(x, 12) for x in found]
+
+    root = 2**0.5
+    assert shared({}, 2 * root) == [5, 1]
+    assert shared({"a": (-9, 4)}, 2 * root) == [4, 2]
+    assert shared({"a": (-9, 4), "b": (2.5, 9)}, 2 * root) == [3.5, 2.5]
+    # no share of 6 keeps both at or below 2: from the least excess of one to that of the other all are as good
+    assert shared({"a": (0, 2), "b": (0, 2)}, 0.0) == [3, 3]
+    assert shared({"a": (0, 2), "b": (0, 2)}, 9 * root) == [4, 2]

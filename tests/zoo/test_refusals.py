@@ -1,0 +1,57 @@
+"""A refusal must be true, and a mistake must be told."""
+
+from __future__ import annotations
+
+import pytest
+
+from symgen.zoo.describe import MISTAKE, Description
+from symgen.zoo.refusals import judged
+from symgen.zoo.verdict import NOTICED, REFUSED, VERIFIED, Verdict
+
+FREE = {
+    "model": "zoo",
+    "coordinates": {"x": {}, "y": {}},
+    "kinetic_energy": "x_dot**2 + y_dot**2",
+    "constraints": {"geometric": {"line": "x - y"}},
+}
+MASSLESS = {**FREE, "kinetic_energy": "x_dot**2", "constraints": {"geometric": {"line": "x - 0.3"}}}
+RIGID = {**FREE, "constraints": {"geometric": {"one": "x - y", "two": "x + y - 0.4"}}}
+# a chain of two rods that is just as long as its ends are apart
+STRETCHED = {
+    **FREE,
+    "coordinates": {"x": {}, "y": {}, "z": {}},
+    "kinetic_energy": "x_dot**2 + y_dot**2 + z_dot**2",
+    "constraints": {"geometric": {"one": "x**2 + y**2 - 1", "two": "(x - 2)**2 + y**2 - 1"}},
+}
+HELD = {"x": 0.2, "y": 0.2}
+AT_ONE = {"x": 1.0, "y": 0.0, "z": 0.1}
+UNDETERMINED = "the accelerations are undetermined: no mass moves where `.` does"
+IMMOBILE = "the mechanism cannot move: # coordinates under # independent constraints"
+SINGULAR = "only singular configurations were found, such as x = #"
+
+
+@pytest.mark.parametrize(
+    ("blocks", "start", "told", "is_true"),
+    [
+        (MASSLESS, {"x": 0.3, "y": 0.2}, UNDETERMINED, True),
+        (FREE, HELD, UNDETERMINED, False),
+        (RIGID, HELD, IMMOBILE, True),
+        (FREE, HELD, IMMOBILE, False),
+        (STRETCHED, AT_ONE, SINGULAR, True),
+        (FREE, HELD, SINGULAR, False),
+        (FREE, HELD, "`.` is reserved: a keyword of C", False),
+    ],
+)
+def test_a_refusal_is_looked_at(blocks: dict, start: dict, told: str, is_true: bool) -> None:
+    verdict = judged(Description("", blocks, start), Verdict(REFUSED, signature=told))
+    assert (verdict.ending == REFUSED) == is_true
+    assert verdict.kind == ("" if is_true else "refused without reason")
+    assert verdict.signature == told
+
+
+@pytest.mark.parametrize("ending", [VERIFIED, NOTICED])
+def test_a_mistake_that_is_not_told_is_a_failure(ending: str) -> None:
+    mistaken = Description("", FREE, HELD, (MISTAKE,))
+    assert judged(mistaken, Verdict(ending)).kind == "mistake not told"
+    assert not judged(mistaken, Verdict(REFUSED, signature="`.` is reserved")).failed
+    assert not judged(Description("", FREE, HELD), Verdict(ending)).failed
