@@ -19,6 +19,7 @@ from symgen.draft import CARRIED, Draft
 from symgen.dynamics.alternatives import TIERS, Alternative, Alternatives
 from symgen.dynamics.catalogue import scalars
 from symgen.dynamics.select import Rejection
+from symgen.garbage import let_go, let_go_and_keep
 from symgen.graph.traverse import cost
 from symgen.ir.compensated import mark
 from symgen.ir.kernel import Kernel, Scalar
@@ -71,16 +72,19 @@ class Fallback:
     def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
         """The draft with other ways for what is rejected, or for what keeps no margin; None where nothing is better."""
         if self._alternatives is None:
+            let_go_and_keep()
             derivations = draft.derivations
             self._alternatives = Alternatives(draft.model, derivations.generic, derivations.inverse)
         made = draft
         for quantity, faults in certificate.rejected.items():
             made = self._replaced(made, quantity, faults, expected)
+            let_go()
         if not certificate.faults:
             worst = {one.quantity: one for one in sorted(certificate.errors, key=lambda record: record.largest)}
             for record in worst.values():
                 if record.largest > MARGIN and record.quantity not in self._weighed:
                     made = self._with_margin(made, record, expected)
+                    let_go()
         return None if made is draft else made
 
     def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:

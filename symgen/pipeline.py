@@ -27,6 +27,7 @@ from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.operations import count_operations
+from symgen.garbage import let_go_and_keep
 from symgen.ir.kernel import Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
@@ -47,6 +48,8 @@ if TYPE_CHECKING:
 # Measured on a chain of 16 links: 6336 operations in 45.6 kB with the single precision of a Cortex-M4, gcc -O2.
 BYTES_AN_OPERATION = 7
 LARGEST_CODE = 64_000
+# Scalars, at half a kilobyte each: derivations of fewer leave little behind.
+LARGE_GRAPH = 100_000
 
 Progress = Callable[[str], None]
 
@@ -69,6 +72,8 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
             if draft is None:
                 progress("deriving")
                 draft = _derive(model, outputs, options)
+                if len(draft.derivations.mechanics.graph) > LARGE_GRAPH:
+                    let_go_and_keep()
             if reporting is not None:
                 reporting.send(_facts(draft))
             files = _code(draft, options)

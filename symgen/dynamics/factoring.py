@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from symgen.graph.angles import share_angles
+from symgen.graph.forgetting import forgetting
 from symgen.graph.identity import same_values
 from symgen.graph.polynomial import Multiplier, refactored
 from symgen.graph.scalar import Graph, Scalar
@@ -29,6 +30,12 @@ class Factoring:
         for inner in inside:
             self._fixed[inner] = inner.op == "const" or (bool(inner.args) and all(self._fixed[a] for a in inner.args))
         return self._fixed[node]
+
+    def forget(self, mark: tuple[int, int], needed: Iterable[Scalar]) -> None:
+        """Lets go of what was made since the mark of the graph and is not needed, see `forgetting`."""
+        stays = forgetting(self.graph, mark, needed)
+        if stays is not None:
+            self._fixed = {node: fixed for node, fixed in self._fixed.items() if stays(node)}
 
     def factors(self, nodes: Iterable[Scalar]) -> dict[Scalar, int]:
         """What depends on parameters only and multiplies what does not: in how many products, as they are met."""

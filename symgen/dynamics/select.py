@@ -280,7 +280,10 @@ def _with_groups(mechanics: Mechanics, derived: Derived) -> Derived:
     """The quantity with numbers multiplied into groups of parameters, where that saves operations."""
     # with the scales of denominators, so that they go on sharing what they have in common with results
     scales = [guard.scale for guard in derived.guards if guard.scale is not None]
-    found = iter(grouped_scalars(mechanics.graph, mechanics.factoring, [*scalars(derived), *scales]))
+    mark = mechanics.graph.mark()
+    regrouped = grouped_scalars(mechanics.graph, mechanics.factoring, [*scalars(derived), *scales])
+    mechanics.factoring.forget(mark, regrouped)
+    found = iter(regrouped)
     outputs = tuple(next(found) for _ in derived.outputs)
     denominators = [next(found) for _ in derived.guards]
     guards = tuple(

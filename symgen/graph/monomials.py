@@ -54,7 +54,7 @@ class Monomials:
             top = MIDDLE << shift
             self._positive += top
             self._squares += top - (2 << shift)
-            node = self._graph.nodes[atom]
+            node = self._graph.at(atom)
             if node.op == "sin":
                 self._sines |= top
             elif node.op == "cos":
@@ -115,7 +115,7 @@ class Monomials:
         for key, value in terms.items():
             while found := (key + self._squares) & self._roots:
                 square = 2 << (found.bit_length() - BITS)
-                number = self._graph.nodes[self._atoms[(square.bit_length() - 2) // BITS]].args[0].constant
+                number = self._graph.at(self._atoms[(square.bit_length() - 2) // BITS]).args[0].constant
                 assert number is not None
                 key, value = key - square, value * number
             _put(work, key, value.numerator if value.denominator == 1 else value)
@@ -125,7 +125,7 @@ class Monomials:
         """The code of the cosine or sine of the same angle as an atom, given by the code of its square."""
         known = self._partners.get(square)
         if known is None:
-            node = self._graph.nodes[self._atoms[(square.bit_length() - 2) // BITS]]
+            node = self._graph.at(self._atoms[(square.bit_length() - 2) // BITS])
             other = self._graph.trig("cos" if node.op == "sin" else "sin", node.args[0])
             known = self._partners[square] = self.unit(other.serial)
         return known

@@ -137,7 +137,7 @@ def factored(graph: Graph, terms: Polynomial, first: Callable[[Scalar], bool]) -
         chosen = {key: value for key, value in inner.items() if dict(key).get(best, 0) > 0}
         quotient = {_product(key, ((best, -1),)): value for key, value in chosen.items()}
         rest = {key: value for key, value in inner.items() if key not in chosen}
-        total = graph.nodes[best] * factored(graph, quotient, first)
+        total = graph.at(best) * factored(graph, quotient, first)
         if rest:
             total = total + factored(graph, rest, first)
     return _multiply(graph, 1, shared, first, total)
@@ -153,10 +153,10 @@ def _common(terms: Polynomial) -> Monomial:
 def _multiply(
     graph: Graph, value: Coefficient, key: Monomial, first: Callable[[Scalar], bool], rest: Scalar | None = None
 ) -> Scalar:
-    above = [(graph.nodes[atom], power) for atom, power in key if power > 0]
+    above = [(graph.at(atom), power) for atom, power in key if power > 0]
     fixed = graph.product(atom for atom, power in above if first(atom) for _ in range(power))
     moving = graph.product(atom for atom, power in above if not first(atom) for _ in range(power))
-    below = graph.product(graph.nodes[atom] for atom, power in key for _ in range(-power))
+    below = graph.product(graph.at(atom) for atom, power in key for _ in range(-power))
     weight = fixed if below.is_one else fixed / below
     if rest is not None:
         moving = moving * rest

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -61,6 +61,11 @@ class Products:
                 self._turning.add(a)
                 break
         return result
+
+    def forget(self, stays: Callable[[Scalar], bool]) -> None:
+        """Lets go of scalars, see `Graph.forget`; factors of a product that stays stay with it."""
+        self._known = {a: found for a, found in self._known.items() if stays(a) and all(map(stays, found[1]))}
+        self._turning = {a for a in self._turning if a in self._known}
 
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
         """a + sign * b where the two are products that differ in constants or in a pair of sines and cosines only."""

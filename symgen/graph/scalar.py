@@ -8,7 +8,7 @@ combine by the addition theorem.  The graph knows no mechanics.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING, TypeAlias
@@ -98,8 +98,8 @@ class Graph:
         self._nodes: dict[tuple[object, ...], Scalar] = {}
         # by numerator and denominator, whose hash costs a fraction of a Fraction's
         self._constants: dict[tuple[int, int], Scalar] = {}
-        # every scalar at the place of its serial number
-        self.nodes: list[Scalar] = []
+        # every scalar at the place of its serial number, None where it is forgotten
+        self._serials: list[Scalar | None] = []
         self.products = Products(self)
         # by seeds: values of the scalars at points, as far as they have been needed
         self.points: dict[int, ExactValues] = {}
@@ -140,8 +140,8 @@ class Graph:
         return node
 
     def _new(self, key: tuple[object, ...], op: str, args: tuple[Scalar, ...], payload: object) -> Scalar:
-        node = self._nodes[key] = Scalar(self, len(self.nodes), op, args, payload)
-        self.nodes.append(node)
+        node = self._nodes[key] = Scalar(self, len(self._serials), op, args, payload)
+        self._serials.append(node)
         if op == "const":
             assert isinstance(payload, Fraction)
             node.value = residue(payload)
@@ -164,6 +164,38 @@ class Graph:
             if leaf not in self._angles:
                 self._angles[leaf] = leaf_pair(leaf)
         return angle_pair(form, self._angles)
+
+    def at(self, serial: int) -> Scalar:
+        """The scalar with a serial number."""
+        node = self._serials[serial]
+        assert node is not None, "a scalar that is in use was forgotten"
+        return node
+
+    def mark(self) -> tuple[int, int]:
+        """Where scalars and their keys stand that are made from now on."""
+        return len(self._serials), len(self._nodes)
+
+    def forget(self, mark: tuple[int, int], stays: Callable[[Scalar], bool]) -> None:
+        """Lets go of the scalars since the mark that do not stay; see `symgen.graph.forgetting`."""
+        first, keys = mark
+        kept = []
+        # keys stand in the order in which they were made, and hold operands, too
+        while len(self._nodes) > keys:
+            key, node = self._nodes.popitem()
+            args = key[2] if key[0] == "raw" else key[1]
+            assert isinstance(args, tuple)
+            if stays(node) and all(map(stays, args)):
+                kept.append((key, node))
+        self._nodes.update(reversed(kept))
+        self._by_value = {value: node for value, node in self._by_value.items() if stays(node)}
+        self._turns = {angle: turn for angle, turn in self._turns.items() if stays(angle) and stays(turn[1])}
+        self._pairs = {angle: pair for angle, pair in self._pairs.items() if stays(angle)}
+        self.points.clear()
+        self.products.forget(stays)
+        for serial in range(first, len(self._serials)):
+            node_there = self._serials[serial]
+            if node_there is not None and not stays(node_there):
+                self._serials[serial] = None
 
     def lift(self, value: Number) -> Scalar:
         """A scalar of this graph from a scalar, an integer or a rational number."""

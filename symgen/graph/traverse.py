@@ -27,6 +27,11 @@ def _whole_order(outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
     return tuple(_order(outputs, ()))
 
 
+def forget_orders() -> None:
+    """Lets go of the orders that are remembered, and of the nodes in them."""
+    _whole_order.cache_clear()
+
+
 def _order(outputs: Iterable[Scalar], known: Container[Scalar]) -> list[Scalar]:
     order: list[Scalar] = []
     seen: set[Scalar] = set()

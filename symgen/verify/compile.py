@@ -9,15 +9,24 @@ import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symgen.emit.locals import array_arguments
 from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar, Status
 from symgen.processes import ToolError, ended, run, start, stop
 
+if TYPE_CHECKING:
+    import subprocess
+
 # -O1 takes half the time of -O2; the bits are the same at every level (tests/verify/test_levels.py).
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared")
+# Characters of a model's C in one scalar type.  At -O1 a megabyte takes 4 s and 130 MB, several times as much where it
+# is one function; beyond this it is translated as it stands, in 0.5 s and 50 MB, and one type after the other.
+LARGE = 1_500_000
+PLAIN = ("-O0",)
+# gcc keeps whatever it has parsed, unless it is told to look for what it no longer needs.
+SPARING = ("--param", "ggc-min-expand=20", "--param", "ggc-min-heapsize=32768")
 # Seconds: a megabyte of source takes two on a fast machine; beyond that a compiler hangs.
 LONGEST_ANSWER = 20.0
 LONGEST_COMPILATION, LONGEST_FOR_A_MEGABYTE = 60.0, 120.0
@@ -36,6 +45,16 @@ class CSource:
     header: str
     source: str
     companions: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def large(self) -> bool:
+        """Whether optimising it would take more time or memory than there is."""
+        return self.characters > LARGE
+
+    @property
+    def characters(self) -> int:
+        """The length of all of it."""
+        return len(self.header) + len(self.source) + sum(len(text) for _, text in self.companions)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +80,13 @@ class Compiler:
 
     command: tuple[str, ...]
     version: str
+    gnu: bool = False
+
+    def flags(self, source: CSource) -> tuple[str, ...]:
+        """How a source is compiled here: optimised, unless that would take too much."""
+        if not source.large:
+            return FLAGS
+        return (*FLAGS, *PLAIN, *(SPARING if self.gnu else ()))
 
 
 def find_compiler() -> Compiler | None:
@@ -72,14 +98,18 @@ def find_compiler() -> Compiler | None:
             except ToolError as error:
                 raise CompilationError(f"{error}; {REMEDY}") from error
             lines = told.stdout.splitlines() if told.returncode == 0 else []
-            return Compiler(tuple(command), (lines or ["unknown"])[0])
+            gnu = "Free Software Foundation" in told.stdout
+            return Compiler(tuple(command), (lines or ["unknown"])[0], gnu)
     return None
 
 
 class Compilation:
-    """A compiler at work in the background; `library` waits for it."""
+    """A compiler at work in the background; `library` waits for it.
 
-    def __init__(self, compiler: Compiler, source: CSource, folder: Path) -> None:
+    With `later` it is set to work when the library is asked for.
+    """
+
+    def __init__(self, compiler: Compiler, source: CSource, folder: Path, later: bool = False) -> None:
         texts = {f"{source.stem}.h": source.header, f"{source.stem}.c": source.source, **dict(source.companions)}
         for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
@@ -88,14 +118,23 @@ class Compilation:
         self._tool = compiler.command[0]
         self._target = folder / f"{source.stem}.so"
         self._log = folder / f"{source.stem}.log"
-        with self._log.open("wb") as log:
-            command = [*compiler.command, *FLAGS, "-o", str(self._target), *paths, "-lm"]
-            self._process = start(command, output=log, complaints=log, temporary=folder)
+        self._command = [*compiler.command, *compiler.flags(source), "-o", str(self._target), *paths, "-lm"]
+        self._folder = folder
+        self._process: subprocess.Popen[bytes] | None = None
+        if not later:
+            self.start()
+
+    def start(self) -> subprocess.Popen[bytes]:
+        """Sets the compiler to work, once."""
+        if self._process is None:
+            with self._log.open("wb") as log:
+                self._process = start(self._command, output=log, complaints=log, temporary=self._folder)
+        return self._process
 
     def library(self) -> ctypes.CDLL:
         """The loaded library; raises CompilationError with the compiler's message, or with a remedy."""
         try:
-            code = ended(self._process, self._limit)
+            code = ended(self.start(), self._limit)
         except ToolError as error:
             raise CompilationError(f"{error}; {REMEDY}") from error
         said = self._log.read_text(encoding="utf-8", errors="replace").strip()
@@ -110,7 +149,8 @@ class Compilation:
 
     def cancel(self) -> None:
         """Stop a compiler that still runs."""
-        stop(self._process)
+        if self._process is not None:
+            stop(self._process)
 
 
 class CFunction:

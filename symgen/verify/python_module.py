@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 import types
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from symgen.emit.locals import array_arguments
@@ -13,6 +14,16 @@ from symgen.verify.compile import Outcome
 from symgen.verify.reference import State
 
 MODULE_NAME = "symgen_verified_module"
+# Characters; the parser takes 60 bytes for each, all at once.
+LARGE = 1_000_000
+_FUNCTION = re.compile(r"^(?:@.*\n)*def ", re.MULTILINE)
+
+
+def _parts(source: str) -> Iterator[str]:
+    """The module, or its functions one after the other where it is large; what stands before the first comes first."""
+    starts = [0] if len(source) <= LARGE else [0, *(found.start() for found in _FUNCTION.finditer(source))]
+    for start, end in zip(starts, [*starts[1:], len(source)], strict=True):
+        yield source[start:end]
 
 
 class PythonModule:
@@ -20,7 +31,12 @@ class PythonModule:
 
     def __init__(self, source: str) -> None:
         self.module = types.ModuleType(MODULE_NAME)
-        exec(compile(source, "<generated module>", "exec"), self.module.__dict__)
+        for part in _parts(source):
+            exec(compile(part, "<generated module>", "exec"), self.module.__dict__)
+
+    def unload(self) -> None:
+        """Lets go of the functions, which hold the module that holds them."""
+        self.module.__dict__.clear()
 
     def run(self, kernel: Kernel, states: Sequence[State]) -> list[Outcome]:
         """All states in one vectorised call; a state without result has NaN entries and no status of its own."""

@@ -181,13 +181,13 @@ def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[d
 def _compilations(
     compiler: Compiler | None, c_sources: Mapping[Scalar, CSource]
 ) -> Iterator[dict[Scalar, Compilation]]:
-    """Compilers at work on all sources, in a folder that goes away."""
+    """Compilers at work on all sources, on large ones in turn, in a folder that goes away."""
     with tempfile.TemporaryDirectory(prefix="symgen-verify-") as folder:
         started: dict[Scalar, Compilation] = {}
         try:
             if compiler is not None:
                 for scalar, source in c_sources.items():
-                    started[scalar] = Compilation(compiler, source, Path(folder))
+                    started[scalar] = Compilation(compiler, source, Path(folder), later=source.large and bool(started))
             yield started
         finally:
             for compilation in started.values():
@@ -251,6 +251,7 @@ def _run_python(
         if module.run_single(kernel, states[0]).entries != outcomes[kernel.name][0].entries
         and outcomes[kernel.name][0].valid
     ]
+    module.unload()
     return outcomes, faults
 
 

@@ -46,8 +46,8 @@ class Drawn:
         return sum(float(value) * power(key) for key, value in terms.items())
 
     def square_of_sine(self, key: int) -> bool:
-        nodes = self.monomials._graph.nodes
-        return any(nodes[atom].op == "sin" and power > 1 for atom, power in self.monomials.read(key))
+        nodes = self.monomials._graph
+        return any(nodes.at(atom).op == "sin" and power > 1 for atom, power in self.monomials.read(key))
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -63,13 +63,13 @@ def test_products_and_reductions_keep_the_value(seed: int, powers: tuple[int, in
 def test_equal_functions_reduce_to_nothing(seed: int) -> None:
     """(s^2 + c^2 - 1) T = 0 for whatever T is."""
     drawn = Drawn(seed)
-    nodes = drawn.monomials._graph.nodes
+    nodes = drawn.monomials._graph
     terms = drawn.terms(4, (0, 4))
     sine, cosine = next(
         (drawn.atoms[s], drawn.atoms[c])
         for s in drawn.atoms
         for c in drawn.atoms
-        if nodes[s].op == "sin" and nodes[c].op == "cos" and nodes[s].args == nodes[c].args
+        if nodes.at(s).op == "sin" and nodes.at(c).op == "cos" and nodes.at(s).args == nodes.at(c).args
     )
     circle: dict[int, Coefficient] = {2 * sine: 1, 2 * cosine: 1, 0: -1}
     assert drawn.monomials.product(circle, terms) == {}
