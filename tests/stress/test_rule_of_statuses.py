@@ -7,15 +7,19 @@ from pathlib import Path
 import pytest
 from rows_that_meet import wheels
 
+from symgen.dynamics.select import derive_quantities
+from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Scalar
+from symgen.ir.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.stress.families import search
-from symgen.stress.kernels import SCALARS, STRESSED, Kernels
+from symgen.stress.kernels import SCALARS, STRESSED, Kernels, rounded_state
 from symgen.stress.rule import breaches, counted, held_to_the_rule
 from symgen.stress.rule_states import Pushed, far_apart, towards_singular_sets
 from symgen.verify.compile import Outcome
 from symgen.verify.reference import Reference, State
+from symgen.verify.tolerance import expectations
 
 CASTORS = {
     "front": "cos(p)*e_dot + sin(p)*h_dot + reach*p_dot",
@@ -109,3 +113,42 @@ def test_states_go_to_singular_sets_and_far_apart() -> None:
     moved = {one.where: one.state.parameters for one in apart}
     assert moved["mu times 1e9"][names.index("mu")] == pytest.approx(3e9)
     assert moved["trail times 1e-9"][names.index("trail")] == pytest.approx(2.5e-10)
+
+
+LIGHT_BETWEEN_HEAVY = """
+model: light_between_heavy
+coordinates: {a: {unit: m}, b: {unit: m}, c: {unit: m}, d: {unit: m}}
+parameters:
+  light: {value: 1, unit: kg}
+  heavy: {value: 1, unit: kg}
+kinetic_energy: light/2*a_dot**2 + heavy/2*(b_dot**2 + c_dot**2 + d_dot**2)
+constraints:
+  geometric: {one: a + b + d - 1, other: 2*a + c - d - 2}
+inputs: {push: {unit: N, acts_on: {d: 1}}}
+outputs: [forward_dynamics, multipliers]
+"""
+
+
+def test_rows_that_masses_make_one_have_a_status() -> None:
+    """Both rows ask for the acceleration of a light body: what they ask of heavy ones is below what a number holds."""
+    model = load_text(LIGHT_BETWEEN_HEAVY, "light_between_heavy")
+    reference = Reference(model)
+    forms = dict.fromkeys(model.outputs, "schur_qr")
+    derived = derive_quantities(model, model.outputs, forms)
+    programs = schedule(derived.mechanics, derived.quantities, SCALARS)
+    cases: tuple[tuple[Scalar, float, int], ...] = (
+        ("float32", 1e-6, 0),
+        ("float32", 1e-14, 2),
+        ("float64", 1e-14, 0),
+        ("float64", 1e-31, 2),
+    )
+    for scalar, light, expected in cases:
+        state = rounded_state(State((0.5,) * 4, (0.0,) * 4, (0.0,) * 4, (1.0,), (light, 1.0)), scalar)
+        found = expectations(reference, state, model.outputs, scalar, "light")
+        for kernel in programs[scalar].kernels:
+            run = Interpreter(programs[scalar].sincos, scalar).run
+            status, entries = run(kernel, {"q": state.q, "qd": state.qd, "u": state.u}, state.parameters)
+            assert status == expected
+            if not status:
+                one = found[kernel.name]
+                assert one.in_units(one.distance(entries)) <= 16

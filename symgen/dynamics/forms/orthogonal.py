@@ -197,7 +197,7 @@ def _combined(graph: Graph, shares: Sequence[Scalar], vectors: Sequence[Vector])
 
 
 def _squared(graph: Graph, column: Vector, weights: Sequence[Scalar]) -> Scalar:
-    return graph.sum(x * x * w for x, w in zip(column, weights, strict=True))
+    return dot(graph, tuple(x * w for x, w in zip(column, weights, strict=True)), column)
 
 
 def _less(x: Vector, share: Scalar, direction: Vector) -> Vector:

@@ -91,8 +91,10 @@ class _Elimination:
         self._all_rows = problem.rows
         self.rows = self._orthogonal.chosen(problem.rows)
         # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
-        regular = (self._orthogonal.regularity(),) if r > min(rank, LONGEST_PRODUCT) else problem.guards
-        self._guards = (*regular, *factor.guards)
+        regular = () if r > min(rank, LONGEST_PRODUCT) else problem.guards
+        # light bodies may leave nothing of the difference of two rows, which are far from parallel by themselves
+        metric = (self._orthogonal.regularity(),) if r > 1 else ()
+        self._guards = (*regular, *metric, *factor.guards)
 
     def asked(self, bias: Vector) -> Vector:
         """What the rows that are solved with ask for."""
