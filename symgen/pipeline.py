@@ -26,6 +26,7 @@ from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.c_sc import emit_c_sc
+from symgen.emit.literals import LiteralRangeError
 from symgen.emit.operations import count_operations
 from symgen.garbage import let_go_and_keep
 from symgen.ir.kernel import Scalar
@@ -34,6 +35,7 @@ from symgen.ir.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean
+from symgen.refusals import beyond_range, no_states
 from symgen.results import FORMS, LargestError, Options, Result, Summary, WrongUseError
 
 if TYPE_CHECKING:
@@ -76,8 +78,13 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                     let_go_and_keep()
             if reporting is not None:
                 reporting.send(_facts(draft))
-            files = _code(draft, options)
+            try:
+                files = _code(draft, options)
+            except LiteralRangeError as error:
+                raise ModelError(str(path), "", (beyond_range(error),)) from error
             certificate, expected = _verified(draft, files, options, progress, expected)
+            if certificate is not None and expected is None and certificate.faults:
+                raise ModelError(str(path), path.read_text(encoding="utf-8"), (no_states(draft.model, certificate),))
             other = None
             if certificate is not None and expected is not None:
                 from symgen.fallback import Fallback

@@ -181,7 +181,7 @@ def generic_points(model: Model, mechanics: Mechanics, count: int, on_constraint
             values.setdefault(name, mpf(source.uniform(-2, 2)))
         try:
             point = _onto_constraints(model, mechanics, values) if on_constraints else Point(mechanics, values)
-        except (ValueError, ZeroDivisionError):
+        except (ValueError, ArithmeticError):
             continue
         if point is not None:
             points.append(point)

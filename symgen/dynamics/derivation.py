@@ -118,7 +118,12 @@ class Derivation:
             if self.generic.rank == self.r and few_minors(self.generic):
                 # where the constraints carry a load, what is left of it along a motion cancels in the minors only
                 names = ("minor", *names)
-        return {name: self.motion(name) for name in names}
+        motions = {name: self.motion(name) for name in names}
+        if self.generic.rank:
+            return motions
+        # rows that hold nothing press on nothing
+        still = (self.graph.zero,) * self.r
+        return {name: replace(made, multipliers=still) for name, made in motions.items()}
 
     def motion(self, name: MotionName) -> Motion:
         """One form; `schur_qr` and `minor` are worked out in absolute angles.

@@ -7,7 +7,6 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 
-from symgen.diagnostics import SymgenBug
 from symgen.ir.kernel import Scalar
 
 _FLOAT32_DIGITS = 24
@@ -35,13 +34,22 @@ def round_to(scalar: Scalar, value: Fraction) -> float:
     return float(value) if scalar == "float64" else round_to_float32(value)
 
 
+class LiteralRangeError(Exception):
+    """A number of a kernel that is beyond the range of its scalar type."""
+
+    def __init__(self, scalar: Scalar, value: Fraction) -> None:
+        digits = len(str(abs(value.numerator) // value.denominator)) - 1
+        super().__init__(f"the kernels hold a number of about 1e{digits}, which is beyond the range of {scalar}")
+        self.scalar = scalar
+
+
 @cache
 def decimal_text(scalar: Scalar, value: Fraction) -> str:
     """The shortest decimal that reads back as `value` rounded to the scalar type; always with a point or exponent."""
     try:
         rounded = round_to(scalar, value)
     except OverflowError as error:
-        raise SymgenBug(f"emit: the literal {value} does not fit in {scalar}") from error
+        raise LiteralRangeError(scalar, value) from error
     if scalar == "float64":
         return repr(rounded)
     texts = (f"{rounded:.{digits}g}" for digits in range(1, 10))  # nine digits always read back

@@ -32,6 +32,7 @@ class Assembly:
     configuration exceeds: the ranks of B and of [B; M^T] off the constraints, where q is free.  `start` is where the
     declared start leads, with its ranks, where it is singular.  `tied` are parameters for whose default values
     alone the loops close, because rows depend on each other.
+    `held` are the numbers of coordinates that no admissible motion changes.
     """
 
     ranks: Ranks
@@ -41,6 +42,7 @@ class Assembly:
     start: Place | None = None
     regular: bool = True
     tied: tuple[str, ...] = ()
+    held: tuple[int, ...] = ()
 
     @property
     def has_branches(self) -> bool:

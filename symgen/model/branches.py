@@ -16,12 +16,15 @@ import math
 import random
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import islice
 
 from symgen.model.assembly import Assembly, Place, Ranks
 from symgen.model.closing import Closer, Loop
+from symgen.model.dense import null_space
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Input
+from symgen.model.shaken import Shaken
 from symgen.model.sparse import NEGLIGIBLE, PLAIN, Row, Scales, clear_rank, pivots, typical
 from symgen.records import dataclass
 
@@ -33,10 +36,10 @@ FEWEST_STARTS, MOST_STARTS, ENOUGH = 8, 40, 4
 RETRIES = 3  # for loops that stay open where others close
 # Rows evaluated on the way, and how many times as many as long as nothing regular is found.
 EFFORT, LONGEST = 30_000, 5
-# Rows this small beside the largest may be what rounding leaves, those of no size are.
-SMALL, NO_SIZE = 1e-9, 1e-15
-NUDGE, CHANGED = 1e-7, 1e-3  # of a width, and of a row
+SHAKEN_POINTS = 2  # where entries are told from rounding
 STEP = 1e-3  # in coordinate widths, along a branch
+WALK, STRIDE = 5, 0.2  # configurations along a branch, and how far they are apart
+ENOUGH_HELD, HELD = 3, 1e-7  # configurations that say that a coordinate is held, and motions in its width that are none
 STRAIGHT = 0.1  # of a step, by which a regular branch leaves its tangent at most
 TRIED = 3  # configurations of the same ranks that are looked at for a regular one
 
@@ -64,10 +67,10 @@ class _Search:
         ]
         samples = list(self._sampled())
         self._usable = bool(samples)
-        sizes = self._without_noise(typical(samples))
+        sizes = self._without_noise(typical(rows for _, rows in samples), [q for q, _ in samples])
         self._scales = Scales(sizes)
         self._closer = Closer(mechanics.residuals, sizes[: self._r_geometric], self._widths)
-        self._bound = self._bounds([*samples, *self._with_other_parameters()])
+        self._bound = self._bounds([*(rows for _, rows in samples), *self._with_other_parameters()])
 
     def result(self) -> Assembly | Open | None:
         if not self._usable:
@@ -79,16 +82,18 @@ class _Search:
         for plain in (PLAIN, NEGLIGIBLE):
             places = [Place(q, ranks) for q in configurations if (ranks := self._ranks(q, plain)) is not None]
             if places:
-                return self._chosen(places, configurations[0])
+                found = self._chosen(places, configurations[0])
+                return replace(found, held=self._held(found))
         return None
 
-    def _sampled(self) -> Iterator[list[Row]]:
+    def _sampled(self) -> Iterator[tuple[list[float], list[Row]]]:
         """B and M at random configurations, whether they satisfy the constraints or not."""
         found = 0
         for _ in range(10 * TYPICAL_POINTS):
-            rows = self._rows(self._anywhere(whole=False))
+            place = self._anywhere(whole=False)
+            rows = self._rows(place)
             if rows is not None:
-                yield rows
+                yield place, rows
                 found += 1
             if found == TYPICAL_POINTS:
                 return
@@ -100,27 +105,12 @@ class _Search:
             if rows is not None:
                 yield rows
 
-    def _without_noise(self, sizes: list[Row]) -> list[Row]:
-        """Rows that are zero but for rounding are empty: those of no size beside others, and those that are small and
-        change altogether where q hardly does; a row in small units does not.
-
-        The units of inputs are no measure of constraints.
-        """
-        largest = max((value for row in sizes for value in row.values()), default=0.0)
-        r = len(self._mechanics.constraints)
-        constraining = max((value for row in sizes[:r] for value in row.values()), default=0.0)
-        place = self._anywhere(whole=False)
-        beside = [x + NUDGE * width for x, width in zip(place, self._widths, strict=True)]
-        here, there = self._rows(place), self._rows(beside)
-        found = []
-        for i, row in enumerate(sizes):
-            most = max(row.values(), default=0.0)
-            keep = most > NO_SIZE * (constraining if i < r else largest)
-            if keep and most < SMALL * largest and here is not None and there is not None:
-                moved = max((abs(value - there[i].get(j, 0.0)) for j, value in here[i].items()), default=0.0)
-                keep = moved <= CHANGED * max(map(abs, here[i].values()), default=0.0)
-            found.append(row if keep else {})
-        return found
+    def _without_noise(self, sizes: list[Row], places: Sequence[list[float]]) -> list[Row]:
+        """The entries that are not what rounding leaves of zeros."""
+        shaken = Shaken(self._mechanics, self._inputs, _evaluated)
+        for q in places[:SHAKEN_POINTS]:
+            shaken.look(q)
+        return [{j: x for j, x in row.items() if not shaken.is_rest(i, j)} for i, row in enumerate(sizes)]
 
     def _bounds(self, samples: Sequence[Sequence[Row]]) -> tuple[int, int]:
         r = len(self._mechanics.constraints)
@@ -129,9 +119,8 @@ class _Search:
         return alone, max((clear_rank(rows, NEGLIGIBLE) or 0 for rows in scaled), default=0)
 
     def _rows(self, q: Sequence[float], other: Mechanics | None = None) -> list[Row] | None:
-        mechanics = other or self._mechanics
         try:
-            rows = [*mechanics.rows(q), *mechanics.columns(q, self._inputs)]
+            rows = _evaluated(other or self._mechanics, self._inputs, q)
         except (ArithmeticError, ValueError):
             return None
         return rows if all(math.isfinite(value) for row in rows for value in row.values()) else None
@@ -298,6 +287,37 @@ class _Search:
         off = max(abs(a - b) / w for a, b, w in zip(closed.q, moved, widths, strict=True))
         return not closed.open and off <= STRAIGHT * STEP and self._ranks(closed.q) == place.ranks
 
+    def _held(self, found: Assembly) -> tuple[int, ...]:
+        """Coordinates that no admissible motion changes: along the branch of the declared start, else on any."""
+        meant = bool(self._start) and found.start is None
+        places = self._along(found.places[0]) if meant else [*found.places[:WALK], *found.others]
+        if len(places) < ENOUGH_HELD or not found.ranks.constraints:
+            return ()
+        held = set(range(self._n))
+        r = len(self._mechanics.constraints)
+        for place in places:
+            evaluated = self._rows(place.q)
+            if evaluated is None:
+                return ()
+            rows = self._scales.scaled(evaluated)[:r]
+            motions = null_space([[row.get(j, 0.0) for j in range(self._n)] for row in rows], self._n)
+            held = {j for j in held if all(abs(motion[j]) < HELD for motion in motions)}
+        return tuple(sorted(held))
+
+    def _along(self, place: Place) -> list[Place]:
+        """A walk along a branch."""
+        found = [place]
+        for _ in range(2 * WALK):
+            direction = self._closer.along(found[-1].q, [self._random.gauss(0, 1) for _ in self._widths])
+            longest = max(map(abs, direction or ()), default=0.0)
+            if direction is None or longest < STEP or len(found) == WALK:
+                break
+            pairs = zip(found[-1].q, direction, self._widths, strict=True)
+            closed = self._closer.close([x + STRIDE * a / longest * w for x, a, w in pairs])
+            if not closed.open and self._ranks(closed.q) == place.ranks:
+                found.append(Place(closed.q, place.ranks))
+        return found
+
     def _in_ranges(self, place: Place) -> bool:
         """Whether every coordinate lies in its range, but for a hundredth of its width."""
         for x, c in zip(place.q, self._mechanics.coordinates, strict=True):
@@ -323,3 +343,8 @@ class _Search:
                 widest = max(range(len(gaps)), key=lambda i: abs(gaps[i]))
                 return Open(loop.rows[widest], gaps[widest])
         return None
+
+
+def _evaluated(mechanics: Mechanics, inputs: Sequence[Input], q: Sequence[float]) -> list[Row]:
+    """The rows of B, and the columns of M as rows."""
+    return [*mechanics.rows(q), *mechanics.columns(q, inputs)]

@@ -1,59 +1,60 @@
-"""Rows that hold nothing: their gradients vanish in every configuration, up to the rounding of the file's numbers.
-
-Numbers in a file are rounded: 0.19 + 1.0 - 1.19 is 1e-16, and an axis that is parallel to another in the drawing is so
-but for 1e-16.  What is left of such a row must not count as a row of tiny length.  So every number of the model is
-shaken by a tiny share of itself: a row that changes by more than it is long is what rounding leaves.  That needs no
-scale, so that a row in other units is the same row, and no list of what cancels.
-"""
+"""Rows that hold nothing: their gradients vanish in every configuration, up to the rounding of the file's numbers."""
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator, Sequence
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
-from typing import Any
+from itertools import islice
 
 from symgen.diagnostics import Mistake, Notice, Span
-from symgen.model.expression import Number, Pi
+from symgen.model.expression import Number
 from symgen.model.mechanics import Mechanics
 from symgen.model.mechanism import is_component
-from symgen.model.model import ConstraintRow
+from symgen.model.model import ConstraintRow, Input
 from symgen.model.names import shown_names
+from symgen.model.shaken import Shaken
 from symgen.model.sparse import Row
-from symgen.model.walk import exact_value, names_in
-from symgen.records import dataclass
+from symgen.model.walk import names_in
 
-SEED = 20260607
-SHARE = 1e-10  # by which numbers are shaken: far more than rounding to 16 digits is, far less than any dimension
-SHAKES, POINTS, OTHERS, ATTEMPTS = 3, 2, 2, 20
-PI = Fraction("3.14159265358979323846264338327950288419716939937510")
+POINTS, OTHERS, ATTEMPTS = 2, 2, 20
+VALUE = -1  # the number under which the value of a row stands beside its entries
 ZERO = Number(Fraction(0))
 
 
-@dataclass(frozen=True, slots=True)
-class _Sizes:
-    """Of each row: its longest entry, by how much its entries change when shaken, and the same of its value."""
+class _Rows:
+    """The rows shaken at a few random configurations; the value of a geometric row is one of its entries."""
 
-    lengths: tuple[float, ...]
-    changes: tuple[float, ...]
-    values: tuple[float, ...]
-    shifts: tuple[float, ...]
+    def __init__(self, mechanics: Mechanics) -> None:
+        self._shaken = Shaken(mechanics, (), self._evaluated)
+        places = (q for q, _ in mechanics.anywhere(ATTEMPTS))
+        self.known = sum(islice(filter(None, map(self._shaken.look, places)), POINTS)) == POINTS
+
+    @staticmethod
+    def _evaluated(mechanics: Mechanics, _: Sequence[Input], q: Sequence[float]) -> list[Row]:
+        rows = [dict(row) for row in mechanics.rows(q)]
+        for row, value in zip(rows, mechanics.residuals(q, range(len(mechanics.geometric)))[0], strict=False):
+            row[VALUE] = value
+        return rows
 
     def is_empty(self, i: int) -> bool:
         """Whether nothing but rounding is left of the row."""
-        return self.lengths[i] <= self.changes[i]
+        return all(self._shaken.is_rest(i, j) for j in self._shaken.sizes[i] if j != VALUE)
+
+    def value(self, i: int) -> float:
+        """The value of a row at the first of the configurations."""
+        return self._shaken.first[i][VALUE]
 
     def holds(self, i: int) -> bool:
         """Whether nothing but rounding is left of the value of a row that is constant."""
-        return abs(self.values[i]) <= self.shifts[i]
+        return self._shaken.within(i, VALUE)
 
 
 def check_empty_rows(mechanics: Mechanics) -> tuple[tuple[ConstraintRow, ...], list[Mistake | Notice]]:
     """The rows, those that hold nothing as 0 = 0, and what is to be told of them."""
     rows = mechanics.constraints
-    usual = _sizes(mechanics)
-    if usual is None:
+    usual = _Rows(mechanics)
+    if not usual.known:
         return rows, []
     empty = [i for i in range(len(rows)) if usual.is_empty(i)]
     if not empty:
@@ -69,7 +70,7 @@ def check_empty_rows(mechanics: Mechanics) -> tuple[tuple[ConstraintRow, ...], l
             told.append(
                 Mistake(
                     f"the constraint `{row.name}` does not depend on the configuration: it demands "
-                    f"{usual.values[i]:.6g} = 0",
+                    f"{usual.value(i):.6g} = 0",
                     _remedy(row),
                     row.span,
                 )
@@ -115,7 +116,7 @@ def _vanishing(mechanics: Mechanics, row: ConstraintRow) -> Mistake:
     named = [
         name
         for name, changed in _each_changed(mechanics)
-        if (sizes := _sizes(changed)) is not None and not sizes.is_empty(index)
+        if (seen := _Rows(changed)).known and not seen.is_empty(index)
     ]
     by = shown_names(named) if named else "several parameters together"
     return Mistake(
@@ -126,15 +127,9 @@ def _vanishing(mechanics: Mechanics, row: ConstraintRow) -> Mistake:
     )
 
 
-def _with_other_parameters(mechanics: Mechanics) -> Iterator[_Sizes]:
-    found = 0
-    for _, parameters in mechanics.anywhere(ATTEMPTS):
-        sizes = _sizes(mechanics.having(parameters))
-        if sizes is not None:
-            yield sizes
-            found += 1
-        if found == OTHERS:
-            return
+def _with_other_parameters(mechanics: Mechanics) -> Iterator[_Rows]:
+    seen = (_Rows(mechanics.having(parameters)) for _, parameters in mechanics.anywhere(ATTEMPTS))
+    yield from islice((rows for rows in seen if rows.known), OTHERS)
 
 
 def _each_changed(mechanics: Mechanics) -> Iterator[tuple[str, Mechanics]]:
@@ -142,65 +137,3 @@ def _each_changed(mechanics: Mechanics) -> Iterator[tuple[str, Mechanics]]:
     for _, parameters in mechanics.anywhere(1):
         for name, value in parameters.items():
             yield name, mechanics.having({**mechanics.defaults, name: value})
-
-
-def _sizes(mechanics: Mechanics) -> _Sizes | None:
-    """Measured at a few random configurations; None where the rows have no value."""
-    generator = random.Random(SEED)
-    count, geometric = len(mechanics.constraints), len(mechanics.geometric)
-    shaken = [_shaken(mechanics, generator) for _ in range(SHAKES)]
-    lengths, changes = [0.0] * count, [0.0] * count
-    values, shifts = [0.0] * count, [0.0] * count
-    found = 0
-    for q, _ in mechanics.anywhere(ATTEMPTS):
-        try:
-            here, rows = _at(mechanics, q)
-            beside = [_at(one, q) for one in shaken]
-        except (ArithmeticError, ValueError):
-            continue
-        for i, row in enumerate(rows):
-            lengths[i] = max(lengths[i], *map(abs, row.values()), 0.0)
-            for _, other in beside:
-                for j in {*row, *other[i]}:
-                    changes[i] = max(changes[i], abs(row.get(j, 0.0) - other[i].get(j, 0.0)))
-        for i in range(geometric):
-            values[i] = max(values[i], here[i], key=abs)
-            shifts[i] = max(shifts[i], *(abs(here[i] - there[i]) for there, _ in beside))
-        found += 1
-        if found == POINTS:
-            return _Sizes(tuple(lengths), tuple(changes), tuple(values), tuple(shifts))
-    return None
-
-
-def _at(mechanics: Mechanics, q: Sequence[float]) -> tuple[list[float], list[Row]]:
-    """g and B."""
-    return mechanics.residuals(q, range(len(mechanics.geometric)))[0], mechanics.rows(q)
-
-
-def _shaken(mechanics: Mechanics, generator: random.Random) -> Mechanics:
-    """The mechanics with every number changed by a tiny share of it."""
-
-    def shake(part: Any) -> Any:
-        match part:
-            case Number(value=value):
-                return Number(value * shift()) if value else part
-            case Pi():
-                return Number(PI * shift())
-            case tuple():
-                # what rounding leaves of a zero beside the other entries of a vector is shaken as these are
-                sizes = [abs(Fraction(exact_value(one) or 0)) for one in part]
-                tiny = Fraction(SHARE) * max(sizes, default=0)
-                pairs = zip(part, sizes, strict=True)
-                return tuple(Number(tiny * shift()) if 0 < size < tiny else shake(one) for one, size in pairs)
-        if is_dataclass(part) and not isinstance(part, (type, Span)):
-            parts = {field.name: getattr(part, field.name) for field in fields(part)}
-            return replace(part, **{name: shake(one) for name, one in parts.items() if not isinstance(one, str)})
-        return part
-
-    def shift() -> Fraction:
-        return 1 + Fraction(generator.choice((-1, 1)) * generator.uniform(0.5, 1) * SHARE)
-
-    defaults = {name: value * float(shift()) for name, value in mechanics.defaults.items()}
-    return mechanics.having(
-        defaults, shake(mechanics.constraints), shake(mechanics.definitions), shake(mechanics.mechanism)
-    )

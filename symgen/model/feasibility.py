@@ -12,8 +12,8 @@ from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
 from symgen.model.names import counted, shown_names
 
-# Configurations at which masses are looked at, and how many say that a coordinate is held.
-SAMPLES, ENOUGH = 5, 3
+# Configurations at which masses are looked at.
+SAMPLES = 5
 FURTHER = 40
 USUAL = 3
 
@@ -56,8 +56,7 @@ def check_motion(
         return
     regular = [(list(place.q), mechanics.jacobian(place.q)) for place in found.places[:SAMPLES]]
     yield from _check_masses(mechanics, [*regular, *_further(mechanics, found)], spans["kinetic_energy"])
-    elsewhere = [(list(place.q), mechanics.jacobian(place.q)) for place in found.others]
-    yield from _held(mechanics, [*regular, *elsewhere], spans["constraints"])
+    yield from _held(mechanics, found, spans["constraints"])
     yield from _other_branches(mechanics, found, spans["configuration"])
     if independent:
         yield from _check_independent(mechanics, regular, independent, n - rank, spans["independent_velocities"])
@@ -228,15 +227,9 @@ def _without_mass(mechanics: Mechanics, jacobian: Rows, mass: Rows) -> set[str]:
     return {c.name for i, c in enumerate(mechanics.coordinates) if any(abs(motion[i]) > HELD for motion in motions)}
 
 
-def _held(mechanics: Mechanics, regular: list[tuple[list[float], Rows]], span: Span | None) -> Iterator[Notice]:
+def _held(mechanics: Mechanics, found: Assembly, span: Span | None) -> Iterator[Notice]:
     """Coordinates that no admissible motion changes: more often an axis that is not parallel than what was meant."""
-    held = set(range(len(mechanics.coordinates))) if len(regular) >= ENOUGH else set()
-    for q, jacobian in regular:
-        if not held:
-            return
-        basis = null_space(jacobian, len(q))
-        held = {i for i in held if all(abs(motion[i]) < HELD for motion in basis)}
-    places = [(mechanics.coordinates[i].name, regular[0][0][i]) for i in sorted(held)]
+    places = [(mechanics.coordinates[i].name, found.places[0].q[i]) for i in found.held]
     if places:
         names = shown_names(name for name, _ in places)
         listed = ", ".join(f"{name} = {value:.4g}" for name, value in places[:MOST_SHOWN])

@@ -14,8 +14,6 @@ Row: TypeAlias = dict[int, float]
 # Between what counts as zero and what counts as a pivot a matrix is too close to losing rank to tell.
 NEGLIGIBLE = 1e-9
 PLAIN = 1e-5
-# Entries this small beside the largest of their row are what rounding leaves of zeros.
-NOISE = 1e-13
 SWEEPS = 3
 
 
@@ -26,11 +24,7 @@ class Scales:
     """
 
     def __init__(self, typical: Sequence[Row]) -> None:
-        largest = [max(row.values(), default=0.0) for row in typical]
-        kept = [
-            {j: value for j, value in row.items() if value > NOISE * most}
-            for row, most in zip(typical, largest, strict=True)
-        ]
+        kept = [{j: value for j, value in row.items() if value > 0} for row in typical]
         columns = {j for row in kept for j in row}
         self.rows = [1.0] * len(kept)
         self.columns = dict.fromkeys(sorted(columns), 1.0)
@@ -43,13 +37,13 @@ class Scales:
                 for j, value in row.items():
                     most[j] = max(most[j], factor * value)
             self.columns = {j: 1 / value for j, value in most.items()}
-        self._absent = [not row for row in kept]
+        self._kept = [frozenset(row) for row in kept]
 
     def scaled(self, rows: Sequence[Row]) -> list[Row]:
-        """The rows with usual entries of size one at most; rows that are zero everywhere are empty."""
+        """The rows with usual entries of size one at most; entries that are zero everywhere are left out."""
         return [
-            {} if absent else {j: factor * value * self.columns[j] for j, value in row.items() if j in self.columns}
-            for row, factor, absent in zip(rows, self.rows, self._absent, strict=True)
+            {j: factor * value * self.columns[j] for j, value in row.items() if j in kept}
+            for row, factor, kept in zip(rows, self.rows, self._kept, strict=True)
         ]
 
 

@@ -127,3 +127,46 @@ configuration: {{a_0: 0.5, a_1: 0.5, a_2: 0.5, x: 0.4, y: 0.2}}
     assert told == [
         "`l_3` keeps its default in spite of its range: rows that depend on each other can be closed for no other value"
     ]
+
+
+def test_steep_functions_are_no_rounding() -> None:
+    """A shake of 1e-10 changes all of such a gradient; it counts all the same, and so does the entry beside it."""
+    nested = "".join(f"  d_{k}: 5*sin(5*d_{k - 1})\n" for k in range(1, 21))
+    text = f"""model: steep
+coordinates: {{x: {{}}, y: {{}}, z: {{}}}}
+definitions:
+  d_0: x
+{nested}
+kinetic_energy: x_dot**2 + y_dot**2 + z_dot**2
+constraints:
+  geometric:
+    g: d_20 - y
+    h: sin(x + z) - sin(x)*cos(z) - cos(x)*sin(z)
+"""
+    model = load_text(text, "steep.yaml")
+    assert _rows(model) == {"g": False, "h": True}
+    assert model.assembly is not None
+    assert model.assembly.ranks.constraints == 1
+
+
+def test_all_coordinates_that_cannot_move_are_named_on_the_branch_that_is_meant() -> None:
+    """Five dyads between fixed pins stand still; a linkage of the same ranks elsewhere says nothing of this one."""
+    dyads = "".join(
+        f"    x_{k}: cos(b_{2 * k + 1}) + cos(b_{2 * k + 2}) - {1.1 + 0.1 * k}\n"
+        f"    y_{k}: sin(b_{2 * k + 1}) + sin(b_{2 * k + 2})\n"
+        for k in range(5)
+    )
+    rates = " + ".join(f"b_{i}_dot**2" for i in range(1, 11))
+    names = "".join(f"  b_{i}: {{unit: rad}}\n" for i in range(1, 11))
+    text = f"""model: dyads
+coordinates:
+  a: {{unit: rad}}
+{names}
+kinetic_energy: a_dot**2 + {rates}
+constraints:
+  geometric:
+{dyads}
+"""
+    told = [notice.message for notice in load_text(text, "dyads.yaml").notices]
+    assert len(told) == 1
+    assert told[0].startswith("`b_1` .. `b_10` cannot move: the constraints hold b_1 = ")
