@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run test generated mechanisms fuzz proof firmware firmware-goals bench bench-mechanisms generation stress skipping trig zoo docs lock robots
+.PHONY: run test generated mechanisms fuzz proof firmware firmware-goals bench bench-mechanisms generation stress skipping trig zoo zoo-case docs lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -73,6 +73,10 @@ ZOO_SECONDS ?= 0
 zoo: $(VENV)/installed
 	$(BIN)/python -m symgen.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --draws $(ZOO_DRAWS) --seconds $(ZOO_SECONDS) \
 	    --out build/zoo
+
+# A failing draw made small and kept as a test: make zoo-case ZOO_SEED=3 ZOO_FIRST=14 CASE=name
+zoo-case: $(VENV)/installed
+	$(BIN)/python -m symgen.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --store tests/zoo/cases/$(CASE).yaml --out build/zoo
 
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed

@@ -21,7 +21,8 @@ ARGUMENTS = {
     "multipliers": ("q", "qd", "u"),
 }
 MEMBER = re.compile(r"^ {4}(?:double|float) (\w+);", re.M)
-FLAGS = ("-O2", "-ffp-contract=off", "-fPIC", "-shared")
+# compiled quickly: verification has run what a compiler makes of it with optimization
+FLAGS = ("-O0", "-ffp-contract=off", "-fPIC", "-shared")
 
 _libraries = itertools.count()
 

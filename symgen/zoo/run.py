@@ -18,7 +18,7 @@ CPU_SECONDS = 60
 MEGABYTES = 1000
 # a loaded machine takes longer on the clock; what stands still without computing ends here
 PATIENCE = 20
-SAMPLES_A_SECOND = 4
+SAMPLES_A_SECOND = 2
 TICKS = os.sysconf("SC_CLK_TCK")
 
 

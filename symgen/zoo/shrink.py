@@ -10,12 +10,14 @@ from typing import Any
 from symgen.zoo.describe import Description, Terms
 from symgen.zoo.dice import decimal
 from symgen.zoo.frames import joint_coordinates
+from symgen.zoo.urdf_file import expanded
 
 Fails = Callable[[Description], bool]
 # what may go as a whole, and entry by entry
 OPTIONAL = (
     "description", "ranges", "tolerances", "allocation", "springs", "friction", "forces", "applied_forces",
     "rotor_inertias", "gravity", "potential_energy", "rolling", "loops", "inputs", "configuration", "outputs",
+    "independent_velocities",
 )  # fmt: skip
 ENTRIES = ("inputs", "loops", "rolling", "springs", "friction", "forces", "applied_forces", "rotor_inertias", "ranges")
 
@@ -23,6 +25,11 @@ ENTRIES = ("inputs", "loops", "rolling", "springs", "friction", "forces", "appli
 def shrink(description: Description, fails: Fails, most: int = 80) -> Description:
     """The smallest description found that still fails, after at most so many runs."""
     runs = 0
+    if description.files:
+        # a robot of a file as joints and bodies, where that fails too: those can be made small
+        blocks = expanded(description.blocks, description.files)
+        alone = replace(description, blocks=blocks, files={})
+        description = alone if fails(alone) else description
     changed = True
     while changed:
         changed = False
@@ -123,6 +130,9 @@ def frozen(description: Description, name: str) -> Description:
             break
     else:
         gone = [name]
+    if "independent_velocities" in blocks:
+        # which of the others determine the rest now is not known
+        blocks = _without(blocks, "independent_velocities")
     for each in gone:
         for block in ("coordinates", "configuration", "ranges", "friction", "rotor_inertias", "applied_forces"):
             if each in (blocks.get(block) or {}):

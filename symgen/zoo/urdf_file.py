@@ -48,11 +48,12 @@ def _robot(robot: ElementTree.Element, entry: Mapping[str, Any]) -> dict[str, An
         parent, child = (_of(joint, what, "link") for what in ("parent", "child"))
         place, turns = _origin(joint)
         if kind == "fixed":
-            frames[child] = {"parent": parent, "translation": place, "rotation": turns}
+            frames[child] = _placed(parent, place, turns)
             continue
         axis = _of(joint, "axis", "xyz", "1 0 0").split()
         motion = {"type": "prismatic" if kind == "prismatic" else "revolute", "axis": axis, "coordinate": name}
-        joints[name] = {**motion, "parent": parent, "child": child, "at": place, "rotation": turns}
+        turned = {"rotation": turns} if turns else {}
+        joints[name] = {**motion, "parent": parent, "child": child, "at": place, **turned}
         friction |= dict(_friction(joint, name, entry))
         ranges |= dict(_limits(joint, name))
         mimic = joint.find("mimic")
@@ -64,8 +65,8 @@ def _robot(robot: ElementTree.Element, entry: Mapping[str, Any]) -> dict[str, An
         if inertial is None:
             continue
         place, turns = _origin(inertial)
-        name = f"{link.get('name')} inertial"
-        frames[name] = {"parent": link.get("name"), "translation": place, "rotation": turns}
+        name = f"{link.get('name')}_inertial"
+        frames[name] = _placed(link.get("name", ""), place, turns)
         tensor = inertial.find("inertia")
         bodies[name] = {
             "mass": _of(inertial, "mass", "value"),
@@ -76,6 +77,10 @@ def _robot(robot: ElementTree.Element, entry: Mapping[str, Any]) -> dict[str, An
         "frames": frames, "joints": joints, "bodies": bodies, "friction": friction, "ranges": ranges,
         "constraints": constraints,
     }  # fmt: skip
+
+
+def _placed(parent: str, place: list[str], turns: list[Any]) -> dict[str, Any]:
+    return {"parent": parent, "translation": place, **({"rotation": turns} if turns else {})}
 
 
 def _of(element: ElementTree.Element, what: str, attribute: str, otherwise: str = "") -> str:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from symgen.model.load import load_text
 from symgen.zoo import campaign, command
 from symgen.zoo.campaign import Campaign, judge, one_draw
+from symgen.zoo.cases import read_case
 from symgen.zoo.describe import Terms, read_description, summands
 from symgen.zoo.families import FAMILIES, draw
 from symgen.zoo.records import Record, read_records, summary, write_record
 from symgen.zoo.run import Run
+from symgen.zoo.urdf_file import expanded
 from symgen.zoo.verdict import FAILED, VERIFIED, Verdict
 
 RIGHT = Record(1, 0, "disc", VERIFIED, "", "", 2.0, 100)
@@ -102,3 +106,30 @@ def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch)
     record, _ = one_draw(Campaign(1, tmp_path, "disc"), 0)
     assert not record.failed
     assert not list(tmp_path.iterdir())
+
+
+def test_a_draw_is_made_small_and_kept(ends, tmp_path: Path, monkeypatch) -> None:
+    ends(Run(2, "", "symgen: internal error: odd\n", 1, 1))
+    case, out = tmp_path / "case.yaml", tmp_path / "out"
+    given = ["zoo", "--seed", "1", "--first", "2", "--family", "robot_files", "--store", str(case), "--out", str(out)]
+    monkeypatch.setattr("sys.argv", given)
+    assert command.main() == 1
+    kept = read_case(case)
+    assert kept.found.startswith("internal error")
+    assert "urdf" not in kept.model
+    drawn = draw(1, 2, "robot_files")
+    assert len(kept.model) < len(drawn.text + drawn.files["robot.urdf"]) / 2
+
+
+@pytest.mark.parametrize("index", [2, 7])
+def test_a_robot_is_the_same_without_its_file(index: int) -> None:
+    drawn = draw(1, index, "robot_files")
+    written = replace(drawn, blocks=expanded(drawn.blocks, drawn.files), files={})
+    model = load_text(written.text, "zoo.yaml")
+    assert [coordinate.name for coordinate in model.coordinates] == list(drawn.start)
+
+
+def test_what_is_drawn_is_counted(monkeypatch, capsys) -> None:
+    monkeypatch.setattr("sys.argv", ["zoo", "--count", "--draws", "3", "--family", "bennett"])
+    assert command.main() == 1
+    assert "     3  Bennett linkage\n" in capsys.readouterr().out
