@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from symgen.activity import each, working
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.draft import CARRIED, Draft
@@ -78,6 +79,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                     let_go_and_keep()
             if reporting is not None:
                 reporting.send(_facts(draft))
+            progress("writing")
             try:
                 files = _code(draft, options)
             except LiteralRangeError as error:
@@ -116,7 +118,8 @@ def _finished(
     reporting.send(certificate)
     reporting.send(_targets(draft.model, files, options))
     reporting.send(_proof(draft.model, files, options))
-    report = reporting.answer()
+    with working("typesetting"):
+        report = reporting.answer()
     if report.mistakes:
         raise ModelError(str(path), path.read_text(encoding="utf-8"), report.mistakes)
     return replace(result, files={**result.files, **report.files}, notices=(*result.notices, *report.notices))
@@ -181,7 +184,8 @@ def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:
         derivations = derive_quantities(model, outputs, options.forms)
     except NoSuchFormError as reason:
         raise WrongUseError(f"{model.name} has {reason}") from reason
-    structure = analyse(derivations.mechanics, derivations.generic)
+    with working("what is not needed"):
+        structure = analyse(derivations.mechanics, derivations.generic)
     scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
     programs = schedule(derivations.mechanics, derivations.quantities, scalars)
     if options.trig == "libm":
@@ -211,22 +215,25 @@ def _code(draft: Draft, options: Options) -> dict[str, str | bytes]:
     programs = [program for scalar in options.scalars if (program := draft.programs[scalar]).kernels]
     if {"c", "package"} & {*options.parts}:
         for program in programs:
-            for emit in (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc):
+            for emit in each(f"writing C in {program.scalar}", (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc)):
                 sources |= emit(draft.model, program)
     if "c" in options.parts:
         files |= sources
     if "package" in options.parts:
         from symgen.package.files import emit_package
 
-        files |= emit_package(draft.model, programs, sources)
+        with working("writing packages"):
+            files |= emit_package(draft.model, programs, sources)
     if "proof" in options.parts:
         from symgen.proof.files import emit_proofs
 
-        files |= emit_proofs(draft.model, programs)
+        with working("writing drivers for proofs"):
+            files |= emit_proofs(draft.model, programs)
     if "python" in options.parts:
         from symgen.emit.python import emit_python
 
-        files |= emit_python(draft.model, draft.program)
+        with working("writing Python"):
+            files |= emit_python(draft.model, draft.program)
     files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.program)
     return files
 

@@ -6,10 +6,13 @@ import codecs
 import os
 import shutil
 import sys
+import time
 import unicodedata
 from collections.abc import Sequence
 from typing import TextIO
 
+from symgen.activity import told
+from symgen.clock import Clock
 from symgen.diagnostics import Notice
 from symgen.results import Summary
 
@@ -24,7 +27,8 @@ _SPELLINGS |= {"\u0303": "~", "\u0307": "_dot", "\u0308": "_ddot"}  # accents th
 class Progress:
     """Tells what is being done: one line that changes on a terminal, nothing when quiet.
 
-    Elsewhere (a log) each stage gets one line: what follows the first comma of a message counts within its stage.
+    Elsewhere (a log) each stage gets one line: what follows the first comma of a message counts within its stage. A
+    stage that takes longer is told again every 2 s, with what it is at, how long it has taken and how long it will.
     """
 
     def __init__(self, label: str, quiet: bool, stream: TextIO | None = None) -> None:
@@ -32,7 +36,10 @@ class Progress:
         self._quiet = quiet
         self._stream = sys.stderr if stream is None else stream
         self._live = self._stream.isatty()
-        self._stage = ""
+        self._stage = self._message = ""
+        self._began = 0.0
+        self._telling = False  # a signal must not print into a line that is being printed
+        self._clock = Clock(self._tick)
 
     def __call__(self, message: str) -> None:
         """Shows what starts now; an empty message makes room for other output."""
@@ -41,19 +48,40 @@ class Progress:
         if not message:
             self.done()
             return
-        if self._live:
-            room = _width(self._stream) - 1  # a line that wraps could not be cleared
-            print(_CLEAR_LINE + f"{self._label}: {message} ..."[:room], end="", file=self._stream, flush=True)
-            return
         stage = message.partition(",")[0]
-        if stage != self._stage:
-            self._stage = stage
-            print(f"{self._label}: {stage} ...", file=self._stream, flush=True)
+        new = stage != self._stage
+        if new:
+            self._began = time.monotonic()
+        self._stage, self._message = stage, message
+        if self._live:
+            self._tell(message)
+        elif new:
+            self._tell(stage)
+        self._clock.start(anew=self._live or new)
 
     def done(self) -> None:
         """Removes the changing line."""
+        self._clock.stop()
         if not self._quiet and self._live:
             print(_CLEAR_LINE, end="", file=self._stream, flush=True)
+
+    def _tick(self) -> None:
+        """Tells what a stage is at that has not told anything for a while."""
+        if not self._telling:
+            spent = f"{time.monotonic() - self._began:.0f} s"
+            self._tell(", ".join(word for word in (self._message, told(), spent) if word))
+
+    def _tell(self, message: str) -> None:
+        self._telling = True
+        line = f"{self._label}: {message} ..."
+        try:
+            if self._live:
+                room = _width(self._stream) - 1  # a line that wraps could not be cleared
+                print(_CLEAR_LINE + line[:room], end="", file=self._stream, flush=True)
+            else:
+                print(line, file=self._stream, flush=True)
+        finally:
+            self._telling = False
 
 
 def _width(terminal: TextIO) -> int:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
 
+from symgen.activity import each, working
 from symgen.dynamics.block_space import BlockSpace
 from symgen.dynamics.blocks import components
 from symgen.dynamics.catalogue import (
@@ -31,7 +32,7 @@ from symgen.dynamics.inverse import CANCELLATION_WORTH, FACTORING_LIMIT, FormCho
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
-from symgen.graph.traverse import cost
+from symgen.graph.traverse import cost, reached
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -159,12 +160,14 @@ def derive_quantities(
 
     Raises NoSuchFormError where the system does not have one of them.
     """
-    mechanics = Mechanics(model)
-    generic = genericity(mechanics)
+    with working("motion equations"):
+        mechanics = Mechanics(model)
+        generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
     derivations, blocks = ways(mechanics, generic), block_way(mechanics, generic)
     moving = [name for name in MOTIONS if name in present and name not in forms]
-    by_frames = articulated_motion(model, generic) if moving else {}
+    with working("articulated inertias"):
+        by_frames = articulated_motion(model, generic) if moving else {}
     # where minors are not listed, no other form is derived to be counted: they grow faster than the articulated one
     many = generic.r > 0 and generic.delta > LARGEST_DELTA
     absolute = absolute_way(model, generic) if moving and not by_frames else None
@@ -174,7 +177,7 @@ def derive_quantities(
     chosen_form: FormChoice | None = None
     inverse: InverseDynamics | None = None
     named: list[tuple[str, FormChoice]] = []
-    for name in present:
+    for name in each("ways to", present, str):
         if name == "inverse_dynamics":
             inverse = InverseDynamics(model, generic)
             found = inverse.choose(forms.get(name, "auto"))
@@ -222,7 +225,9 @@ def derive_quantities(
         quantities.append(candidates[best])
         form = BY_FRAMES if best == ARTICULATED else _form_along(along.get(best), name)
         choices.append(Choice(name, best, tuple(costs.items()), form))
-    grouped = tuple(finished(mechanics, generic, derived) for derived in quantities)
+    lengths = [len(reached(scalars(derived))) for derived in quantities]
+    named_so = each("shortening", quantities, lambda derived: derived.name, lengths)
+    grouped = tuple(finished(mechanics, generic, derived) for derived in named_so)
     if forms.get("inverse_dynamics", "auto") == "auto":
         grouped = tuple(_with_alike_bodies(model, derived) for derived in grouped)
     return Derivations(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named), inverse)

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from symgen.activity import each
 from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.guards import Guard, magnitude, where_negligible
 from symgen.dynamics.mechanics import Mechanics
@@ -55,7 +56,7 @@ def schedule(mechanics: Mechanics, quantities: Sequence[Derived], scalars: Seque
     programs: dict[Scalar, Program] = {}
     for scalar in scalars:
         kernels = []
-        for derived in quantities:
+        for derived in each(f"statements in {scalar}", quantities, lambda one: one.name):
             kernel = _side_by_side(mechanics, derived) if scalar == IN_TWOS else None
             if kernel is None and derived.name not in ordered:
                 ordered[derived.name] = _ordered_kernel(mechanics, derived, limits)

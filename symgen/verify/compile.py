@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from symgen.activity import working
 from symgen.emit.locals import array_arguments
 from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar, Status
@@ -25,6 +26,8 @@ FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared")
 # is one function; beyond this it is translated as it stands, in 0.5 s and 50 MB, and one type after the other.
 LARGE = 1_500_000
 PLAIN = ("-O0",)
+# Seconds for a megabyte, on a machine of 2020 that does nothing else.
+USUAL, USUAL_PLAIN = 4.0, 0.5
 # gcc keeps whatever it has parsed, unless it is told to look for what it no longer needs.
 SPARING = ("--param", "ggc-min-expand=20", "--param", "ggc-min-heapsize=32768")
 # Seconds: a megabyte of source takes two on a fast machine; beyond that a compiler hangs.
@@ -120,6 +123,8 @@ class Compilation:
         self._log = folder / f"{source.stem}.log"
         self._command = [*compiler.command, *compiler.flags(source), "-o", str(self._target), *paths, "-lm"]
         self._folder = folder
+        self._megabytes = source.characters / 1e6
+        self._usual = self._megabytes * (USUAL_PLAIN if source.large else USUAL)
         self._process: subprocess.Popen[bytes] | None = None
         if not later:
             self.start()
@@ -134,7 +139,8 @@ class Compilation:
     def library(self) -> ctypes.CDLL:
         """The loaded library; raises CompilationError with the compiler's message, or with a remedy."""
         try:
-            code = ended(self.start(), self._limit)
+            with working(f"compiling {self._megabytes:.1f} MB of C", seconds=self._usual):
+                code = ended(self.start(), self._limit)
         except ToolError as error:
             raise CompilationError(f"{error}; {REMEDY}") from error
         said = self._log.read_text(encoding="utf-8", errors="replace").strip()

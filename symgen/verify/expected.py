@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
+from symgen.activity import each, working
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.verify.reference import Reference
@@ -22,7 +23,8 @@ class Expected:
     """
 
     def __init__(self, model: Model, quantities: Sequence[str], states: int, progress: Progress) -> None:
-        self.reference = Reference(model)
+        with working("branches"):
+            self.reference = Reference(model)
         self._quantities = tuple(quantities)
         self._progress = progress
         count = states if states > USUAL_STATES else affordable_states(self.reference, quantities, states)
@@ -45,7 +47,7 @@ class Expected:
         """Reference values and error units of every quantity, state by state."""
         if scalar not in self._values:
             found, chosen = [], self.samples(scalar)
-            for index, sample in enumerate(chosen):
+            for index, sample in each("", list(enumerate(chosen))):
                 if index % 8 == 0:
                     self._progress(f"verifying: reference for {scalar}, state {index + 1} of {len(chosen)}")
                 found.append(expectations(self.reference, sample.state, self._quantities, scalar, f"{scalar} {index}"))

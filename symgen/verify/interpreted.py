@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from symgen.activity import each
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Function, Kernel, Scalar
 from symgen.verify.certificate import ErrorRecord, Fault
@@ -19,7 +20,7 @@ def measured(
     """The errors of a kernel at the states of a verification in units of d + eps |y*|, and what is wrong."""
     interpreter = Interpreter(sincos, scalar)
     samples, values = expected.samples(scalar), expected.values(scalar)
-    outcomes = [_outcome(interpreter, kernel, sample.state) for sample in samples]
+    outcomes = [_outcome(interpreter, kernel, sample.state) for sample in each(f"trying it in {scalar}", samples)]
     record = compare(kernel.name, scalar, [value[kernel.name] for value in values], outcomes)
     return record, next(faults_of(record, outcomes, samples), None)
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import flint
 
 import symgen
+from symgen.activity import each, working
 from symgen.emit.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
@@ -117,7 +118,8 @@ def _verified(
     errors: list[ErrorRecord] = []
     laws: list[InvariantRecord] = []
     judged: list[str] = []
-    for target, (scalar, made) in results.items():
+    for target in each("comparing", list(results), str):
+        scalar, made = results[target]
         twin = next((t for t in judged if _same(made, results[t][1]) and results[t][0] == scalar), None)
         if twin is None:
             records = [compare(name, target, [e[name] for e in values[scalar]], made[name]) for name in made]
@@ -213,7 +215,7 @@ def _run_c(
             continue
         functions = [CFunction(library, model.c_name, kernel, scalar) for kernel in kernels]
         outcomes: dict[str, list[Outcome]] = {kernel.name: [] for kernel in kernels}
-        for sample in samples[scalar]:
+        for sample in each(target, samples[scalar]):
             state = sample.state
             arrays = {name: c_array(scalar, getattr(state, name)) for name in ("q", "qd", "qdd", "u")}
             parameters = c_array(scalar, state.parameters)
@@ -242,9 +244,10 @@ def _run_python(
     source: str, kernels: Sequence[Kernel], samples: Sequence[Sample]
 ) -> tuple[dict[str, list[Outcome]], list[Fault]]:
     """Outcomes of every kernel over all states; the first state must give the same bits alone as in the batch."""
-    module = PythonModule(source)
+    with working("loading Python"):
+        module = PythonModule(source)
     states = [sample.state for sample in samples]
-    outcomes = {kernel.name: module.run(kernel, states) for kernel in kernels}
+    outcomes = {kernel.name: module.run(kernel, states) for kernel in each("Python", kernels, lambda one: one.name)}
     faults = [
         Fault("one state alone and the same state in a batch differ", kernel.name, "Python float64")
         for kernel in kernels

@@ -10,6 +10,7 @@ from itertools import islice
 from math import comb, isfinite, pi, sqrt
 from typing import Any
 
+from symgen.activity import working
 from symgen.ir.kernel import Scalar
 from symgen.verify.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference_manifold import admissible, exceeds, onto_manifold, starts
@@ -63,13 +64,15 @@ def sample_states(reference: Reference, quantities: Sequence[str], count: int, s
     with precision(SAMPLING_BITS):
         inside: list[Sample] = []
         outside: list[_Regular] = []
-        for found_state, in_range in _candidates(reference, count, seed):
-            if not in_range:
-                outside.append(found_state)
-            elif (sample := _sample(reference, quantities, found_state)) is not None:
-                inside.append(sample)
-            if len(inside) == count:
-                break
+        with working("", count) as work:
+            for found_state, in_range in _candidates(reference, count, seed):
+                if not in_range:
+                    outside.append(found_state)
+                elif (sample := _sample(reference, quantities, found_state)) is not None:
+                    inside.append(sample)
+                if len(inside) == count:
+                    break
+                work.done, work.part = len(inside), f"{len(inside)} of {count} found"
         others = (_sample(reference, quantities, found_state) for found_state in outside)
         found = [*inside, *islice((sample for sample in others if sample is not None), count - len(inside))]
     if len(found) < FEWEST_STATES:
