@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -79,6 +80,7 @@ class Witness:
         told = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
         self._start = {**told, **(start or {})}
         self._balls = Balls()
+        self._rows: Sequence[int] = range(len(self._system.rows))
 
     def check(self, folder: Path, count: int = STATES) -> Checked:
         """Everything generated in a folder; nothing is compared where no state is found."""
@@ -92,6 +94,7 @@ class Witness:
             findings.append(Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}"))
         largest = 0.0
         members = (*self._system.parameters, *self._allocation())
+        self._rows = self._rows_of(folder)
         for target in targets(folder, blocks["model"]):
             if members and len(target.parameters) != len(members):
                 told = f"{target.name}: parameters {target.parameters} where {members} are due"
@@ -118,6 +121,13 @@ class Witness:
         for name, value in self._allocation().items():
             values[name] = value
         return values
+
+    def _rows_of(self, folder: Path) -> Sequence[int]:
+        """The rows that the files have multipliers of: those that hold in every configuration are left out there."""
+        told = json.loads((folder / "derivation.json").read_bytes())
+        names = {name for block in told["blocks"] for name in block["rows"]}
+        kept = [index for index, row in enumerate(self._system.rows) if row.name in names]
+        return kept if len(kept) == told["sizes"]["r"] else range(len(self._system.rows))
 
     def _allocation(self) -> dict[str, float]:
         return members(self._system.blocks.get("allocation") or {}, self._float)
@@ -199,7 +209,7 @@ class Witness:
         clear = min((*parts.pivots, *pivots[-1:]), default=1.0)
         if quantity == "forward_dynamics":
             return Truth(accelerations, clear)
-        return Truth(multipliers, clear)
+        return Truth([multipliers[index] for index in self._rows], clear)
 
     def _inputs(
         self, at: Any, parts: Split, accelerations: list[Any], ranks: Ranks, values: Mapping[str, Any]

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from symgen.pipeline import generate
+from symgen.results import Options
 from symgen.zoo.expressions import FUNCTIONS, NotReadError, read_expression
 from symgen.zoo.fields import Balls, Floats, precision
 from symgen.zoo.mechanics import equations
@@ -190,4 +192,42 @@ def test_multipliers_of_wheels_and_limited_inputs_are_compared(tmp_path: Path) -
     assert run.code == 0, run.err
     checked = Witness(WHEEL).check(tmp_path / "out" / "hopper", count=8)
     assert checked.states == 8
+    assert checked.findings == ()
+
+
+HINGE = """
+model: hinge_in_ball
+joints:
+  ball: {type: spherical, coordinates: [e_0, e_1, e_2, e_3]}
+  fold: {type: revolute, parent: ball, at: [0.4, 0, 0], axis: x, coordinate: a}
+  slot: {type: prismatic, parent: ball, at: [0.4, 0, 0], axis: y, coordinate: s}
+frames:
+  dock: {parent: slot, translation: [0, 0.2, 0], rotation: [[x, 0.9]]}
+bodies:
+  ball: {mass: 2, com: [0.2, 0, 0], inertia: {xx: 0.2, yy: 0.3, zz: 0.4}}
+  fold: {mass: 1, com: [0, 0.3, 0.1], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}
+  slot: {mass: 1, inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}
+gravity: [0, 0, -9.81]
+points:
+  pin: {frame: fold, at: [0, 0.2, 0]}
+loops:
+  hold: {type: planar, between: [fold, dock], axis: y}
+inputs:
+  drive: {joint: s}
+outputs: [inverse_dynamics, multipliers]
+configuration: {e_0: 1, e_1: 0, e_2: 0, e_3: 0, a: 0.9, s: -0.2}
+"""
+
+
+def test_rows_that_hold_in_every_configuration_have_no_multipliers(tmp_path: Path) -> None:
+    """Both axes of the loop are held along one x by the joints before it, wherever the ball turns."""
+    assert len(Witness(HINGE)._system.rows) == 4
+    (tmp_path / "hinge.yaml").write_text(HINGE)
+    made = generate(tmp_path / "hinge.yaml", Options(parts=("python",), verify=False), lambda _: None)
+    for name, content in made.files.items():
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    checked = Witness(HINGE).check(tmp_path, count=4)
+    assert checked.states == 4
     assert checked.findings == ()
