@@ -12,6 +12,7 @@ from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.inverse import AUTOMATIC, FormChoice, InverseDynamics, Offer, derived_on, moved
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
+from symgen.dynamics.row_units import in_ordinary_units
 from symgen.dynamics.select import Choice, block_way, finished, ways
 from symgen.graph.matrix import flatten
 from symgen.graph.traverse import cost
@@ -45,7 +46,7 @@ class Alternatives:
     """The ways to the quantities of one model; `inverse` holds the forms of u that were looked at already."""
 
     def __init__(self, model: Model, generic: Genericity, inverse: InverseDynamics | None) -> None:
-        self._model = model
+        self._model = in_ordinary_units(model)
         self._generic = generic
         self._inverse = inverse
         self._motions: dict[str, tuple[Mechanics, tuple[Derived, ...]]] = {}

@@ -31,6 +31,7 @@ from symgen.dynamics.grouping import grouped as grouped_scalars
 from symgen.dynamics.inverse import CANCELLATION_WORTH, FACTORING_LIMIT, FormChoice, InverseDynamics, derived_on, moved
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
+from symgen.dynamics.row_units import in_ordinary_units, in_units_of_the_file
 from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
 from symgen.graph.traverse import cost, reached
 from symgen.ir.kernel import Scalar
@@ -160,9 +161,15 @@ def derive_quantities(
 
     Raises NoSuchFormError where the system does not have one of them.
     """
+<<<<<<< HEAD
     with working("motion equations"):
         mechanics = Mechanics(model)
         generic = genericity(mechanics)
+=======
+    model = in_ordinary_units(model)
+    mechanics = Mechanics(model)
+    generic = genericity(mechanics)
+>>>>>>> 51d051f (Rows in units of their own are derived in ordinary ones, by powers of 2)
     present, absent = requested(model, generic, outputs)
     derivations, blocks = ways(mechanics, generic), block_way(mechanics, generic)
     moving = [name for name in MOTIONS if name in present and name not in forms]
@@ -235,8 +242,10 @@ def derive_quantities(
 
 def finished(mechanics: Mechanics, generic: Genericity, derived: Derived) -> Derived:
     """A quantity on the graph of `mechanics` as it is scheduled: ranks tested that other branches may exceed, numbers
-    grouped, told what its reader must know."""
-    return _with_groups(mechanics, _remarked(with_test_of_excess(mechanics, generic, derived), generic))
+    grouped, told what its reader must know, rows in the units of the file."""
+    tested = with_test_of_excess(mechanics, generic, derived)
+    tested = in_units_of_the_file(mechanics.graph, mechanics.model, tested)
+    return _with_groups(mechanics, _remarked(tested, generic))
 
 
 def _with_alike_bodies(model: Model, derived: Derived) -> Derived:

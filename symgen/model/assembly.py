@@ -33,6 +33,7 @@ class Assembly:
     declared start leads, with its ranks, where it is singular.  `tied` are parameters for whose default values
     alone the loops close, because rows depend on each other.
     `held` are the numbers of coordinates that no admissible motion changes.
+    Rows times 2 to the power of their `units` are of ordinary size.
     """
 
     ranks: Ranks
@@ -43,6 +44,7 @@ class Assembly:
     regular: bool = True
     tied: tuple[str, ...] = ()
     held: tuple[int, ...] = ()
+    units: tuple[int, ...] = ()
 
     @property
     def has_branches(self) -> bool:

@@ -20,7 +20,7 @@ from dataclasses import replace
 from itertools import islice
 
 from symgen.model.assembly import Assembly, Place, Ranks
-from symgen.model.closing import Closer, Loop
+from symgen.model.closing import Closer, Loop, row_unit
 from symgen.model.dense import null_space
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Input
@@ -69,6 +69,8 @@ class _Search:
         self._usable = bool(samples)
         sizes = self._without_noise(typical(rows for _, rows in samples), [q for q, _ in samples])
         self._scales = Scales(sizes)
+        rows = sizes[: len(mechanics.constraints)]
+        self._units = tuple(round(math.log2(row_unit(row.values()))) for row in rows)
         self._closer = Closer(mechanics.residuals, sizes[: self._r_geometric], self._widths)
         self._bound = self._bounds([*(rows for _, rows in samples), *self._with_other_parameters()])
 
@@ -83,7 +85,7 @@ class _Search:
             places = [Place(q, ranks) for q in configurations if (ranks := self._ranks(q, plain)) is not None]
             if places:
                 found = self._chosen(places, configurations[0])
-                return replace(found, held=self._held(found))
+                return replace(found, held=self._held(found), units=self._units)
         return None
 
     def _sampled(self) -> Iterator[tuple[list[float], list[Row]]]:

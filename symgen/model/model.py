@@ -201,7 +201,7 @@ class Model:
     """A mechanical system, complete: the input of every derivation.
 
     T and U are the energies written in the file plus those of `mechanism`; `assembly` is what loading found out about
-    its configurations.
+    its configurations.  `row_units` are set where rows stand here times 2 to these powers (`dynamics/row_units`).
     """
 
     name: str
@@ -230,6 +230,7 @@ class Model:
     allocation: Allocation | None = None
     trig_range: Literal["normal", "wide"] = "normal"
     assembly: Assembly | None = None
+    row_units: tuple[int, ...] = ()
 
     @property
     def c_name(self) -> str:
