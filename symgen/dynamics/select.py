@@ -161,15 +161,10 @@ def derive_quantities(
 
     Raises NoSuchFormError where the system does not have one of them.
     """
-<<<<<<< HEAD
+    model = in_ordinary_units(model)
     with working("motion equations"):
         mechanics = Mechanics(model)
         generic = genericity(mechanics)
-=======
-    model = in_ordinary_units(model)
-    mechanics = Mechanics(model)
-    generic = genericity(mechanics)
->>>>>>> 51d051f (Rows in units of their own are derived in ordinary ones, by powers of 2)
     present, absent = requested(model, generic, outputs)
     derivations, blocks = ways(mechanics, generic), block_way(mechanics, generic)
     moving = [name for name in MOTIONS if name in present and name not in forms]
