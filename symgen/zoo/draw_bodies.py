@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from symgen.zoo.describe import Description
@@ -24,6 +25,8 @@ def tree_bodies(dice: Dice) -> Description:
         massless=dice.choice((0, 0, 0, 0.3)), sparse=dice.chance(0.5),
     )  # fmt: skip
     first = dice.weighted({"": 6, "floating": 1.5, "planar": 1})
+    # a single mass without inertia that turns freely moves without effort
+    style = replace(style, sparse=style.sparse and first != "floating" and "spherical" not in kinds)
     parts = grown(sketch, style, dice.choice((1, 2, 4, 6, 9, 12)), first)
     weighted(sketch, style, parts, set())
     elements(sketch, parts, style.plane)
