@@ -52,10 +52,16 @@ class ReflectedInputs:
         """Their product is the square, or one of the squared minors where A is short of rank both ways."""
         return self._space.reflections.pivots
 
-    def guard(self, status: Status, before: tuple[Guard, ...], columns: Sequence[Vector]) -> Guard:
-        """That the rank is `degree`, beside the lengths of the inputs' own `columns`, of usual size 1."""
+    def guards(self, status: Status, before: tuple[Guard, ...], columns: Sequence[Vector]) -> tuple[Guard, ...]:
+        """That the rank is `degree`: beside the lengths of the inputs' own `columns`, and these beside their bounds.
+
+        What bounds the length of a moment about a turned lever is several times the length; of six columns
+        together that is more than float32 can tell from a drop of the rank.
+        """
         graph = self.graph
-        squares = magnitude(graph, [dot(graph, column, column) for column in columns])
-        usual = graph.sum(squares) * Fraction(1, len(squares))
-        scale = elementary_symmetric(graph, [square / usual for square in squares], self.degree)
-        return Guard(status, graph.product(pivot / usual for pivot in self.pivots), 2, before, scale)
+        lengths = [dot(graph, column, column) for column in columns]
+        bounds = magnitude(graph, lengths)
+        usual = graph.sum(bounds) * Fraction(1, len(bounds))
+        own, largest = (elementary_symmetric(graph, [x / usual for x in xs], self.degree) for xs in (lengths, bounds))
+        directions = Guard(status, graph.product(pivot / usual for pivot in self.pivots), 2, before, own)
+        return (directions,) if own is largest else (Guard(status, own, 2, before, largest), directions)

@@ -31,25 +31,47 @@ def solvable(
 ) -> tuple[Guard, ...]:
     """The guard with `status` of the determinants of `columns`; a drop of the rank of B is named first."""
     if isinstance(forms, ReflectedInputs):
-        guard = forms.guard(status, space.guards, columns)
-        return () if guard.denominator.constant is not None else (guard,)
+        guards = forms.guards(status, space.guards, columns)
+        return tuple(guard for guard in guards if guard.denominator.constant is None)
     assert isinstance(forms, ActuationForms)
     graph, denominator = mechanics.graph, forms.denominator()
     if denominator.constant is not None:
         return ()
     if mechanics.factoring.fixed(denominator):
         return (Guard(status, denominator, 1 if forms.single else 2, space.guards),)
-    squares = magnitude(graph, [dot(graph, column, column) for column in columns])
-    scale = graph.sum(
-        graph.product(squares[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
+    own = [dot(graph, column, column) for column in columns]
+    bounds = magnitude(graph, own)
+    # what bounds a moment about a point that moves is several times the moment: of many columns together that is more
+    # than float32 can tell from a drop of the rank, so that columns count by their lengths, and these by their bounds
+    loose = len(columns) > 1 and _moves(mechanics, columns)
+    squares = own if loose else bounds
+    scale, largest = (
+        graph.sum(graph.product(xs[k] for k in subset) * forms.importance(subset) for subset in forms.subsets)
+        for xs in (squares, bounds)
     )
+    short = (Guard(status, scale, 2, space.guards, largest),) if loose else ()
     if isinstance(space, MinorSpace) and generic.rank < len(space.rows):
         scale = scale * graph.product(space.lengths)
-        return (Guard(status, forms.at_one_length(space.lengths), 2, space.guards, scale),)
+        return (*short, Guard(status, forms.at_one_length(space.lengths), 2, space.guards, scale))
     if isinstance(space, MinorSpace):
         lengths = [_square(mechanics, row) for row in mechanics.constraint_jacobian]
         scale = scale * elementary_symmetric(graph, lengths, generic.rank)
-    return (Guard(status, denominator * denominator if forms.single else denominator, 2, space.guards, scale),)
+    square = denominator * denominator if forms.single else denominator
+    return (*short, Guard(status, square, 2, space.guards, scale))
+
+
+def _moves(mechanics: Mechanics, columns: Sequence[Vector]) -> bool:
+    """Whether a coordinate occurs in the columns otherwise than in angles."""
+    moving, seen = set(mechanics.q), set[Scalar]()
+    stack = [entry for column in columns for entry in column]
+    while stack:
+        node = stack.pop()
+        if node in moving:
+            return True
+        if node not in seen and node.op not in ("sin", "cos"):
+            seen.add(node)
+            stack += node.args
+    return False
 
 
 def _square(mechanics: Mechanics, row: Vector) -> Scalar:

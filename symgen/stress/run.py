@@ -139,8 +139,8 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
         runs=runs,
         no_run=no_run,
         rule=rule,
-        failures=(*swept.failures, *wrong_units, *wrong_numbers, *complaints(runs)),
-        limits=(*swept.limits, *breaches(rule), *forms.left_out),
+        failures=(*swept.failures, *breaches(rule), *wrong_units, *wrong_numbers, *complaints(runs)),
+        limits=(*swept.limits, *forms.left_out),
     )
 
 

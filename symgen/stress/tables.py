@@ -21,7 +21,7 @@ def stress_tables(result: Stress) -> str:
     """Tables of errors, statuses, units and the long run."""
     sizes = ", ".join(f"{'δ' if key == 'delta' else key} = {value}" for key, value in result.sizes.items())
     sections = [f"{result.model}   {sizes}   ({result.engine})", _families(result), _forms(result), _statuses(result)]
-    sections += [_units(result), _runs(result)]
+    sections += [_breaches(result), _units(result), _runs(result)]
     if result.searched.nowhere:
         sections.append("\n".join(f"  {line}" for line in ("not singular:", *result.searched.nowhere)))
     for title, lines in (("known limits:", result.limits), ("WRONG:", result.failures)):
@@ -46,6 +46,19 @@ def _families(result: Stress) -> str:
         "\n  * symgen's largest error in units of what rounding the inputs and the result does; 16 are allowed"
         + (choices if found.partitions else "")
     )
+
+
+def _breaches(result: Stress) -> str:
+    """The kernels that break the rule of statuses, with the worst state of each; nothing where none does."""
+    rows = []
+    for held in result.rule:
+        worst = max(held.beyond, key=lambda case: case.units, default=None)
+        case = worst or next(iter(held.unexplained), None)
+        if case is not None:
+            counts = (held.states, held.answered, len(held.beyond), f"{held.largest:.2g}", len(held.unexplained))
+            rows.append([SHORTEST[held.quantity], held.scalar, *map(str, counts), case.where])
+    titles = ("the rule is broken by", "", "states", "status 0", "beyond", "units", "unexplained", "worst, first")
+    return columns(titles, rows, "<<>>>>><") if rows else ""
 
 
 def _forms(result: Stress) -> str:
