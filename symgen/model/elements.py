@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from symgen.model.combine import divided, minus, negated, plus, times
 from symgen.model.declarations import is_coordinate
 from symgen.model.expression import Call, Expression, Name, Number, Power
 from symgen.model.inputs import FORCES, chosen_action, distance, point_name, shortening, working_rate
+from symgen.model.lengths import check_length
 from symgen.model.mechanism import ZERO
 from symgen.model.model import Force
 from symgen.model.reading import entries, items, member
@@ -33,7 +34,9 @@ class Fit:
     what: str
 
 
-def read_springs(scope: Scope, tree: MappingNode) -> tuple[Expression, tuple[Force, ...], tuple[Fit, ...]]:
+def read_springs(
+    scope: Scope, tree: MappingNode, defaults: Mapping[str, float]
+) -> tuple[Expression, tuple[Force, ...], tuple[Fit, ...]]:
     """The energy of the springs, the forces of their dampers, and what their units must fit."""
     energy: Expression = ZERO
     dampers: list[Force] = []
@@ -43,6 +46,9 @@ def read_springs(scope: Scope, tree: MappingNode) -> tuple[Expression, tuple[For
         stretch, rate = _stretch(scope, key, node, what)
         stiffness = scope.expression(member(node, "stiffness"), f"the stiffness of {what}", PARAMETERS)
         length = scope.expression(member(node, "length"), f"the length of {what}", PARAMETERS) or ZERO
+        if member(node, "between") is not None:
+            remedy = "write its size: the distance at which the spring is at rest"
+            check_length(scope, member(node, "length"), length, defaults, f"the length of {what}", remedy, or_zero=True)
         damping = scope.expression(member(node, "damping"), f"the damping of {what}", PARAMETERS)
         if member(node, "stiffness") is None and member(node, "damping") is None:
             scope.wrong(f"{what} has neither `stiffness` nor `damping`", "give one of them, or both", key.span)

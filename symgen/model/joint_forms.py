@@ -54,6 +54,7 @@ class JointForms:
 def declare_joints(scope: Scope, tree: MappingNode) -> tuple[JointCoordinate, ...]:
     """Enters the frames of the joints, and those of their coordinates that are not declared elsewhere."""
     coordinates = []
+    moving: dict[str, ScalarNode] = {}
     for key, node in entries(tree.get("joints")):
         child = member(node, "child")
         scope.declare(child if isinstance(child, ScalarNode) else key, "frame")
@@ -68,6 +69,10 @@ def declare_joints(scope: Scope, tree: MappingNode) -> tuple[JointCoordinate, ..
             remedy = "give `coordinate: name`, or `coordinates: [...]`: lengths first, then the angle or the quaternion"
             scope.wrong(message, remedy, key.span)
         for position, (item, unit) in enumerate(zip(named, units, strict=False)):
+            if item.value in moving:
+                _moved_twice(scope, item, key, moving[item.value])
+                continue
+            moving[item.value] = key
             if scope.kinds.get(item.value) == "coordinate":
                 continue
             if scope.declare(item, "coordinate"):
@@ -75,6 +80,19 @@ def declare_joints(scope: Scope, tree: MappingNode) -> tuple[JointCoordinate, ..
                 start = Fraction(int(position == len(units) - 4)) if unit is None else None
                 coordinates.append(JointCoordinate(item.value, unit, f"of {key.value}", start, item.span))
     return tuple(coordinates)
+
+
+def _moved_twice(scope: Scope, item: ScalarNode, joint: ScalarNode, other: ScalarNode) -> None:
+    name = item.value
+    if other is joint:
+        scope.wrong(f"`{name}` stands twice in the joint `{joint.value}`", "name each coordinate once", item.span)
+        return
+    scope.wrong(
+        f"`{name}` is a coordinate of the joint `{other.value}` (line {other.span.line}) already",
+        f"give `{joint.value}` a coordinate of its own; joints that move together are coupled by a row under "
+        "`constraints`, or by a frame with the other's coordinate in its `rotation` or `translation`",
+        item.span,
+    )
 
 
 def read_joints(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Literal
 
@@ -13,6 +13,7 @@ from symgen.model.formulas import Form, Formula, Formulas
 from symgen.model.frames import NEED_FRAME, frame_name
 from symgen.model.inputs import point_name, squared_distance
 from symgen.model.kinematics import Kinematics
+from symgen.model.lengths import check_length
 from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, component, is_component
 from symgen.model.model import ConstraintRow, Coordinate, Definition
 from symgen.model.reading import entries, items, member, text_of
@@ -39,9 +40,14 @@ class Rows:
     """Rows of loops and wheels, without those that hold in every configuration of a plane mechanism."""
 
     def __init__(
-        self, scope: Scope, mechanism: Mechanism, coordinates: tuple[Coordinate, ...], known: tuple[Definition, ...]
+        self,
+        scope: Scope,
+        mechanism: Mechanism,
+        coordinates: tuple[Coordinate, ...],
+        known: tuple[Definition, ...],
+        defaults: Mapping[str, float],
     ) -> None:
-        self._scope = scope
+        self._scope, self._defaults = scope, defaults
         self._formulas = Formulas(coordinates, {definition.name: definition.value for definition in known})
         self._kinematics: Kinematics[Formula, Form] = Kinematics(mechanism, self._formulas)
 
@@ -85,6 +91,10 @@ class Rows:
             what = f"the wheel `{key.value}`"
             frame = frame_name(self._scope, member(node, "frame"), f"`frame` of {what}")
             radius = self._scope.expression(member(node, "radius"), f"the radius of {what}", PARAMETERS)
+            remedy = "write its size; which way the wheel turns is said by the axis of its joint"
+            check_length(
+                self._scope, member(node, "radius"), radius, self._defaults, f"the radius of {what}", remedy
+            )
             if frame is not None and radius is not None and frame in self._kinematics.frames:
                 axle = _main_axis(text_of(member(node, "axle")), 1)
                 yield from self._named(key, self._rolling(frame, radius, axle), ("along", "across"))
@@ -96,6 +106,8 @@ class Rows:
             length = self._scope.expression(member(node, "length"), f"the length of {what}", PARAMETERS)
             if member(node, "length") is None:
                 self._scope.wrong(f"{what} has no `length`", "add `length`, the distance of the points", node.span)
+            remedy = "write its size; points that meet are joined with `type: point`"
+            check_length(self._scope, member(node, "length"), length, self._defaults, f"the length of {what}", remedy)
             if length is not None:
                 yield "length", minus(squared_distance(one, other), Power(length, TWO))
             return

@@ -52,7 +52,8 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     ranges = read_ranges(scope, tree)
     parameters = read_parameters(scope, tree, ranges)
     definitions = read_definitions(scope, tree)
-    joints = read_joints(scope, tree, joint_coordinates, default_values(parameters))
+    defaults = default_values(parameters)
+    joints = read_joints(scope, tree, joint_coordinates, defaults)
     mechanism = read_mechanism(scope, tree, joints.frames)
     _check_mass(scope, tree)
     kinetic_read = scope.expression(tree.get("kinetic_energy"), "the kinetic energy", STATE)
@@ -62,7 +63,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     inputs = read_inputs(scope, tree)
     allocation, settings = read_allocation(scope, tree, inputs, parameters, ranges)
     forces = read_applied_forces(scope, tree)
-    springs, dampers, fits = read_springs(scope, tree)
+    springs, dampers, fits = read_springs(scope, tree, defaults)
     friction, fits_of_friction = read_friction(scope, tree)
     elements = read_forces(scope, tree)
     used = [
@@ -70,7 +71,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         *(coefficient for column in inputs for _, coefficient in column.acts_on), *_placing(mechanism),
     ]  # fmt: skip
     coordinates = read_coordinates(tree, ranges, definitions, used, joint_coordinates)
-    made = Rows(scope, mechanism, coordinates, without_components(definitions))
+    made = Rows(scope, mechanism, coordinates, without_components(definitions), defaults)
     constraints = (*written, *made.of_loops(tree), *joints.rows, *made.of_wheels(tree))
     names = tuple(coordinate.name for coordinate in coordinates)
     whole = not scope.mistakes
