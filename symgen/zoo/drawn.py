@@ -18,7 +18,7 @@ from symgen.zoo.tape import Program
 
 # what rounding leaves at a start that was measured in floats
 ROUNDING = 1e-9
-PLACES = 6
+PLACES, FURTHER = 6, 24
 
 
 class Drawn:
@@ -77,10 +77,11 @@ class Drawn:
 
     @cached_property
     def singular(self) -> bool:
-        """Whether no short step along the constraints stays near its tangent: the linkage closes in this pose alone,
-        or rows have no gradients where they hold."""
+        """Whether short steps along the constraints leave their tangent at every place that is found: the linkage closes
+        in single poses, or rows have no gradients where they hold."""
         walker = Walker(self.system, self._evaluate, self.start, Dice("steps"))
-        return not walker.is_regular(np.array(list(self.start.values())), self.parameters)
+        places = [np.array(list(self.start.values())), *walker.points(self.parameters, FURTHER)]
+        return not any(walker.is_regular(q, self.parameters) for q in places)
 
     @cached_property
     def undetermined(self) -> bool:

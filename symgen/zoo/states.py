@@ -22,6 +22,8 @@ CLOSED = 1e-12
 SAME = 1e-8
 # a step that shows whether V is smooth, and how much further than its square Newton's method may lead
 SHORT, STRAY = 1e-4, 1e3
+# rows whose gradients vanish on V do so to the root of what rounding leaves of their values
+DEPENDENT = 1e-6
 # how far rows, inputs and masses are apart at states that are compared, unless the model has none of the kind
 REGULAR = 1e-3
 # a walk stays about as near as the ranges that the documentation takes for granted
@@ -85,16 +87,31 @@ class Walker:
         return points
 
     def is_regular(self, q: Any, parameters: Mapping[str, float]) -> bool:
-        """Whether V is smooth at a configuration, of the dimension that its rows there say."""
-        free = self._free(q, parameters)
+        """Whether V is smooth at a configuration, of the dimension that its rows there say.
+
+        Rows count in the lengths that they have beside V: one whose gradient vanishes on V is none.
+        """
+        beside = [self._numbers(q + self._aside(len(q)), parameters).rows for _ in range(3)]
+        usual = np.linalg.norm(np.array(beside, dtype=float), axis=2).max(axis=0)
+        usual[usual <= NOTHING] = 1
+
+        def directions(place: Any) -> Any:
+            rows = np.array(self._numbers(place, parameters).rows, dtype=float) / usual[:, None]
+            values, free = np.linalg.svd(rows)[1:]
+            return free[int((values > DEPENDENT * values.max(initial=0.0)).sum()) :].T
+
+        free = directions(q)
         for _ in range(3):
             step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
             there = self._closed(q + SHORT * step, parameters)
             if there is None or np.abs(there - q - SHORT * step).max() > STRAY * SHORT**2:
                 return False
-            if self._rank(self._numbers(there, parameters)) != self._rank(self._numbers(q, parameters)):
+            if directions(there).shape != free.shape:
                 return False
         return bool(free.shape[1] > 0)
+
+    def _aside(self, count: int) -> Any:
+        return np.array([self._dice.uniform(-0.3, 0.3) for _ in range(count)])
 
     def _inside(self, q: Any) -> bool:
         for name, value in zip(self._system.coordinates, q, strict=True):

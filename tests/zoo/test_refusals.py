@@ -23,6 +23,8 @@ STRETCHED = {
     "kinetic_energy": "x_dot**2 + y_dot**2 + z_dot**2",
     "constraints": {"geometric": {"one": "x**2 + y**2 - 1", "two": "(x - 2)**2 + y**2 - 1"}},
 }
+# two branches that cross where the file starts, and are smooth elsewhere
+CROSSING = {**FREE, "constraints": {"geometric": {"both": "x**2 - y**2"}}}
 HELD = {"x": 0.2, "y": 0.2}
 AT_ONE = {"x": 1.0, "y": 0.0, "z": 0.1}
 UNDETERMINED = "the accelerations are undetermined: no mass moves where `.` does"
@@ -39,6 +41,8 @@ SINGULAR = "only singular configurations were found, such as x = #"
         (FREE, HELD, IMMOBILE, False),
         (STRETCHED, AT_ONE, SINGULAR, True),
         (FREE, HELD, SINGULAR, False),
+        (CROSSING, {"x": 0.0, "y": 0.0}, SINGULAR, False),
+        ({**FREE, "constraints": {"geometric": {"twice": "(x - y)**2"}}}, HELD, SINGULAR, True),
         (FREE, HELD, "`.` is reserved: a keyword of C", False),
     ],
 )
