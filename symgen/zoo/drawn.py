@@ -77,8 +77,10 @@ class Drawn:
 
     @cached_property
     def singular(self) -> bool:
-        """Whether short steps along the constraints leave their tangent at every place that is found: the linkage closes
-        in single poses, or rows have no gradients where they hold."""
+        """Whether short steps along the constraints leave their tangent at every place that is found.
+
+        So it is where a linkage closes in single poses, or rows have no gradients where they hold.
+        """
         walker = Walker(self.system, self._evaluate, self.start, Dice("steps"))
         places = [np.array(list(self.start.values())), *walker.points(self.parameters, FURTHER)]
         return not any(walker.is_regular(q, self.parameters) for q in places)
