@@ -191,7 +191,9 @@ class Walker:
         if not control.size:
             return 0
         lengths = np.linalg.norm(control, axis=0)
-        lengths[lengths == 0] = 1
+        # what rounding leaves of an input that moves nothing has no direction
+        idle = lengths <= NOTHING * lengths.max(initial=0.0)
+        control[:, idle], lengths[idle] = 0, 1
         return rank_of((null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
 
     def _state(self, q: Any, at: Numbers, parameters: Mapping[str, float]) -> State:

@@ -12,11 +12,13 @@ import yaml
 
 from symgen.pipeline import generate
 from symgen.results import Options
+from symgen.zoo.dice import Dice
 from symgen.zoo.expressions import FUNCTIONS, NotReadError, read_expression
 from symgen.zoo.fields import Balls, Floats, precision
 from symgen.zoo.mechanics import equations
 from symgen.zoo.reader import System
 from symgen.zoo.run import run_command
+from symgen.zoo.states import Walker
 from symgen.zoo.tape import Tape
 from symgen.zoo.witness import Witness
 
@@ -231,3 +233,23 @@ def test_rows_that_hold_in_every_configuration_have_no_multipliers(tmp_path: Pat
     checked = Witness(HINGE).check(tmp_path, count=4)
     assert checked.states == 4
     assert checked.findings == ()
+
+
+RADIAL = """
+model: radial
+joints:
+  turn: {type: revolute, axis: z, coordinate: a}
+  slide: {type: prismatic, axis: x, coordinate: s}
+bodies: {turn: {mass: 2, com: [0.3, 0, 0], inertia: {zz: 0.1}}, slide: {mass: 1}}
+points: {rim: {frame: turn, at: [0.32, 0, 0]}}
+inputs:
+  pull: {point: rim, direction: [1, 0, 0], axes: turn}
+  push: {joint: s}
+outputs: [inverse_dynamics]
+"""
+
+
+def test_what_rounding_leaves_of_an_idle_input_spans_nothing() -> None:
+    witness = Witness(RADIAL, {"a": 0.7})
+    _, ranks = Walker(witness._system, witness._evaluate, {"a": 0.7}, Dice("radial")).states({}, 6)
+    assert ranks.actuation == 1
