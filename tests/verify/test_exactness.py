@@ -45,12 +45,18 @@ def kernel_of(model: Model, quantity: str, form: str) -> Kernel:
     return kernel
 
 
-@pytest.mark.parametrize("form", ["schur_qr", "nullspace", "kkt"])
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize(
+    ("name", "form"),
+    [
+        ("cranks", "schur_qr"),
+        ("cranks", "nullspace"),
+        ("gears", "schur_ldl"),
+        ("gears", "nullspace"),
+        ("gears", "kkt"),
+    ],
+)
 def test_the_same_function_is_known(name: str, form: str) -> None:
     model = MODELS[name]
-    if (name, form) == ("cranks", "kkt"):
-        pytest.skip("the form needs independent rows")
     expected = Expected(model, ("multipliers",), 8, lambda _: None)
     assert difference(kernel_of(model, "multipliers", form), expected) == ""
 
