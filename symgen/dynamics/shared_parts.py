@@ -8,6 +8,7 @@ factorization, 1969).
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from heapq import heapify, heappop, heappush
 from typing import TypeAlias
 
 from symgen.dynamics.terms import Term, product_of, sum_of, terms_of
@@ -71,11 +72,15 @@ class _Sharing:
                 for pair in _pairs(terms):
                     places.setdefault(pair, set()).add(node)
         found: dict[Scalar, _Pair] = {}
-        often = {pair for pair, nodes in places.items() if len(nodes) > 1}
-        while often:
-            best = max(often, key=lambda pair: (len(places[pair]), *_age(pair)))
-            often.discard(best)
-            if len(places[best]) < 2:
+        waiting = [_ranked(pair, nodes) for pair, nodes in places.items() if len(nodes) > 1]
+        heapify(waiting)
+        while waiting:
+            count, *_, best = heappop(waiting)
+            held = places.get(best, ())
+            if len(held) != -count:
+                # fewer sums hold it than when it was ranked; where more do, it was ranked again
+                if 1 < len(held) < -count:
+                    heappush(waiting, _ranked(best, held))
                 continue
             whole = self._graph.stand_in(f"shared part {self._ops} {len(found)}")
             found[whole] = best
@@ -88,7 +93,7 @@ class _Sharing:
                     nodes = places.setdefault(pair, set())
                     nodes.add(node)
                     if len(nodes) > 1:
-                        often.add(pair)
+                        heappush(waiting, _ranked(pair, nodes))
         return found
 
     def _built(
@@ -121,8 +126,10 @@ def _pair(one: Term, other: Term) -> _Pair:
     return (1, a), (sign * second, b)
 
 
-def _age(pair: _Pair) -> tuple[int, int]:
-    return -pair[0][1].serial, -pair[1][1].serial
+def _ranked(pair: _Pair, nodes: Collection[Scalar]) -> tuple[int, int, int, int, _Pair]:
+    """A pair behind those that more sums hold, and behind older ones; sums before differences."""
+    (_, a), (sign, b) = pair
+    return -len(nodes), a.serial, b.serial, -sign, pair
 
 
 def _with(terms: Sequence[Term], pair: _Pair, whole: Scalar) -> list[Term]:

@@ -8,13 +8,11 @@ squares forces each of its terms to 0: if a measure becomes 0 with them, it vani
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import combinations
 
 from symgen.dynamics.admission.residues import Residues
+from symgen.dynamics.admission.vanishing import Vanishing
 from symgen.dynamics.forms.definite import Definite
-from symgen.graph.fingerprint import PRIME
 from symgen.graph.scalar import Scalar
-from symgen.graph.traverse import topological
 
 # a determinant may stand beside its square
 POWERS = ((1, 1), (2, 1), (1, 2))
@@ -28,7 +26,7 @@ class Proof:
         self._residues = Residues(parameters)
         self._measures = list(measures)
         self._known: dict[Scalar, bool] = {}
-        self._inside: dict[Scalar, frozenset[int]] = {}
+        self._vanishing = Vanishing()
 
     def unproved(self, divisors: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """Those of the scalars for which no rule was found.
@@ -79,17 +77,9 @@ class Proof:
             if any(self._residues.proportional(node, measure, powers, self._never_zero) for powers in POWERS):
                 self._measures.append(node)
                 return True
-        zeros = self._forced(node)
-        return any(self._vanishes_with(measure, zeros) for measure in self._measures)
-
-    def _vanishes_with(self, measure: Scalar, zeros: Sequence[Scalar]) -> bool:
-        if measure not in self._inside:
-            self._inside[measure] = frozenset(node.value for node in topological([measure]))
-        inside = self._inside[measure]
-        met = any(zero.value in inside or -zero.value % PRIME in inside for zero in zeros)
-        # the sine of a sum may stand in the measure without those of its parts
-        sines = sum(zero.op == "sin" for zero in zeros)
-        return (met or sines > 1) and _becomes_zero(measure, zeros)
+        for measure in self._measures:
+            self._vanishing.add(measure)
+        return self._vanishing.any_where(self._forced(node), self._measures)
 
     def _never_zero(self, parameter: str) -> bool:
         return self._definite.holds(self._definite.parameter(parameter))
@@ -134,45 +124,3 @@ def _added_to(node: Scalar) -> Scalar | None:
         if signed.op == "copysign" and signed.args[1] is (rest if node.op == "add" else -rest):
             return signed.args[0]
     return None
-
-
-def _becomes_zero(node: Scalar, zeros: Sequence[Scalar]) -> bool:
-    """Whether the scalar is 0 where the given ones are."""
-    values = {value for zero in zeros for value in (zero.value, -zero.value % PRIME)}
-    angles = [_angle(zero) for zero in zeros if zero.op == "sin"]
-    sums = [*angles, *(_sum(a, b, sign) for a, b in combinations(angles, 2) for sign in (1, -1))]
-    gone: dict[Scalar, bool] = {}
-    for inner in topological([node]):
-        below = [gone[argument] for argument in inner.args]
-        match inner.op:
-            case "mul":
-                gone[inner] = any(below)
-            case "add" | "sub":
-                gone[inner] = all(below)
-            case "neg" | "abs" | "sqrt" | "div":
-                gone[inner] = below[0]
-            case "sin":
-                # sin x = sin y = 0 makes sin(x + y) = 0
-                angle = _angle(inner)
-                gone[inner] = any(angle == known or _negative(angle) == known for known in sums)
-            case _:
-                gone[inner] = inner.is_zero
-        gone[inner] = gone[inner] or inner.value in values
-        if inner.op == "mul" and not gone[inner]:
-            powers = inner.graph.products.monomial(inner)[1]
-            gone[inner] = any(power > 0 and factor.value in values for factor, power in powers.items())
-    return gone[node]
-
-
-def _angle(sine: Scalar) -> dict[int, int]:
-    """The angle of a sine, as whole multiples of leaves given by their fingerprints."""
-    return {leaf.value: count for leaf, count in sine.graph.angle_form(sine.args[0]).items()}
-
-
-def _sum(a: dict[int, int], b: dict[int, int], sign: int) -> dict[int, int]:
-    total = {leaf: a.get(leaf, 0) + sign * b.get(leaf, 0) for leaf in (*a, *b)}
-    return {leaf: count for leaf, count in total.items() if count}
-
-
-def _negative(a: dict[int, int]) -> dict[int, int]:
-    return {leaf: -count for leaf, count in a.items()}
