@@ -171,9 +171,16 @@ class Fallback:
         for way in self._inaccurate[quantity][:CARRYING]:
             self._progress(f"where {quantity} loses digits, {way.choice.way}")
             plain = draft.kernels_along(way, tuple(draft.kernels(quantity)))
-            lost = {s: losing(kernel, sincos[s], s, expected) for s, kernel in plain.items() if s in expected.scalars}
-            marks = tuple((s, mark(plain[s], targets)) for s, targets in lost.items() if targets)
-            way = replace(way, choice=replace(way.choice, compensated=marks))
+            lost: dict[tuple[object, ...], frozenset[str]] = {}
+            marks: list[tuple[Scalar, str]] = []
+            for scalar, kernel in plain.items():
+                # shares are those of eps: but for thresholds, both types lose digits in the same statements
+                same = tuple((statement.targets, statement.operation) for statement in kernel.statements)
+                if same not in lost and scalar in expected.scalars:
+                    lost[same] = losing(kernel, sincos[scalar], scalar, expected)
+                if targets := lost.get(same):
+                    marks.append((scalar, mark(kernel, targets)))
+            way = replace(way, choice=replace(way.choice, compensated=tuple(marks)))
             carrying = draft.kernels_along(way, tuple(plain))
             length = max(len(kernel.statements) for kernel in carrying.values())
             if marks and length <= LONGEST:

@@ -30,7 +30,7 @@ def adjoints(kernel: Kernel, values: Mapping[str, float], weights: Sequence[floa
             operands = statement.operands
             slopes = _slopes(statement, [value(x) for x in operands], [values[target] for target in statement.targets])
             for operand, slope in zip(operands, slopes, strict=True):
-                add(operand, math.fsum(g * s for g, s in zip(given, slope, strict=True)))
+                add(operand, sum(g * s for g, s in zip(given, slope, strict=True)))
     return found
 
 
