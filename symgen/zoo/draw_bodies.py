@@ -52,7 +52,7 @@ def planar_bodies(dice: Dice) -> Description:
         room = len(sketch.start) - rows - 1
         if room < 1:
             break
-        rows += sketch.that_moves(partial(planar_loop, sketch, parts, index, room), oddly=0.6)
+        rows += sketch.that_moves(partial(planar_loop, sketch, parts, index, room), oddly=0.15)
     weighted(sketch, style, parts, closed_at(sketch, parts))
     if rows and dice.chance(0.15):
         surplus(sketch)
@@ -75,7 +75,7 @@ def spatial_bodies(dice: Dice) -> Description:
     parts = grown(sketch, style, dice.whole(4, 12), first)
     free = len(sketch.start) - norms(parts)
     for index in range(dice.weighted({1: 5, 2: 3, 3: 2, 4: 1.5})):
-        free -= sketch.that_moves(partial(spatial_loop, sketch, parts, index, free), oddly=0.2)
+        free -= sketch.that_moves(partial(spatial_loop, sketch, parts, index, free), oddly=0.05)
     weighted(sketch, style, parts, closed_at(sketch, parts))
     elements(sketch, parts, "")
     inputs(sketch, parts, free)

@@ -37,7 +37,7 @@ def planar_energies(dice: Dice) -> Description:
         for link in links:
             sketch.row(f"hold_{link.coordinate}", link.coordinate)
     for index in range(loops):
-        sketch.that_moves(partial(_loop, sketch, links, index), oddly=0.8)
+        sketch.that_moves(partial(_loop, sketch, links, index), oddly=0.15)
     _potentials(sketch, links)
     _surplus(sketch)
     _inputs(sketch, links)

@@ -18,6 +18,8 @@ from symgen.zoo.urdf_file import expanded
 
 # rows that are none, and rows that are as good as dependent
 FLAT, DEPENDENT = 1e-12, 1e-3
+# a coordinate that no motion changes
+HELD = 1e-7
 TRIES = 8
 
 
@@ -52,7 +54,7 @@ class Sketch:
     def parameter(self, plain: str, value: str, positive: bool = True) -> str:
         """A parameter, or its value as a literal."""
         # 1, 2, 4 and 1/2 are pure numbers wherever they stand, never lengths or masses
-        if value not in ("1", "2", "4", "0.5") and self.dice.chance(0.2):
+        if float(value) not in (1, 2, 4, 0.5) and self.dice.chance(0.2):
             return value if not value.startswith("-") else f"({value})"
         name = self.name(plain)
         entry: dict[str, Any] = {"value": value}
@@ -95,8 +97,8 @@ class Sketch:
         flat = self.values(system, [entry for row in system.frames.pose(frame).axes for entry in row])
         return [flat[0:3], flat[3:6], flat[6:9]]
 
-    def rank(self, away: float = 0.0) -> int:
-        """The rank of the constraint Jacobian at the start, or at a place that is about so far away from it."""
+    def rows(self, away: float = 0.0) -> Any:
+        """Rows of length 1 of the constraint Jacobian at the start, or at a place that is about so far away from it."""
         system = System(expanded(self.blocks, self.files))
         rows = equations(system).rows
         values = {name: value + self.dice.uniform(-away, away) for name, value in self.start.items()}
@@ -104,16 +106,19 @@ class Sketch:
         for name, node in system.parameters.items():
             values[name] = system.tape.evaluate([node], values, Floats())[0]
         jacobian = np.array([system.tape.evaluate(row, values, Floats()) for row in rows])
-        if not jacobian.size:
-            return 0
+        jacobian = jacobian.reshape(-1, len(system.coordinates))
         lengths = np.linalg.norm(jacobian, axis=1)
-        steep = jacobian[lengths > FLAT] / lengths[lengths > FLAT, None]
-        return int((np.linalg.svd(steep, compute_uv=False) > DEPENDENT).sum()) if steep.size else 0
+        return jacobian[lengths > FLAT] / lengths[lengths > FLAT, None]
 
     def locked(self) -> bool:
-        """Whether rows depend on each other at the start that do not elsewhere: what they hold cannot move, or is
-        singular there."""
-        return self.rank() < self.rank(away=0.2)
+        """Whether rows depend on each other at the start that do not elsewhere, or hold more than there is to hold.
+
+        Such a loop closes in single poses, by the last digits of its lengths.
+        """
+        here, there = self.rows(), self.rows(away=0.2)
+        if _rank(here) < _rank(there):
+            return True
+        return _rank(here) < len(there) and bool((np.abs(null_space(here)).max(axis=0, initial=0) < HELD).any())
 
     def that_moves(self, close: Callable[[], int], oddly: float) -> int:
         """Tries loops until one leaves the mechanism able to move, and now and then takes one that does not.
@@ -143,3 +148,12 @@ class Sketch:
         name = self.name(plain)
         self.block("constraints").setdefault("geometric", {})[name] = text
         return name
+
+
+def _rank(rows: Any) -> int:
+    return int((np.linalg.svd(rows, compute_uv=False) > DEPENDENT).sum()) if rows.size else 0
+
+
+def null_space(rows: Any) -> Any:
+    """Directions that rows leave free, as rows."""
+    return np.linalg.svd(rows)[2][_rank(rows) :] if rows.size else np.eye(rows.shape[1])
