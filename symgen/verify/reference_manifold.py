@@ -14,7 +14,6 @@ from symgen.verify.reference_linear import (
     RANK_NOISE,
     RANK_SIGNAL,
     column,
-    columns_of,
     identity,
     norm,
     numerical_rank,
@@ -201,8 +200,11 @@ def _ranks_at(
         return None
     projected = at.control - inverse * (at.constraints * at.control)
     # an input that only loads the constraints leaves rounding alone, which is no direction of motion
-    moving = [j for j in range(system.m) if _size(projected, j) > _size(at.control, j) * 2.0**noise]
-    actuation = numerical_rank(columns_of(projected, moving), noise, signal) if moving else 0
+    sizes = [_size(at.control, j) for j in range(system.m)]
+    moving = [j for j in range(system.m) if _size(projected, j) > sizes[j] * 2.0**noise]
+    # units of inputs are no measure of each other
+    entries = [projected[i, j] / sizes[j] for i in range(system.n) for j in moving]
+    actuation = numerical_rank(arb_mat(system.n, len(moving), entries), noise, signal) if moving else 0
     return None if actuation is None else Ranks(constraints, geometric, actuation)
 
 

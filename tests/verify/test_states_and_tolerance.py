@@ -73,6 +73,13 @@ def test_states_stay_where_the_inputs_reach_no_more_than_on_the_constraints() ->
         assert norm(residual) < 1e-14
 
 
+@pytest.mark.parametrize("gain", ["5e-38", "1", "2e41"])
+def test_units_of_inputs_are_no_measure_of_each_other(gain: str) -> None:
+    inputs = {"F": {"x": f"{gain}*x", "y": gain}, "G": {"x": "3", "y": "y"}}
+    reference = Reference(build("gains", "x y", "x_dot**2 + y_dot**2", inputs=inputs))
+    assert reference.ranks.actuation == 2
+
+
 def test_joints_that_cannot_move_have_no_rate() -> None:
     # a triangle of two cranks is rigid beside a slider: what projection leaves of its rates is noise
     reference = Reference(
