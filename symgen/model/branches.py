@@ -292,14 +292,14 @@ class _Search:
     def _held(self, found: Assembly) -> tuple[int, ...]:
         """Coordinates that no admissible motion changes: along the branch of the declared start, else on any."""
         meant = bool(self._start) and found.start is None
-        places = self._along(found.places[0]) if meant else [*found.places[:WALK], *found.others]
+        places = self._along(found.places[0]) if meant else [*found.places, *found.others]
         if len(places) < ENOUGH_HELD or not found.ranks.constraints:
             return ()
         held = set(range(self._n))
         r = len(self._mechanics.constraints)
         for place in places:
             evaluated = self._rows(place.q)
-            if evaluated is None:
+            if evaluated is None or not held:
                 return ()
             rows = self._scales.scaled(evaluated)[:r]
             motions = null_space([[row.get(j, 0.0) for j in range(self._n)] for row in rows], self._n)

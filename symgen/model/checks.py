@@ -15,7 +15,7 @@ from symgen.model.feasibility import check_motion
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Model
 from symgen.model.names import shown_names
-from symgen.model.reading import key_span, member
+from symgen.model.reading import entries, key_span, member
 from symgen.model.redundancy import check_redundancy
 from symgen.model.scope import Scope
 from symgen.model.source import MappingNode
@@ -93,8 +93,11 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         mechanics = mechanics.having(mechanics.defaults, rows)
     massive = model.mechanism.has_mass and (kinetic is not None or tree.get("kinetic_energy") is None)
     if whole and (massive or kinetic is not None) and len(scope.mistakes) == before:
-        found = branches(mechanics, model.inputs, {name: float(value) for name, value in model.configuration})
-        _add(scope, check_motion(mechanics, found, model.independent_velocities, _block_spans(tree)))
+        start = {name: float(value) for name, value in model.configuration}
+        found = branches(mechanics, model.inputs, start)
+        written_out = {key.value for key, _ in entries(tree.get("configuration"))}
+        declared = {name: value for name, value in start.items() if name in written_out}
+        _add(scope, check_motion(mechanics, found, model.independent_velocities, declared, _block_spans(tree)))
         if isinstance(found, Assembly) and len(scope.mistakes) == before:
             if model.allocation is not None:
                 _add(scope, check_redundancy(mechanics, found, model.inputs, model.allocation))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.assembly import Assembly, Place
@@ -10,6 +10,7 @@ from symgen.model.body_checks import inertia_span
 from symgen.model.branches import Open
 from symgen.model.dense import Rows, is_positive, null_space, rank
 from symgen.model.mechanics import Mechanics
+from symgen.model.model import Coordinate
 from symgen.model.names import counted, shown_names
 
 # Configurations at which masses are looked at.
@@ -25,14 +26,17 @@ HELD = 1e-7
 
 MOST_SHOWN = 6
 
+FAR = 0.5  # rad, or of half a range, that a declared start is moved by
+
 
 def check_motion(
     mechanics: Mechanics,
     found: Assembly | Open | None,
     independent: tuple[str, ...],
+    declared: Mapping[str, float],
     spans: dict[str, Span | None],
 ) -> Iterator[Mistake | Notice]:
-    """What is wrong with the mechanism as a whole; `spans` has the places of the blocks to point at."""
+    """What is wrong with the mechanism as a whole; `declared` is its start, `spans` are places to point at."""
     if not isinstance(found, Assembly):
         yield _no_configuration(mechanics, found, spans["geometric"])
         return
@@ -57,6 +61,7 @@ def check_motion(
     regular = [(list(place.q), mechanics.jacobian(place.q)) for place in found.places[:SAMPLES]]
     yield from _check_masses(mechanics, [*regular, *_further(mechanics, found)], spans["kinetic_energy"])
     yield from _held(mechanics, found, spans["constraints"])
+    yield from _far_start(mechanics, found, declared, spans["configuration"])
     yield from _other_branches(mechanics, found, spans["configuration"])
     if independent:
         yield from _check_independent(mechanics, regular, independent, n - rank, spans["independent_velocities"])
@@ -81,6 +86,31 @@ def _no_configuration(mechanics: Mechanics, found: Open | None, span: Span | Non
         return Mistake(message, remedy, span)
     row = mechanics.geometric[found.row]
     return Mistake(f"{message}; `{row.name}` stays at {found.value:.3g} in the nearest one", remedy, row.span or span)
+
+
+def _far_start(
+    mechanics: Mechanics, found: Assembly, declared: Mapping[str, float], span: Span | None
+) -> Iterator[Notice]:
+    """That the declared start is far from closing: what it leads to may be another assembly than the one meant."""
+    if found.start is not None or not mechanics.geometric:
+        return
+    moved = [
+        (c.name, declared[c.name], value)
+        for c, value in zip(mechanics.coordinates, found.places[0].q, strict=True)
+        if c.name in declared and abs(value - declared[c.name]) > FAR * (1.0 if c.is_angle else _width(c))
+    ]
+    if moved:
+        listed = ", ".join(f"{name} = {value:.3g} in place of {given:.3g}" for name, given, value in moved[:MOST_SHOWN])
+        more = ", ..." if len(moved) > MOST_SHOWN else ""
+        yield Notice(
+            f"the start does not satisfy the geometric constraints, what it leads to is far from it: {listed}{more}; a "
+            "start that nearly closes the loops says which assembly is meant",
+            span,
+        )
+
+
+def _width(coordinate: Coordinate) -> float:
+    return float(coordinate.range[1] - coordinate.range[0]) / 2
 
 
 def _other_branches(mechanics: Mechanics, found: Assembly, span: Span | None) -> Iterator[Notice]:
