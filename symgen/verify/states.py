@@ -121,9 +121,15 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
     least = _least_measures(reference, points[:TYPICAL_POINTS], usual)
     last: list[Any] | None = None
     kept = {True: 0, False: 0}
+    met: list[tuple[float, ...]] = []
     for index in range(2 * len(points)):
-        if index == len(points) and (sum(kept.values()) >= FEWEST_STATES or not system.r_geometric):
-            return
+        if index == len(points):
+            if sum(kept.values()) >= FEWEST_STATES or not system.r_geometric:
+                return
+            if met and not sum(kept.values()):
+                # where loops stand still measures are the same all along a branch, and may be small
+                largest = map(max, zip(*met, strict=True))
+                least = tuple(min(low, most / 10) for low, most in zip(least, largest, strict=True))
         exact = _parameters(varied, generator, vary=index > 0)
         parameters = [float(x) for x in exact]
         if index >= len(points):
@@ -143,7 +149,7 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
         place = _settled(q, [c.range for c in reference.model.coordinates])
         # what lies outside is rarely needed
         needed = _measured(reference) if in_range else ()
-        regular = _regular(reference, place, parameters, typical, least, kept[in_range], generator, needed)
+        regular = _regular(reference, place, parameters, typical, least, met, kept[in_range], generator, needed)
         if regular is None:
             continue
         last = q
@@ -240,11 +246,12 @@ def _regular(
     parameters: Sequence[float],
     typical: Sequence[float],
     least: Sequence[float],
+    met: list[tuple[float, ...]],
     index: int,
     generator: random.Random,
     needed: Sequence[str],
 ) -> _Regular | None:
-    """A state at q with what is `needed` of it, or None near a singularity."""
+    """A state at q with what is `needed` of it, or None near a singularity; adds to the measures that were `met`."""
     model = reference.model
     rates = [generator.uniform(*map(float, c.rate_range)) for c in model.coordinates]
     accelerations = [generator.uniform(*map(float, c.acceleration_range)) for c in model.coordinates]
@@ -262,6 +269,8 @@ def _regular(
         values = _values(reference, state, ("singularity", "constraint_jacobian", *needed))
     except ReferenceValueError:
         return None
+    if all(map(isfinite, values["singularity"])):
+        met.append(values["singularity"])
     if not all(x >= low and isfinite(x) for x, low in zip(values["singularity"], least, strict=True)):
         return None
     # the measures compare directions of rows only; a row that all but vanishes is a drop of rank, too

@@ -206,3 +206,18 @@ configuration: {a: -1.92, b: 0.63, c: 2.13, d: -2.38, e: -0.71}
     )
     samples = sample_states(Reference(model), ["mass_matrix"], 64)
     assert max(abs(x) for sample in samples for x in sample.state.q) <= 5 * pi + 0.1
+
+
+def test_where_a_loop_stands_still_nearly_stretched_its_small_measure_is_regular() -> None:
+    """It is the same wherever the machine goes; elsewhere, off the constraints, it is a thousand times as large."""
+    model = load_text(
+        "model: dyad\ncoordinates: {a: {unit: rad}, b: {unit: rad}, c: {unit: rad}}\n"
+        "kinetic_energy: a_dot**2 + b_dot**2 + c_dot**2\n"
+        "constraints:\n  geometric:\n    x: cos(a) + cos(b) - 1.9999\n    y: sin(a) + sin(b)\n"
+        "configuration: {a: 0.01, b: -0.01}\n",
+        "dyad.yaml",
+    )
+    samples = sample_states(Reference(model), ("forward_dynamics",), 8)
+    assert len(samples) == 8
+    assert all(0 < sample.measures[0] < 1e-3 for sample in samples)
+    assert len({sample.state.q[2] for sample in samples}) == 8
