@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -18,6 +19,7 @@ from symgen.model.sparse import Row
 from symgen.model.walk import names_in
 
 POINTS, OTHERS, ATTEMPTS = 2, 2, 20
+CONSTANT = 1e-6  # of a gap, that it may differ by
 VALUE = -1  # the number under which the value of a row stands beside its entries
 ZERO = Number(Fraction(0))
 
@@ -75,7 +77,9 @@ def check_empty_rows(mechanics: Mechanics) -> tuple[tuple[ConstraintRow, ...], l
                     row.span,
                 )
             )
-        elif not all(other.is_empty(i) for other in others):
+        elif not all(other.is_empty(i) for other in others) and not _stays_open(
+            mechanics, [j for j in empty if rows[j].span == row.span]
+        ):
             told.append(_vanishing(mechanics, row))
         else:
             taken[i] = replace(row, expression=ZERO)
@@ -91,6 +95,23 @@ def check_empty_rows(mechanics: Mechanics) -> tuple[tuple[ConstraintRow, ...], l
         for span, names in fitting.items()
     ]
     return tuple(taken), told
+
+
+def _stays_open(mechanics: Mechanics, together: Sequence[int]) -> bool:
+    """Whether, for other parameters, rows of one loop are the components of a gap that no motion changes in length."""
+    if any(i >= len(mechanics.geometric) for i in together):
+        return False
+    for _, parameters in mechanics.anywhere(OTHERS):
+        other = mechanics.having(parameters)
+        found = []
+        for q, _ in mechanics.anywhere(ATTEMPTS):
+            try:
+                found.append(math.hypot(*other.residuals(q, together)[0]))
+            except (ArithmeticError, ValueError):
+                continue
+        if not found or not 0 < max(found) < math.inf or max(found) - min(found) > CONSTANT * max(found):
+            return False
+    return True
 
 
 def _remedy(row: ConstraintRow) -> str:

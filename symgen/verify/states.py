@@ -121,15 +121,16 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
     least = _least_measures(reference, points[:TYPICAL_POINTS], usual)
     last: list[Any] | None = None
     kept = {True: 0, False: 0}
-    met: list[tuple[float, ...]] = []
+    met: list[tuple[Sequence[float], Sequence[float]]] = []
     for index in range(2 * len(points)):
         if index == len(points):
             if sum(kept.values()) >= FEWEST_STATES or not system.r_geometric:
                 return
             if met and not sum(kept.values()):
-                # where loops stand still measures are the same all along a branch, and may be small
-                largest = map(max, zip(*met, strict=True))
-                least = tuple(min(low, most / 10) for low, most in zip(least, largest, strict=True))
+                # where loops stand still measures and rows are the same all along a branch, and may be small
+                measures, lengths = (map(max, zip(*sizes, strict=True)) for sizes in zip(*met, strict=True))
+                least = tuple(min(low, most / 10) for low, most in zip(least, measures, strict=True))
+                typical = [min(usual, most) for usual, most in zip(typical, lengths, strict=True)]
         exact = _parameters(varied, generator, vary=index > 0)
         parameters = [float(x) for x in exact]
         if index >= len(points):
@@ -246,12 +247,13 @@ def _regular(
     parameters: Sequence[float],
     typical: Sequence[float],
     least: Sequence[float],
-    met: list[tuple[float, ...]],
+    met: list[tuple[Sequence[float], Sequence[float]]],
     index: int,
     generator: random.Random,
     needed: Sequence[str],
 ) -> _Regular | None:
-    """A state at q with what is `needed` of it, or None near a singularity; adds to the measures that were `met`."""
+    """A state at q with what is `needed` of it, or None near a singularity; adds to what was `met`: the measures of
+    ranks, and the lengths of rows."""
     model = reference.model
     rates = [generator.uniform(*map(float, c.rate_range)) for c in model.coordinates]
     accelerations = [generator.uniform(*map(float, c.acceleration_range)) for c in model.coordinates]
@@ -269,12 +271,12 @@ def _regular(
         values = _values(reference, state, ("singularity", "constraint_jacobian", *needed))
     except ReferenceValueError:
         return None
-    if all(map(isfinite, values["singularity"])):
-        met.append(values["singularity"])
+    lengths = _lengths(values["constraint_jacobian"], model.n)
+    if all(map(isfinite, (*values["singularity"], *lengths))):
+        met.append((values["singularity"], lengths))
     if not all(x >= low and isfinite(x) for x, low in zip(values["singularity"], least, strict=True)):
         return None
     # the measures compare directions of rows only; a row that all but vanishes is a drop of rank, too
-    lengths = _lengths(values["constraint_jacobian"], model.n)
     if not all(isfinite(x) and x >= REGULAR * usual for x, usual in zip(lengths, typical, strict=True)):
         return None
     return _Regular(state, tuple(shares), admissible, values)

@@ -26,8 +26,9 @@ frames:
   dock: {FRAME}
 points:
   tip: {frame: r, at: [0, 0.5, 0]}
+  knee: {frame: q, at: [0, w + 0.5, 0]}
 loops:
-  hold: {type: revolute, between: [r, dock], axis: x}
+  hold: {LOOP}
 inputs:
   drive: {joint: a}
 configuration: {a: 0.2, b: 0.9, c: 0.7}
@@ -36,8 +37,9 @@ configuration: {a: 0.2, b: 0.9, c: 0.7}
 TURNED = "{translation: [0.3, 0.9, 0.4], rotation: [[[0.36, 0.48, 0.8], 0.9273], [[0.36, 0.48, 0.8], -0.9273]]}"
 
 
-def _model(frame: str, bent: str = "0") -> Model:
-    return load_text(ARM.replace("{FRAME}", frame).replace("{BENT}", bent), "held.yaml")
+def _model(frame: str, bent: str = "0", loop: str = "{type: revolute, between: [r, dock], axis: x}") -> Model:
+    text = ARM.replace("{FRAME}", frame).replace("{BENT}", bent).replace("{LOOP}", loop)
+    return load_text(text, "held.yaml")
 
 
 def _rows(model: Model) -> dict[str, bool]:
@@ -54,7 +56,7 @@ def test_a_row_that_rounding_leaves_is_the_empty_row() -> None:
     assert all(empty for name, empty in rows.items() if "tilt" in name)
     assert model.assembly is not None
     assert model.assembly.ranks.constraints == 2
-    told = [notice.message for notice in model.notices if "say" in notice.message]
+    told = [notice.message for notice in model.notices if "nothing" in notice.message]
     assert len(told) == 1, "one message for a loop"
     assert "zero for all configurations" in told[0]
 
@@ -74,10 +76,25 @@ def test_a_row_that_holds_for_the_default_lengths_alone_ties_them() -> None:
     assert any("hold_x` does not depend on the configuration" in notice.message for notice in model.notices)
 
 
+def test_a_bend_that_no_motion_straightens_is_tied() -> None:
+    """The axis of a bent link turns about the dock's, and is never parallel to it."""
+    model = _model("{translation: [0.3, 0.9, 0.4]}", "twist")
+    assert model.assembly is not None
+    assert model.assembly.tied == ("twist",)
+
+
 def test_a_row_that_counts_for_other_parameters_is_told_by_them() -> None:
-    """With a bent link the mechanism has more constraints: kernels for both cannot be one."""
-    with pytest.raises(ModelError, match=r"`hold_tilt_y`.*: `twist` would change the number of constraints"):
-        _model("{translation: [0.3, 0.9, 0.4]}", "twist")
+    """With k there is one more constraint, which some configurations satisfy: kernels for both cannot be one."""
+    text = """model: latch
+coordinates: {a: {unit: rad}, b: {unit: rad}}
+parameters: {k: {value: 0}, l: {value: 2}}
+kinetic_energy: l*(a_dot**2 + b_dot**2)
+constraints:
+  geometric:
+    latch: k*(cos(a) - l*sin(b))
+"""
+    with pytest.raises(ModelError, match=r"latch.yaml:7:12: .*`latch` .*: `k` would change the number of constraints"):
+        load_text(text, "latch.yaml")
 
 
 def test_rows_in_any_units_are_rows() -> None:
@@ -170,3 +187,11 @@ constraints:
     told = [notice.message for notice in load_text(text, "dyads.yaml").notices]
     assert len(told) == 1
     assert told[0].startswith("`b_1` .. `b_10` cannot move: the constraints hold b_1 = ")
+
+
+def test_a_length_that_no_motion_makes_up_for_is_tied_in_any_axes() -> None:
+    """Two places on one link meet if lengths agree; else the gap turns with the link."""
+    model = _model("{}", loop="{type: point, between: [knee, r]}")
+    assert all(_rows(model).values())
+    assert model.assembly is not None
+    assert model.assembly.tied == ("w",)
