@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from symgen.cli import main
+from symgen.verify.states import VerificationError
 
 MODEL = """model: steep
 coordinates: {x: {}, y: {}, z: {}}
@@ -34,12 +35,26 @@ def _told(tmp_path: Path, capsys: pytest.CaptureFixture[str], **parts: str) -> s
     return capsys.readouterr().err
 
 
-def test_where_no_states_are_found_the_row_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """exp(exp(exp(exp(x)))) leaves room for one configuration in 1e6."""
-    told = _told(tmp_path, capsys, FIELD="0", ROW="exp(exp(exp(exp(3*x)))) - y", OUTPUTS="inverse_dynamics")
-    assert "steep.yaml:8:10: " in told
-    assert "remedy: give a start under `configuration`" in told
-    assert "internal error" not in told
+def test_where_no_states_are_found_the_row_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Loading found a configuration, and verification finds no others."""
+
+    def none(*_: object) -> None:
+        raise VerificationError("steep: only 0 regular configurations were found; give a start")
+
+    monkeypatch.setattr("symgen.verify.expected.sample_states", none)
+    told = _told(tmp_path, capsys, FIELD="0", ROW="x**2 - y", OUTPUTS="inverse_dynamics")
+    assert "steep.yaml:8:10: only 0 regular configurations were found\n" in told
+    assert "remedy: give a start\n" in told
+
+
+def test_states_are_found_where_functions_are_steep(tmp_path: Path) -> None:
+    """exp(exp(exp(exp(3 x)))) leaves room for one configuration in 1e6."""
+    path = tmp_path / "steep.yaml"
+    row = "exp(exp(exp(exp(3*x)))) - y"
+    path.write_text(MODEL.replace("FIELD", "0").replace("ROW", row).replace("OUTPUTS", "inverse_dynamics"), "utf-8")
+    assert main([str(path), "--out", str(tmp_path / "out"), "--only", "python"]) == 0
 
 
 def test_a_number_beyond_float32_is_told_with_a_way_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
