@@ -215,24 +215,24 @@ def _code(draft: Draft, options: Options) -> dict[str, str | bytes]:
     programs = [program for scalar in options.scalars if (program := draft.programs[scalar]).kernels]
     if {"c", "package"} & {*options.parts}:
         for program in programs:
-            for emit in each(f"writing C in {program.scalar}", (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc)):
+            for emit in each(f"C in {program.scalar}", (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc)):
                 sources |= emit(draft.model, program)
     if "c" in options.parts:
         files |= sources
     if "package" in options.parts:
         from symgen.package.files import emit_package
 
-        with working("writing packages"):
+        with working("packages"):
             files |= emit_package(draft.model, programs, sources)
     if "proof" in options.parts:
         from symgen.proof.files import emit_proofs
 
-        with working("writing drivers for proofs"):
+        with working("drivers for proofs"):
             files |= emit_proofs(draft.model, programs)
     if "python" in options.parts:
         from symgen.emit.python import emit_python
 
-        with working("writing Python"):
+        with working("Python"):
             files |= emit_python(draft.model, draft.program)
     files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.program)
     return files

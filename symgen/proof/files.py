@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from symgen.emit.locals import array_arguments
-from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program
+from symgen.ir.kernel import Kernel, Literal, Operand, Program
 from symgen.model.model import Model
 from symgen.proof.box import box
 from symgen.proof.eva import MOST_RUNS, emit_eva
@@ -95,35 +95,36 @@ def _overflowing(model: Model, program: Program, kernel: Kernel) -> Iterator[str
 
 def _row(kernel: Kernel, names: Sequence[str]) -> Iterator[str]:
     if names:
-        spelled = "<br>".join(f"`{_text(kernel, name)}`" for name in names)
+        texts = _texts(kernel)
+        spelled = "<br>".join(f"`{_text(texts, name)}`" for name in names)
         yield f"| {kernel.name}({', '.join(argument.name for argument in array_arguments(kernel))}) | {spelled} |"
 
 
-def _text(kernel: Kernel, name: str) -> str:
-    """A value in terms of the inputs, or its name in the C where that would be long."""
-    statements = {target: statement for statement in kernel.statements for target in statement.targets}
-
-    known: dict[Operand, str] = {}
+def _texts(kernel: Kernel) -> dict[str, str]:
+    """Every value of a kernel in terms of the inputs, one after the other: no chain of values is too long."""
+    known: dict[str, str] = {}
 
     def spell(operand: Operand) -> str:
-        if operand not in known:
-            known[operand] = _cut(written(operand))
-        return known[operand]
+        return str(operand.value) if isinstance(operand, Literal) else known.get(operand.name, operand.name)
 
-    def written(operand: Operand) -> str:
-        if isinstance(operand, Literal):
-            return str(operand.value)
-        statement = statements.get(operand.name)
-        if statement is None:
-            return operand.name
-        parts = [spell(o) for o in statement.operands]
-        if statement.operation == "sincos":
-            return f"{'sin' if statement.targets[0] == operand.name else 'cos'}({parts[0]})"
-        if statement.operation in _INFIX:
-            return f"({parts[0]} {_INFIX[statement.operation]} {parts[1]})"
-        return f"-{parts[0]}" if statement.operation == "neg" else f"{statement.operation}({', '.join(parts)})"
+    for statement in kernel.statements:
+        parts = [spell(operand) for operand in statement.operands]
+        for target in statement.targets:
+            if statement.operation == "sincos":
+                text = f"{'sin' if statement.targets[0] == target else 'cos'}({parts[0]})"
+            elif statement.operation in _INFIX:
+                text = f"({parts[0]} {_INFIX[statement.operation]} {parts[1]})"
+            elif statement.operation == "neg":
+                text = f"-{parts[0]}"
+            else:
+                text = f"{statement.operation}({', '.join(parts)})"
+            known[target] = _cut(text)
+    return known
 
-    spelled = spell(Local(name))
+
+def _text(texts: Mapping[str, str], name: str) -> str:
+    """A value in terms of the inputs, or its name in the C where that would be long."""
+    spelled = texts.get(name, name)
     return name if len(spelled) > _LONGEST else spelled[1:-1] if spelled.startswith("(") else spelled
 
 
