@@ -6,18 +6,32 @@ import argparse
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
-from symgen.model.names import did_you_mean
+from symgen.model.names import did_you_mean, nearest
 from symgen.results import AUTO, DEFAULT_STATES, FORMS, PARTS, TRIG, Part
 
 FEWEST_STATES = 8
 USUAL = "inverse_dynamics"
+UNKNOWN = "unrecognized arguments: "  # how argparse begins
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that knows what a misspelt option was meant to be."""
+
+    def error(self, message: str) -> NoReturn:
+        """The message with the nearest option for each that is unknown."""
+        _, found, unknown = message.partition(UNKNOWN)
+        options = [option for action in self._actions for option in action.option_strings]
+        given = [word.partition("=")[0] for word in unknown.split() if word.startswith("--")] if found else []
+        meant = {word: near for word in given if (near := nearest(word, options))}
+        super().error(message + "".join(f"\n  did you mean `{near}` for `{word}`?" for word, near in meant.items()))
 
 
 def make_parser(program: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:
     """A parser that wants options in full."""
     form = argparse.RawDescriptionHelpFormatter
-    return argparse.ArgumentParser(
+    return _Parser(
         program, description=description, epilog=epilog, formatter_class=form, allow_abbrev=False
     )
 

@@ -55,8 +55,8 @@ class _Rows:
 def check_empty_rows(mechanics: Mechanics) -> tuple[tuple[ConstraintRow, ...], list[Mistake | Notice]]:
     """The rows, those that hold nothing as 0 = 0, and what is to be told of them."""
     rows = mechanics.constraints
-    usual = _Rows(mechanics)
-    if not usual.known:
+    usual = _Rows(mechanics) if rows else None
+    if usual is None or not usual.known:
         return rows, []
     empty = [i for i in range(len(rows)) if usual.is_empty(i)]
     if not empty:

@@ -72,3 +72,14 @@ def test_rows_that_hold_nothing_press_on_nothing(tmp_path: Path, capsys: pytest.
     )
     assert main([str(path), "--out", str(tmp_path / "out"), "--only", "python"]) == 0
     assert "`row` is zero for all configurations" in capsys.readouterr().err
+
+
+def test_a_misspelt_option_is_answered_with_the_one_that_was_meant(capsys: pytest.CaptureFixture[str]) -> None:
+    """Options are wanted in full, so that a beginning of one is a slip, too."""
+    with pytest.raises(SystemExit) as caught:
+        main(["model.yaml", "--output", "all", "--scaler=float64", "--xyz"])
+    assert caught.value.code == 2
+    said = capsys.readouterr().err
+    assert "did you mean `--outputs` for `--output`?" in said
+    assert "did you mean `--scalar` for `--scaler`?" in said
+    assert "`--xyz`" not in said
