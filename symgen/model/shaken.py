@@ -29,6 +29,7 @@ SHAKES = 3
 CHANGED = 4.0  # times itself, that a rest changes at least
 PROPORTIONAL = 250.0  # times as much as by a little, that it changes by much
 NOTHING, MOSTLY = 1e-13, 16.0
+ALTOGETHER = 0.01  # of itself, that a rest changes by a little at least
 PI = Fraction("3.14159265358979323846264338327950288419716939937510")
 
 Evaluation: TypeAlias = Callable[[Mechanics, Sequence[Input], Sequence[float]], list[Row]]
@@ -72,6 +73,10 @@ class Shaken:
         """Whether nothing but rounding is left of an entry."""
         size, little, much = (found[i].get(j, 0.0) for found in (self.sizes, *self._changes))
         if size == 0 or (CHANGED * size <= little and PROPORTIONAL * little <= much):
+            return True
+        # zero whatever the numbers are, such as a force along the arm it turns: only rounding changes, and altogether
+        largest = max((x for row in self.sizes for x in row.values()), default=0.0)
+        if size <= NOTHING * max(1.0, largest) and ALTOGETHER * size <= little:
             return True
         # what matrices leave that undo each other is in no proportion; it is nothing beside the terms of its row
         terms = max(self._changes[1][i].values()) / MUCH

@@ -209,4 +209,6 @@ def _ranks_at(
 
 
 def _size(matrix: Any, column: int) -> float:
-    return max((abs(float(matrix[i, column])) for i in range(matrix.nrows())), default=0.0)
+    """The largest entry of a column; what may be 0 is 0."""
+    entries = (matrix[i, column] for i in range(matrix.nrows()))
+    return max((abs(float(entry)) for entry in entries if not entry.contains(0)), default=0.0)

@@ -23,6 +23,7 @@ from symgen.ir.schedule import schedule
 from symgen.model.assembly import Place, Ranks
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.verify.reference import Reference
 
 
 def inverse(model: Model, q: Sequence[float]) -> tuple[Status, tuple[float, ...]]:
@@ -140,6 +141,29 @@ inputs: {drive: {acts_on: {a: GAIN}}}
 """
     found = genericity(Mechanics(load_text(text.replace("GAIN", gain), "guided.yaml")))
     assert (found.rank, found.alpha) == (1, 1)
+
+
+def test_a_force_along_the_arm_it_would_turn_moves_nothing() -> None:
+    """Turned frames leave 1e-17 of it, whatever numbers they are turned by."""
+    text = """
+model: radial
+parameters: {w: {value: 0.3, unit: m}, tilt: {value: 0.47}}
+joints:
+  arm: {type: revolute, axis: [1, 0.4, 0], rotation: [[[1, -2, 2], pi**2], [y, -pi/2]], at: [0.1, 0, 0], coordinate: a}
+  slide: {type: prismatic, parent: arm, axis: [0, 1, 1], coordinate: s}
+frames: {hand: {parent: arm, translation: [0, w, 0], rotation: [[[0.3, 0.4, -1.2], tilt]]}}
+bodies:
+  arm: {mass: 2, inertia: {xx: 0.3, yy: 0.4, zz: 0.5}}
+  slide: {mass: 1, inertia: {xx: 0.3, yy: 0.4, zz: 0.5}}
+gravity: [0, 0, -9.81]
+points: {tip: {frame: hand}}
+inputs:
+  push: {joint: s}
+  idle: {point: tip, direction: [0.3, 0.12, 0], axes: arm}
+"""
+    model = load_text(text, "radial.yaml")
+    assert genericity(Mechanics(model)).alpha == 1
+    assert Reference(model).ranks.actuation == 1
 
 
 def test_inputs_that_do_more_on_a_branch_nobody_found_give_a_status() -> None:
