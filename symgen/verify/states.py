@@ -118,6 +118,10 @@ def _candidates(reference: Reference, count: int, seed: int) -> Iterator[tuple[_
     varied = ParameterValues(reference.model, ranged)
     usual = [float(x) for x in _parameters(varied, generator, vary=False)]
     typical = _row_lengths(reference, points[:TYPICAL_POINTS], usual)
+    if known is not None and reference.ranks.constraints < reference.model.r:
+        # of rows that depend on each other some have no gradient anywhere on V, and are no drop of rank there
+        on_it = _row_lengths(reference, [place.q for place in known.places[:TYPICAL_POINTS]], usual)
+        typical = [0.0 if here < REGULAR * x else x for here, x in zip(on_it, typical, strict=True)]
     least = _least_measures(reference, points[:TYPICAL_POINTS], usual)
     last: list[Any] | None = None
     kept = {True: 0, False: 0}
