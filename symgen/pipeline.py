@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symgen.activity import each, working
+from symgen.dense_motion import dense_motions
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.draft import CARRIED, Draft
@@ -393,7 +394,8 @@ def _notices(draft: Draft, options: Options, certificate: Certificate | None) ->
     kernels = {kernel.name for kernel in draft.program.kernels}
     idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
     unverified = () if certificate is None else certificate.notes
-    told = (*absent, *_replaced(draft), *_short(draft), *_size(draft, options), *idle, *map(Notice, unverified))
+    ways = (*_replaced(draft), *_short(draft), *dense_motions(draft, options))
+    told = (*absent, *ways, *_size(draft, options), *idle, *map(Notice, unverified))
     return (*_renamed(draft.model), *told)
 
 

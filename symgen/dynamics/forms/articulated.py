@@ -123,6 +123,20 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
     return mechanics, replace(motion, multipliers=problem.of_the_model(motion.multipliers))
 
 
+def lacking(model: Model, generic: Genericity) -> str:
+    """Why a system of bodies has no articulated form, and what would give it one."""
+    energy = model.kinetic_energy
+    if not isinstance(energy, Number) or energy.value != 0:
+        return "part of the kinetic energy is written out: describe it by bodies"
+    if generic.rank < generic.r:
+        return "constraints depend on each other: leave out those that others imply"
+    try:
+        ArticulatedFactor(Mechanics(model).bodies)
+    except ValueError:
+        return "a coordinate moves several frames, or none: give each joint a coordinate of its own"
+    return "the mass matrix is not shown to be positive definite: give masses and inertias a `range` above 0"
+
+
 def _along_best_axes(
     mechanics: Mechanics, factor: ArticulatedFactor, loop: LoopPoint, columns: list[Vector]
 ) -> tuple[str, list[Vector]]:

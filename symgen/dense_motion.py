@@ -1,0 +1,30 @@
+"""What is told where accelerations or multipliers of bodies are long because they cannot go from body to body."""
+
+from __future__ import annotations
+
+from symgen.diagnostics import Notice
+from symgen.draft import Draft
+from symgen.dynamics.forms.motions import BY_FRAMES
+from symgen.dynamics.select import ARTICULATED, MOTIONS
+from symgen.emit.operations import count_operations
+from symgen.results import Options
+
+# Operations of q_ddot or of lambda.
+LONG_MOTION = 3000
+
+
+def dense_motions(draft: Draft, options: Options) -> tuple[Notice, ...]:
+    """A notice for long kernels that factor the whole mass matrix: what they cost, why, and what would change it."""
+    counts = {kernel.name: count_operations(kernel.statements).total for kernel in draft.program.kernels}
+    choices = [choice for choice in draft.derivations.choices if choice.quantity in MOTIONS]
+    # articulated inertias that were counted and lost are no loss, and a form that was asked for is what was wanted
+    dense = [c for c in choices if c.form != BY_FRAMES and ARTICULATED not in dict(c.costs)]
+    names = [c.quantity for c in dense if c.quantity not in options.forms]
+    long = [name for name in names if counts.get(name, 0) > LONG_MOTION]
+    if not long or not draft.model.mechanism.has_mass:
+        return ()
+    from symgen.dynamics.forms.articulated import lacking
+
+    counted = " and ".join(f"{name} ({counts[name]} operations)" for name in long)
+    grows = "the whole mass matrix is factored, where articulated inertias take a fraction of that"
+    return (Notice(f"{counted}: {grows}; {lacking(draft.model, draft.derivations.generic)}"),)

@@ -1,0 +1,68 @@
+"""Where accelerations cannot go from body to body, a long kernel says why it is long and what would make it short."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from symgen import dense_motion
+from symgen.dynamics.forms import articulated
+from symgen.pipeline import generate
+from symgen.results import Options
+
+LINKS = 5
+OPTIONS = Options(scalars=("float64",), parts=("c",), verify=False)
+
+
+def notices(folder: Path, more: str = "", options: Options = OPTIONS, body: str = "") -> list[str]:
+    lines = ["model: hanging", "joints:"]
+    for k in range(LINKS):
+        place = f"parent: j_{k - 1}, at: [0.3, 0, 0], " if k else ""
+        lines.append(f"  j_{k}: {{type: revolute, {place}axis: {'yz'[k % 2]}, coordinate: a_{k}}}")
+    lines += ["gravity: [0, 0, -9.81]", "bodies:"]
+    inertia = "{xx: 0.01, yy: 0.02, zz: 0.02}"
+    lines += [f"  j_{k}: {{mass: 1.2, com: [0.15, 0, 0], inertia: {inertia}}}" for k in range(LINKS)]
+    lines += [body] if body else []
+    lines += ["inputs:", "  M: {joint: a_0}", "outputs: [forward_dynamics]"]
+    path = folder / "hanging.yaml"
+    path.write_text("\n".join(lines) + "\n" + more)
+    found = generate(path, options, lambda _: None).notices
+    return [notice.message for notice in found if "mass matrix is factored" in notice.message]
+
+
+@pytest.fixture(autouse=True)
+def _short_is_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dense_motion, "LONG_MOTION", 100)
+
+
+def test_bodies_alone_take_articulated_inertias_and_say_nothing(tmp_path: Path) -> None:
+    assert notices(tmp_path) == []
+
+
+def test_a_written_part_of_the_energy_is_named(tmp_path: Path) -> None:
+    (told,) = notices(tmp_path, "kinetic_energy: 0.05*a_2_dot**2\n")
+    assert told.startswith("forward_dynamics (")
+    assert told.endswith("part of the kinetic energy is written out: describe it by bodies")
+
+
+def test_what_is_short_says_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dense_motion, "LONG_MOTION", 3000)
+    assert notices(tmp_path, "kinetic_energy: 0.05*a_2_dot**2\n") == []
+
+
+def test_a_form_that_was_asked_for_says_nothing(tmp_path: Path) -> None:
+    asked = Options(scalars=("float64",), parts=("c",), verify=False, forms={"forward_dynamics": "schur_ldl"})
+    assert notices(tmp_path, "kinetic_energy: 0.05*a_2_dot**2\n", asked) == []
+
+
+def test_inertias_that_prove_nothing_ask_for_their_ranges(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(articulated, "definite_by_frames", lambda *_: False)
+    (told,) = notices(tmp_path)
+    assert told.endswith("give masses and inertias a `range` above 0")
+
+
+def test_coordinates_that_move_several_frames_are_told(tmp_path: Path) -> None:
+    tip = "frames:\n  tip: {parent: j_4, rotation: [[x, a_0]]}\n"
+    (told,) = notices(tmp_path, tip, body="  tip: {mass: 0.3, com: [0, 0.1, 0]}")
+    assert told.endswith("give each joint a coordinate of its own")
