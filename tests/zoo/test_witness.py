@@ -140,7 +140,8 @@ def test_a_wrong_number_and_a_false_status_are_found(generated: Path, tmp_path: 
     source = (generated / "c" / "cart.c").read_text()
     folder = tmp_path / "cart"
     (folder / "c").mkdir(parents=True)
-    (folder / "c" / "cart.h").write_text((generated / "c" / "cart.h").read_text())
+    for name in ("c/cart.h", "derivation.json"):
+        (folder / name).write_text((generated / name).read_text())
     body = source.index("cart_inverse_dynamics(")
     stored = re.compile(r"( u\[0\] = )([^;]+);")
     assert stored.search(source, body)
