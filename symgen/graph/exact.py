@@ -81,6 +81,7 @@ class ExactValues:
     def __init__(self, seed: int = 0, field: Field = FIELD, signs: bool = True) -> None:
         self._field, self._seed, self._signs = field, seed, signs
         self.unknown: set[Scalar] = set()
+        self._any_root: set[Scalar] = set()
         self._known: dict[Scalar, Value] = {}
         # inside of angles, numbers are those of the field of angles
         self._inside = None if field.angles is None else ExactValues(seed, field.angles, signs)
@@ -104,6 +105,11 @@ class ExactValues:
             else:
                 known[node] = self._value(node)
         return [self._known[output] for output in outputs]
+
+    def any_root_in(self, outputs: Sequence[Scalar]) -> bool:
+        """Whether a root was taken of a + b i: any number stands for it, whose square is another."""
+        found = self._any_root if self._inside is None else self._any_root | self._inside._any_root
+        return not found.isdisjoint(topological(outputs))
 
     def _opaque(self, *key: object) -> int:
         return opaque(self._seed, self._field.prime, *key) % self._field.prime
@@ -146,6 +152,8 @@ class ExactValues:
                 # what is told to be rounded first is the same number
                 return first
             case "sqrt":
+                if not isinstance(first, int):
+                    self._any_root.add(node)
                 return self._root(first, node.args[0].constant)
             case "abs" if self._signs:
                 return first if self._positive(first, node.args[0].constant) else self._minus(first)

@@ -37,7 +37,7 @@ def compensated(kernel: Kernel, scalar: Scalar, chosen: Collection[str]) -> Kern
     last, outputs = writer.corrected(kernel.outputs)
     blocks[-1] = replace(blocks[-1], statements=(*blocks[-1].statements, *last))
     made = replace(kernel, blocks=_needed(blocks, outputs), outputs=outputs, alike=())
-    same_kernel(f"carrying rounding errors of {kernel.name}", Lifted(kernel), Lifted(made))
+    same_kernel(f"carrying rounding errors of {kernel.name}", Lifted(kernel), Lifted(made), squares_roots=True)
     return made
 
 

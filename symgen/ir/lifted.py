@@ -47,10 +47,13 @@ class Lifted:
     prepared: tuple[Local, ...] = ()
 
 
-def same_kernel(rule: str, before: Lifted | Meant[Node], after: Lifted, whole: bool = True) -> None:
+def same_kernel(
+    rule: str, before: Lifted | Meant[Node], after: Lifted, whole: bool = True, squares_roots: bool = False
+) -> None:
     """Raises SymgenBug where outputs or checks of a kernel are not what they were.
 
-    Unless they are compared `whole`, checks that tell one failure from another may have gone.
+    Unless they are compared `whole`, checks that tell one failure from another may have gone.  `squares_roots` as for
+    `same_values`.
     """
     quick = _residues(before) if isinstance(before, Lifted) else _values(before)
     quick = quick if whole else _plain(quick)
@@ -61,7 +64,7 @@ def same_kernel(rule: str, before: Lifted | Meant[Node], after: Lifted, whole: b
     meant, exact = meant if whole else _plain(meant), _Nodes().meant(after)
     if meant.kinds != exact.kinds:
         raise SymgenBug(f"{rule}: changes the checks of a kernel")
-    same_values(rule, [*meant.outputs, *meant.compared], [*exact.outputs, *exact.compared])
+    same_values(rule, [*meant.outputs, *meant.compared], [*exact.outputs, *exact.compared], squares_roots)
 
 
 def _residues(lifted: Lifted) -> Meant[int]:

@@ -9,6 +9,7 @@ from fractions import Fraction
 import pytest
 from flint import arb
 
+from symgen.diagnostics import SymgenBug
 from symgen.ir.adjoint import adjoints
 from symgen.ir.compensated import compensated, mark, marked
 from symgen.ir.interpret import Interpreter, round_float32
@@ -26,6 +27,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
+from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.sincos import sincos
 from symgen.verify.exactness import exact_outputs
 from symgen.verify.reference import State
@@ -187,3 +189,24 @@ def test_derivatives_are_those_of_differences() -> None:
             if isinstance(output, Local)
         )
         assert math.isclose(slopes[name], change / 2e-6, rel_tol=1e-7)
+
+
+@pytest.mark.parametrize("depth", [2, 4, 6])
+def test_roots_of_sums_that_hold_roots_are_no_other_function(depth: int) -> None:
+    lines = Lines()
+    last = "x"
+    for _ in range(depth):
+        root = lines("sqrt", lines("add", last, "y"))
+        last = lines("add", root, lines("mul", root, "k"))
+    kernel = lines.kernel(last)
+    compensated(kernel, "float64", {target for s in lines.statements for target in s.targets})
+
+
+def test_where_the_field_has_the_roots_a_wrong_square_is_found() -> None:
+    lines = Lines()
+    root = lines("sqrt", lines("add", lines("mul", "x", "x"), "y"))
+    square = lines("mul", root, root)
+    before = lines.kernel(square)
+    wrong = lines.kernel(lines("add", square, "k"))
+    with pytest.raises(SymgenBug, match="squaring: changes the value of 1 of 1 scalars"):
+        same_kernel("squaring", Lifted(before), Lifted(wrong), squares_roots=True)
