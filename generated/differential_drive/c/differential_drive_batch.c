@@ -125,10 +125,9 @@ size_t differential_drive_inverse_dynamics_batch(size_t count, size_t stride, co
     const double t163 = t161 - t162;
     const double t173 = l_c * t162;
     const double t174 = c_x * t161;
-    const double t175 = 1.0 + 1.0;
     const double t176 = b * b;
     const double t177 = m_w * t176;
-    const double t178 = t175 * t177;
+    const double t178 = 2.0 * t177;
     const double t179 = J + t178;
     const double t180 = t174 + t179;
     const double t181 = t173 + t180;

@@ -112,10 +112,9 @@ size_t differential_drive_inverse_dynamics_batch_f(size_t count, size_t stride, 
     const float t163 = t161 - t162;
     const float t173 = l_c * t162;
     const float t174 = c_x * t161;
-    const float t175 = 1.0f + 1.0f;
     const float t176 = b * b;
     const float t177 = m_w * t176;
-    const float t178 = t175 * t177;
+    const float t178 = 2.0f * t177;
     const float t179 = J + t178;
     const float t180 = t174 + t179;
     const float t181 = t173 + t180;

@@ -19,7 +19,7 @@ typedef struct {
 
 differential_drive_prepared differential_drive_prepare(const differential_drive_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 97 operations instead of 137 */
+/* u: the smallest inputs that produce the motion, (27); 97 operations instead of 136 */
 differential_drive_status differential_drive_inverse_dynamics_prepared(const double q[7], const double qd[7], const double qdd[7], const differential_drive_prepared *p, double u[2]);
 
 /* q̈: accelerations under the inputs, (15); 936 operations instead of 1120 */

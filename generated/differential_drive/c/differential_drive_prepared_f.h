@@ -19,7 +19,7 @@ typedef struct {
 
 differential_drive_prepared_f differential_drive_prepare_f(const differential_drive_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 97 operations instead of 137 */
+/* u: the smallest inputs that produce the motion, (27); 97 operations instead of 136 */
 differential_drive_status differential_drive_inverse_dynamics_prepared_f(const float q[7], const float qd[7], const float qdd[7], const differential_drive_prepared_f *p, float u[2]);
 
 /* q̈: accelerations under the inputs, (15); 936 operations instead of 1120 */

@@ -17,7 +17,7 @@ Inputs u:
   u[1] u_r [N*m] torque of the right motor
 
 Operations           + -      *      /   sqrt sincos  other
-inverse_dynamics      46     82      1      0      2      0
+inverse_dynamics      45     82      1      0      2      0
 forward_dynamics     434    657      1      0      5      0
 multipliers          533    801      1      0      5      0
 singularity           42     86     14      3      2      0
@@ -261,10 +261,9 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         t172 = t163 * t171
         t173 = l_c * t162
         t174 = c_x * t161
-        t175 = 1.0 + 1.0
         t176 = b * b
         t177 = m_w * t176
-        t178 = t175 * t177
+        t178 = 2.0 * t177
         t179 = J + t178
         t180 = t174 + t179
         t181 = t173 + t180

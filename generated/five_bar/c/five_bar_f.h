@@ -15,9 +15,9 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      31     41      1      0      3      2
- * forward_dynamics     147    236      5      1      4      2
- * multipliers          135    220      5      1      4      2
+ * inverse_dynamics      31     39      1      0      3      2
+ * forward_dynamics     150    244      6      1      4      2
+ * multipliers          138    228      6      1      4      2
  * singularity           37     57      9      2      4      0
  * (changes of sign are not counted)
  *

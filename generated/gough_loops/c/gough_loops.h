@@ -40,9 +40,9 @@
  *   gamma is gamma_
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics     501    801     20      4     16      0
- * forward_dynamics    6218   7205     53      1     16      0
- * singularity         2713   3511    133     37     16      0
+ * inverse_dynamics     501    800     20      3     16      0
+ * forward_dynamics    6218   7209     53      0     16      0
+ * singularity         2713   3510    133     36     16      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

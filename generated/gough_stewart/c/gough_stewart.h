@@ -28,10 +28,10 @@
  *   gamma is gamma_
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics     261    355      8      4      5      0
- * forward_dynamics    1557   2257     41      6      5      0
- * multipliers         1503   2189     41      6      5      0
- * singularity          681    992     49     13      5      0
+ * inverse_dynamics     261    354      8      3      5      0
+ * forward_dynamics    1577   2293     46      5      5      0
+ * multipliers         1523   2225     46      5      5      0
+ * singularity          681    991     49     12      5      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -40,7 +40,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                  73    128      1      0      6      0
- * minimal_coriolis_matrix             338    539      2      0      6      0
+ * minimal_coriolis_matrix            1103   1329      3      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix               25     56      1      0      6      0
@@ -49,8 +49,8 @@
  * projected_configuration             219    242     16      8     12      0
  * inverse_dynamics                     51     76      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    326    448     15      3      6      0
- * multipliers                         307    424     15      3      6      0
+ * forward_dynamics                    332    462     18      3      6      0
+ * multipliers                         313    438     18      3      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          55     91     17      4      6      0
  * (changes of sign are not counted)

@@ -19,8 +19,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      53     83      3      0      5      0
- * forward_dynamics     351    503     14      3      6      0
- * multipliers          332    474     14      3      6      0
+ * forward_dynamics     357    517     17      3      6      0
+ * multipliers          338    488     17      3      6      0
  * singularity           55     91     17      4      6      0
  * (changes of sign are not counted)
  *

@@ -22,9 +22,9 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      69    113      3      0      9      0
- * forward_dynamics     724    965     18      6      7      0
- * multipliers          694    924     18      6      7      0
- * singularity          156    228     30     12      7      0
+ * forward_dynamics     741    996     23      5      7      0
+ * multipliers          711    955     23      5      7      0
+ * singularity          156    227     30     11      7      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -72,7 +72,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t412, t479, t504, t438, t623, t685, t447, t843, t1165. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t425, t431, t483, t533, t542, t679, t820, t831, t924, t931, t944, t954, t961, t912. */
 void eva_forward_dynamics(void) {
     float q[9];
     float qd[9];
@@ -118,7 +118,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t412, t473, t572, t438, t623, t747, t447, t891, t972. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t119, t220, t340, t425, t431, t483, t533, t542, t679, t820, t831, t924, t931, t944, t954, t961, t912. */
 void eva_multipliers(void) {
     float q[9];
     float qd[9];

@@ -13,10 +13,10 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      60    110      1      0      5      0
- * forward_dynamics     232    401     16      0      5      2
- * multipliers          222    393     16      0      5      2
- * singularity           35     63     14      3      5      0
+ * inverse_dynamics      60    108      1      0      3      0
+ * forward_dynamics     232    399     16      0      3      2
+ * multipliers          222    391     16      0      3      2
+ * singularity           35     61     14      3      3      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[12];
+    double value[11];
 } delta_prepared;
 
 delta_prepared delta_prepare(const delta_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 113 operations instead of 132 */
+/* u: the smallest inputs that produce the motion, (27); 113 operations instead of 130 */
 delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const delta_prepared *p, double u[3]);
 
 #ifdef __cplusplus
@@ -198,24 +198,22 @@ delta_prepared delta_prepare(const delta_params *p) {
     const double J_a = p->J_a;
     const double J_m = p->J_m;
     const double v1 = R - r;
-    const double v2 = sqrt(3.0);
-    const double v3 = 0.5 * v2;
-    const double v4 = R + r;
-    const double v5 = l_1 + v4;
-    const double v6 = 0.5 * v5;
-    const double v7 = v3 * v5;
-    const double v8 = 1.5 * m_r;
-    const double v9 = m_p + v8;
-    const double v10 = m_a + m_r;
-    const double v11 = 0.5 * v10;
-    const double v12 = g * v11;
-    const double v13 = 0.25 * m_a;
-    const double v14 = 0.5 * m_r;
-    const double v15 = v13 + v14;
-    const double v16 = l_1 * l_1;
-    const double v17 = v15 * v16;
-    const double v18 = J_a + J_m;
-    const double v19 = v17 + v18;
+    const double v2 = R + r;
+    const double v3 = l_1 + v2;
+    const double v4 = 0.5 * v3;
+    const double v5 = 0.8660254037844386 * v3;
+    const double v6 = 1.5 * m_r;
+    const double v7 = m_p + v6;
+    const double v8 = m_a + m_r;
+    const double v9 = 0.5 * v8;
+    const double v10 = g * v9;
+    const double v11 = 0.25 * m_a;
+    const double v12 = 0.5 * m_r;
+    const double v13 = v11 + v12;
+    const double v14 = l_1 * l_1;
+    const double v15 = v13 * v14;
+    const double v16 = J_a + J_m;
+    const double v17 = v15 + v16;
     delta_prepared prepared;
     prepared.value[0] = R;
     prepared.value[1] = r;
@@ -223,12 +221,11 @@ delta_prepared delta_prepare(const delta_params *p) {
     prepared.value[3] = g;
     prepared.value[4] = v1;
     prepared.value[5] = v3;
-    prepared.value[6] = v5;
-    prepared.value[7] = v6;
+    prepared.value[6] = v4;
+    prepared.value[7] = v5;
     prepared.value[8] = v7;
-    prepared.value[9] = v9;
-    prepared.value[10] = v12;
-    prepared.value[11] = v19;
+    prepared.value[9] = v10;
+    prepared.value[10] = v17;
     return prepared;
 }
 
@@ -245,13 +242,12 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t69 = l_1 * t5;
     const double t70 = R + t69;
     const double t71 = t68 - t70;
-    const double t72 = sqrt(3.0);
-    const double t73 = r * t72;
+    const double t73 = r * 1.7320508075688772;
     const double t74 = 0.5 * t73;
     const double t75 = y + t74;
     const double t76 = l_1 * t7;
     const double t77 = R + t76;
-    const double t78 = t72 * t77;
+    const double t78 = 1.7320508075688772 * t77;
     const double t79 = 0.5 * t78;
     const double t80 = t75 - t79;
     const double t81 = t71 * t80;
@@ -265,7 +261,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t89 = y - t74;
     const double t90 = l_1 * t9;
     const double t91 = R + t90;
-    const double t92 = t72 * t91;
+    const double t92 = 1.7320508075688772 * t91;
     const double t93 = 0.5 * t92;
     const double t94 = t89 + t93;
     const double t95 = l_1 * t6;
@@ -309,7 +305,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t133 = t131 - t132;
     const double t134 = t133 * t133;
     const double t135 = t130 + t134;
-    const double t136 = y * t72;
+    const double t136 = y * 1.7320508075688772;
     const double t137 = 0.5 * t136;
     const double t138 = 0.5 * x;
     const double t139 = t137 - t138;
@@ -395,13 +391,13 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t219 = t218 * t218;
     const double t220 = fabs(y);
     const double t221 = t74 + t220;
-    const double t222 = t72 * t216;
+    const double t222 = 1.7320508075688772 * t216;
     const double t223 = 0.5 * t222;
     const double t224 = t221 + t223;
     const double t225 = t224 * t224;
     const double t226 = t219 + t225;
     const double t227 = t213 + t226;
-    const double t228 = t72 * t220;
+    const double t228 = 1.7320508075688772 * t220;
     const double t229 = 0.5 * t228;
     const double t230 = 0.5 * t214;
     const double t231 = t229 + t230;
@@ -458,8 +454,7 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t18 = l_1 * t7;
     const double t12 = p->value[4];
     const double t19 = t18 + t12;
-    const double t17 = p->value[5];
-    const double t20 = t17 * t19;
+    const double t20 = 0.8660254037844386 * t19;
     const double y = q[4];
     const double t21 = y - t20;
     const double t23 = 0.5 * t19;
@@ -468,7 +463,7 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t9 = cosine[2];
     const double t30 = l_1 * t9;
     const double t31 = t30 + t12;
-    const double t32 = t17 * t31;
+    const double t32 = 0.8660254037844386 * t31;
     const double t33 = y + t32;
     const double t35 = 0.5 * t31;
     const double t36 = x + t35;
@@ -531,15 +526,15 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t315 = t313 + t314;
     const double t51 = fabs(y);
     const double t52 = fabs(x);
-    const double t55 = p->value[7];
+    const double t55 = p->value[6];
     const double t56 = t52 + t55;
     const double t49 = fabs(z);
     const double t50 = l_1 + t49;
     const double t57 = t51 * t56;
-    const double t54 = p->value[6];
+    const double t54 = p->value[5];
     const double t58 = t52 + t54;
     const double t59 = t56 + t58;
-    const double t60 = p->value[8];
+    const double t60 = p->value[7];
     const double t61 = t51 + t60;
     const double t62 = t59 * t61;
     const double t63 = t57 + t62;
@@ -549,22 +544,22 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     if (DELTA_RARELY(!(t48 > t65))) {
         return delta_inverse_dynamics_prepared_cause(q, p, t4, t5, t6, t7, t8, t9);
     }
-    const double t282 = p->value[9];
+    const double t282 = p->value[8];
     const double t283 = t282 / t47;
     const double t278 = z * t14;
     const double t279 = t41 * t13;
     const double t280 = t278 + t279;
     const double a_1_ddot = qdd[0];
-    const double t259 = p->value[11];
+    const double t259 = p->value[10];
     const double t260 = a_1_ddot * t259;
-    const double t263 = p->value[10];
+    const double t263 = p->value[9];
     const double t264 = t14 * t263;
     const double t265 = t260 - t264;
     const double t284 = t280 * t283;
     const double t285 = t277 * t284;
     const double t286 = t265 - t285;
     double rest = t286 - t286;
-    const double t299 = y * t17;
+    const double t299 = y * 0.8660254037844386;
     const double t300 = 0.5 * x;
     const double t301 = t300 + t12;
     const double t298 = z * t18;

@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[12];
+    float value[11];
 } delta_prepared_f;
 
 delta_prepared_f delta_prepare_f(const delta_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 113 operations instead of 132 */
+/* u: the smallest inputs that produce the motion, (27); 113 operations instead of 130 */
 delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const delta_prepared_f *p, float u[3]);
 
 #ifdef __cplusplus
@@ -185,24 +185,22 @@ delta_prepared_f delta_prepare_f(const delta_params_f *p) {
     const float J_a = p->J_a;
     const float J_m = p->J_m;
     const float v1 = R - r;
-    const float v2 = sqrtf(3.0f);
-    const float v3 = 0.5f * v2;
-    const float v4 = R + r;
-    const float v5 = l_1 + v4;
-    const float v6 = 0.5f * v5;
-    const float v7 = v3 * v5;
-    const float v8 = 1.5f * m_r;
-    const float v9 = m_p + v8;
-    const float v10 = m_a + m_r;
-    const float v11 = 0.5f * v10;
-    const float v12 = g * v11;
-    const float v13 = 0.25f * m_a;
-    const float v14 = 0.5f * m_r;
-    const float v15 = v13 + v14;
-    const float v16 = l_1 * l_1;
-    const float v17 = v15 * v16;
-    const float v18 = J_a + J_m;
-    const float v19 = v17 + v18;
+    const float v2 = R + r;
+    const float v3 = l_1 + v2;
+    const float v4 = 0.5f * v3;
+    const float v5 = 0.8660254f * v3;
+    const float v6 = 1.5f * m_r;
+    const float v7 = m_p + v6;
+    const float v8 = m_a + m_r;
+    const float v9 = 0.5f * v8;
+    const float v10 = g * v9;
+    const float v11 = 0.25f * m_a;
+    const float v12 = 0.5f * m_r;
+    const float v13 = v11 + v12;
+    const float v14 = l_1 * l_1;
+    const float v15 = v13 * v14;
+    const float v16 = J_a + J_m;
+    const float v17 = v15 + v16;
     delta_prepared_f prepared;
     prepared.value[0] = R;
     prepared.value[1] = r;
@@ -210,12 +208,11 @@ delta_prepared_f delta_prepare_f(const delta_params_f *p) {
     prepared.value[3] = g;
     prepared.value[4] = v1;
     prepared.value[5] = v3;
-    prepared.value[6] = v5;
-    prepared.value[7] = v6;
+    prepared.value[6] = v4;
+    prepared.value[7] = v5;
     prepared.value[8] = v7;
-    prepared.value[9] = v9;
-    prepared.value[10] = v12;
-    prepared.value[11] = v19;
+    prepared.value[9] = v10;
+    prepared.value[10] = v17;
     return prepared;
 }
 
@@ -232,13 +229,12 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_prepared_f_cause(const 
     const float t69 = l_1 * t5;
     const float t70 = R + t69;
     const float t71 = t68 - t70;
-    const float t72 = sqrtf(3.0f);
-    const float t73 = r * t72;
+    const float t73 = r * 1.7320508f;
     const float t74 = 0.5f * t73;
     const float t75 = y + t74;
     const float t76 = l_1 * t7;
     const float t77 = R + t76;
-    const float t78 = t72 * t77;
+    const float t78 = 1.7320508f * t77;
     const float t79 = 0.5f * t78;
     const float t80 = t75 - t79;
     const float t81 = t71 * t80;
@@ -252,7 +248,7 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_prepared_f_cause(const 
     const float t89 = y - t74;
     const float t90 = l_1 * t9;
     const float t91 = R + t90;
-    const float t92 = t72 * t91;
+    const float t92 = 1.7320508f * t91;
     const float t93 = 0.5f * t92;
     const float t94 = t89 + t93;
     const float t95 = l_1 * t6;
@@ -296,7 +292,7 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_prepared_f_cause(const 
     const float t133 = t131 - t132;
     const float t134 = t133 * t133;
     const float t135 = t130 + t134;
-    const float t136 = y * t72;
+    const float t136 = y * 1.7320508f;
     const float t137 = 0.5f * t136;
     const float t138 = 0.5f * x;
     const float t139 = t137 - t138;
@@ -382,13 +378,13 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_prepared_f_cause(const 
     const float t219 = t218 * t218;
     const float t220 = fabsf(y);
     const float t221 = t74 + t220;
-    const float t222 = t72 * t216;
+    const float t222 = 1.7320508f * t216;
     const float t223 = 0.5f * t222;
     const float t224 = t221 + t223;
     const float t225 = t224 * t224;
     const float t226 = t219 + t225;
     const float t227 = t213 + t226;
-    const float t228 = t72 * t220;
+    const float t228 = 1.7320508f * t220;
     const float t229 = 0.5f * t228;
     const float t230 = 0.5f * t214;
     const float t231 = t229 + t230;
@@ -445,8 +441,7 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     const float t18 = l_1 * t7;
     const float t12 = p->value[4];
     const float t19 = t18 + t12;
-    const float t17 = p->value[5];
-    const float t20 = t17 * t19;
+    const float t20 = 0.8660254f * t19;
     const float y = q[4];
     const float t21 = y - t20;
     const float t23 = 0.5f * t19;
@@ -455,7 +450,7 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     const float t9 = cosine[2];
     const float t30 = l_1 * t9;
     const float t31 = t30 + t12;
-    const float t32 = t17 * t31;
+    const float t32 = 0.8660254f * t31;
     const float t33 = y + t32;
     const float t35 = 0.5f * t31;
     const float t36 = x + t35;
@@ -518,15 +513,15 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     const float t315 = t313 + t314;
     const float t51 = fabsf(y);
     const float t52 = fabsf(x);
-    const float t55 = p->value[7];
+    const float t55 = p->value[6];
     const float t56 = t52 + t55;
     const float t49 = fabsf(z);
     const float t50 = l_1 + t49;
     const float t57 = t51 * t56;
-    const float t54 = p->value[6];
+    const float t54 = p->value[5];
     const float t58 = t52 + t54;
     const float t59 = t56 + t58;
-    const float t60 = p->value[8];
+    const float t60 = p->value[7];
     const float t61 = t51 + t60;
     const float t62 = t59 * t61;
     const float t63 = t57 + t62;
@@ -536,22 +531,22 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     if (DELTA_RARELY_F(!(t48 > t65))) {
         return delta_inverse_dynamics_prepared_f_cause(q, p, t4, t5, t6, t7, t8, t9);
     }
-    const float t282 = p->value[9];
+    const float t282 = p->value[8];
     const float t283 = t282 / t47;
     const float t278 = z * t14;
     const float t279 = t41 * t13;
     const float t280 = t278 + t279;
     const float a_1_ddot = qdd[0];
-    const float t259 = p->value[11];
+    const float t259 = p->value[10];
     const float t260 = a_1_ddot * t259;
-    const float t263 = p->value[10];
+    const float t263 = p->value[9];
     const float t264 = t14 * t263;
     const float t265 = t260 - t264;
     const float t284 = t280 * t283;
     const float t285 = t277 * t284;
     const float t286 = t265 - t285;
     float rest = t286 - t286;
-    const float t299 = y * t17;
+    const float t299 = y * 0.8660254f;
     const float t300 = 0.5f * x;
     const float t301 = t300 + t12;
     const float t298 = z * t18;

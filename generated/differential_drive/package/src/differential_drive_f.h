@@ -19,7 +19,7 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      46     82      1      0      2      0
+ * inverse_dynamics      45     82      1      0      2      0
  * forward_dynamics     434    657      1      0      5      0
  * multipliers          533    801      1      0      5      0
  * singularity           42     86     14      3      2      0
@@ -303,11 +303,10 @@ differential_drive_status differential_drive_inverse_dynamics_f(const float q[7]
     const float t172 = t163 * t171;
     const float t173 = l_c * t162;
     const float t174 = c_x * t161;
-    const float t175 = 1.0f + 1.0f;
     const float t176 = b * b;
     const float m_w = p->m_w;
     const float t177 = m_w * t176;
-    const float t178 = t175 * t177;
+    const float t178 = 2.0f * t177;
     const float J = p->J;
     const float t179 = J + t178;
     const float t180 = t174 + t179;

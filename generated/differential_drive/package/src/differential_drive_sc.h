@@ -141,11 +141,10 @@ differential_drive_status differential_drive_inverse_dynamics_sc(const different
     const double t172 = t163 * t171;
     const double t173 = l_c * t162;
     const double t174 = c_x * t161;
-    const double t175 = 1.0 + 1.0;
     const double t176 = b * b;
     const double m_w = p->m_w;
     const double t177 = m_w * t176;
-    const double t178 = t175 * t177;
+    const double t178 = 2.0 * t177;
     const double J = p->J;
     const double t179 = J + t178;
     const double t180 = t174 + t179;
