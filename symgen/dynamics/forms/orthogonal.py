@@ -51,12 +51,12 @@ class WeightedGramSchmidt:
         """The right-hand sides of these."""
         return c
 
-    def regularity(self) -> Guard:
+    def regularity(self, status: Status) -> Guard:
         """det(A^T W A) over the squared lengths of the columns: 0 exactly where columns depend on each other."""
         graph = self._graph
         lengths = (_squared(graph, column, self._metric) for column in self._columns)
         quotients = [square / length for square, length in zip(self._squares, lengths, strict=True)]
-        return Guard(Status.CONSTRAINT_RANK, graph.product(quotients), 2, scale=graph.one)
+        return Guard(status, graph.product(quotients), 2, scale=graph.one)
 
     def solve(self, b: Vector, c: Vector) -> tuple[Vector, Vector]:
         """y and l of y + A l = b, A^T W y = c.
@@ -185,9 +185,9 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
         base = WeightedGramSchmidt(graph, self.chosen(rows), (graph.one,) * len(rows[0]))
         return base, transpose(tuple(map(base.shares, rows)), len(self._choices))
 
-    def regularity(self) -> Guard:
+    def regularity(self, status: Status) -> Guard:
         """The product of what is left of each chosen column, in units of its length."""
-        return Guard(Status.CONSTRAINT_RANK, self._graph.product(self._measures), 2, scale=self._graph.one)
+        return Guard(status, self._graph.product(self._measures), 2, scale=self._graph.one)
 
 
 def _combined(graph: Graph, shares: Sequence[Scalar], vectors: Sequence[Vector]) -> Vector:

@@ -19,6 +19,7 @@ from symgen.dynamics.inertia import Cholesky, diagonal_sizes
 from symgen.dynamics.spaces import LONGEST_PRODUCT
 from symgen.graph.matrix import Matrix, Vector, dot, subtract_vectors
 from symgen.graph.scalar import Graph, Scalar
+from symgen.ir.kernel import Status
 
 
 class Factor(Protocol):
@@ -90,11 +91,13 @@ class _Elimination:
         )
         self._all_rows = problem.rows
         self.rows = self._orthogonal.chosen(problem.rows)
-        # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
-        regular = () if r > min(rank, LONGEST_PRODUCT) else problem.guards
-        # light bodies may leave nothing of the difference of two rows, which are far from parallel by themselves
-        metric = (self._orthogonal.regularity(),) if r > 1 else ()
-        self._guards = (*regular, *metric, *factor.guards)
+        if r > min(rank, LONGEST_PRODUCT):
+            # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
+            self._guards: tuple[Guard, ...] = (self._orthogonal.regularity(Status.CONSTRAINT_RANK), *factor.guards)
+        else:
+            # light bodies may leave nothing of the difference of two rows, which are far from parallel by themselves
+            metric = (self._orthogonal.regularity(Status.MASS_RANK),) if r > 1 else ()
+            self._guards = (*problem.guards, *factor.guards, *metric)
 
     def asked(self, bias: Vector) -> Vector:
         """What the rows that are solved with ask for."""
