@@ -89,7 +89,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t295, t414, t459, t504, t549, t594, t639, t684, t729, t774, t819, t864, t909, t954, t999, t1197, t1260, t1419, t1372. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t295, t413, t447, t481, t515, t549, t583, t617, t651, t685, t719, t753, t787, t821, t855, t877, t1414, t1573, t1526. */
 void eva_forward_dynamics(void) {
     double q[16];
     double qd[16];
@@ -157,7 +157,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t295, t414, t459, t504, t549, t594, t639, t684, t729, t774, t819, t864, t909, t954, t999, t1197, t1260, t1419, t1372. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t295, t413, t447, t481, t515, t549, t583, t617, t651, t685, t719, t753, t787, t821, t855, t877, t1414, t1573, t1526. */
 void eva_multipliers(void) {
     double q[16];
     double qd[16];

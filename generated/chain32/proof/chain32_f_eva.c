@@ -137,7 +137,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t816, t861, t906, t951, t996, t1041, t1086, t1131, t1176, t1221, t1266, t1311, t1356, t1401, t1446, t1491, t1536, t1581, t1626, t1671, t1716, t1761, t1806, t1851, t1896, t1941, t1986, t2031, t2076, t2121, t2495, t2622, t2941, t2846. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t815, t849, t883, t917, t951, t985, t1019, t1053, t1087, t1121, t1155, t1189, t1223, t1257, t1291, t1325, t1359, t1393, t1427, t1461, t1495, t1529, t1563, t1597, t1631, t1665, t1699, t1733, t1767, t1801, t1823, t2936, t3255, t3160. */
 void eva_forward_dynamics(void) {
     float q[32];
     float qd[32];
@@ -253,7 +253,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t816, t861, t906, t951, t996, t1041, t1086, t1131, t1176, t1221, t1266, t1311, t1356, t1401, t1446, t1491, t1536, t1581, t1626, t1671, t1716, t1761, t1806, t1851, t1896, t1941, t1986, t2031, t2076, t2121, t2495, t2622, t2941, t2846. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t815, t849, t883, t917, t951, t985, t1019, t1053, t1087, t1121, t1155, t1189, t1223, t1257, t1291, t1325, t1359, t1393, t1427, t1461, t1495, t1529, t1563, t1597, t1631, t1665, t1699, t1733, t1767, t1801, t1823, t2936, t3255, t3160. */
 void eva_multipliers(void) {
     float q[32];
     float qd[32];

@@ -65,7 +65,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t214, t259, t304, t349, t394, t439, t549, t580, t659, t636. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t213, t247, t281, t315, t349, t383, t405, t654, t733, t710. */
 void eva_forward_dynamics(void) {
     double q[8];
     double qd[8];
@@ -109,7 +109,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t213, t259, t304, t349, t394, t439, t555, t580, t659, t690, t724, t758, t792, t826, t636. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t213, t247, t281, t315, t349, t383, t521, t566, t611, t656, t701, t817, t842, t921, t898. */
 void eva_multipliers(void) {
     double q[8];
     double qd[8];

@@ -1110,7 +1110,7 @@ void eva_inverse_dynamics_residual(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t196, t216, t222, t254, t306, t314, t265, t315, t390, t384. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t225, t234, t257, t209, t289, t345, t300, t346, t421, t415. */
 void eva_forward_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1153,7 +1153,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t196, t216, t222, t265, t254, t306, t315, t314, t390, t384. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t225, t234, t257, t300, t289, t209, t346, t345, t421, t415. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];
