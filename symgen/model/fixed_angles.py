@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import pi
 
 from symgen.model.expression import Binary, Expression, Negation, Number, Pi
+
+# In rad; robot descriptions and models that were computed elsewhere have no pi.
+QUARTER_TOLERANCE = 1e-8
 
 # sine of k * 15 degrees for k = 0 ... 6: factor and the number under its root
 _SINES: dict[int, tuple[Fraction, int]] = {
@@ -26,6 +30,18 @@ def exact_sine_and_cosine(angle: Expression) -> tuple[tuple[Fraction, int], tupl
         return None
     sine, cosine = sine_of_steps(int(steps)), sine_of_steps(int(steps) + 6)
     return None if sine is None or cosine is None else (sine, cosine)
+
+
+def quarter_turns(angle: Expression) -> int | None:
+    """How many quarter turns a number stands for that is written without pi, such as 1.5707963267948966.
+
+    None for 0, for what is further away than 1e-8 rad, and for anything that is no number.
+    """
+    parts = _parts(angle)
+    if parts is None or parts[1] != 0:
+        return None
+    turns = round(float(parts[0]) * 2 / pi)
+    return turns if turns and abs(float(parts[0]) - turns * pi / 2) < QUARTER_TOLERANCE else None
 
 
 def sine_of_steps(steps: int) -> tuple[Fraction, int] | None:

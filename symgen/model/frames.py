@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
-from symgen.model.expression import Number
+from symgen.diagnostics import Notice
+from symgen.model.combine import times
+from symgen.model.expression import Expression, Number, Pi
+from symgen.model.fixed_angles import quarter_turns
 from symgen.model.mechanism import AXES, NO_VECTOR, WORLD, ZERO, Frame, Point, Quaternion, Turn, Vector3
 from symgen.model.names import did_you_mean
 from symgen.model.reading import description_of, entries, items, member, text_of
@@ -113,8 +117,18 @@ def read_rotation(scope: Scope, node: Node | None, what: str) -> tuple[Turn, ...
         axis = read_axis(scope, pair[0], f"the axis of a turn of {what}")
         angle = scope.expression(pair[1], f"the angle of a turn of {what}", FRAME)
         if axis is not None and angle is not None:
-            turns.append(Turn(axis, angle))
+            turns.append(Turn(axis, _exactly(scope, angle, pair[1])))
     return tuple(turns)
+
+
+def _exactly(scope: Scope, angle: Expression, node: Node) -> Expression:
+    """The angle, with pi where it is a quarter turn to as many digits as were written."""
+    turns = quarter_turns(angle)
+    if turns is None:
+        return angle
+    meant = times(Number(Fraction(turns, 2), node.span), Pi(node.span))
+    scope.notices.append(Notice(f"`{text_of(node)}` is taken for {turns}*pi/2", node.span))
+    return meant
 
 
 def _frame(scope: Scope, key: ScalarNode, node: Node) -> Frame:

@@ -13,11 +13,11 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.diagnostics import Span
+from symgen.model.fixed_angles import QUARTER_TOLERANCE
 from symgen.model.source import ScalarNode
 
 MAXIMUM_DIGITS = 40
 MAXIMUM_EXPONENT = 300
-QUARTER_TOLERANCE = 1e-8
 FINEST = 400
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d{1,4}))?", re.ASCII)
 
