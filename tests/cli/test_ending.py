@@ -80,7 +80,9 @@ def test_a_signal_ends_compilers_and_says_what_was_written(
     models = [*([] if first else [str(model(tmp_path, "quick"))]), str(model(tmp_path, "hanging"))]
     command = [sys.executable, "-m", "symgen", *models, "--only", "c", "--quiet", "--out", str(tmp_path / "out")]
     environment = {**os.environ, "CC": str(compiler), "TMPDIR": str(temporary)}
-    started = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    started = subprocess.Popen(
+        command, env=environment, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=_listening
+    )
     assert started.stderr is not None
     with started.stderr:
         # one driver and one compiler for each of two scalar types
@@ -118,6 +120,12 @@ def test_a_run_that_is_killed_leaves_no_compiler(tmp_path: Path) -> None:
     started.kill()
     started.wait()
     assert not any(map(runs, map(int, marks.read_text().split())))
+
+
+def _listening() -> None:
+    """Signals as a terminal sends them, whatever the tests themselves run under: `nohup` ignores some."""
+    for number in ENDINGS:
+        signal.signal(number, signal.SIG_DFL)
 
 
 def test_the_guardian_lets_groups_that_have_ended_alone() -> None:
