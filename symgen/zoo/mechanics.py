@@ -61,20 +61,22 @@ def equations(system: System) -> Equations:
     bias = [force + more for force, more in zip(bias, potential, strict=True)]
     for magnitude, rate in system.applied:
         bias = [force - magnitude * part for force, part in zip(bias, tape.gradient(rate, rates), strict=True)]
-    jacobian, drift = [], []
-    for row in system.rows:
-        speed = system.rate(row.value) if row.geometric else row.value
-        jacobian.append(tuple(tape.gradient(row.value, names) if row.geometric else tape.gradient(speed, rates)))
-        drift.append(system.rate(speed))
+    drift = [system.rate(system.rate(row.value) if row.geometric else row.value) for row in system.rows]
     columns = [tape.gradient(system.power(entry), rates) for entry in (system.blocks.get("inputs") or {}).values()]
     return Equations(
         mass=tuple(map(tuple, mass)),
         bias=tuple(bias),
-        rows=tuple(jacobian),
+        rows=constraint_jacobian(system),
         drift=tuple(drift),
         residual=tuple(row.value for row in system.rows if row.geometric),
         control=tuple(tuple(column[i] for column in columns) for i in range(n)),
     )
+
+
+def constraint_jacobian(system: System) -> tuple[tuple[Node, ...], ...]:
+    """The rows of the constraints, alone."""
+    tape, names, rates = system.tape, system.coordinates, system.rate_names
+    return tuple(tuple(tape.gradient(row.value, names if row.geometric else rates)) for row in system.rows)
 
 
 def _partial(system: System, vector: Vector, rate: str) -> Vector:

@@ -10,7 +10,7 @@ import numpy as np
 
 from symgen.zoo.dice import Dice, decimal, exact
 from symgen.zoo.fields import Floats
-from symgen.zoo.mechanics import equations
+from symgen.zoo.mechanics import constraint_jacobian
 from symgen.zoo.names import Namer
 from symgen.zoo.reader import System
 from symgen.zoo.tape import Node
@@ -100,7 +100,7 @@ class Sketch:
     def rows(self, away: float = 0.0) -> Any:
         """Rows of length 1 of the constraint Jacobian at the start, or at a place that is about so far away from it."""
         system = System(expanded(self.blocks, self.files))
-        rows = equations(system).rows
+        rows = constraint_jacobian(system)
         values = {name: value + self.dice.uniform(-away, away) for name, value in self.start.items()}
         values |= dict.fromkeys(system.rate_names, 0.0)
         for name, node in system.parameters.items():
