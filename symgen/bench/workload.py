@@ -20,7 +20,7 @@ class Workload:
     """Inputs of one scalar type, row by row, and exact results as a sum high + low of two float64 arrays.
 
     `states` (k, 2 n + third + P) holds q, q̇, the third array and the parameters; `units` is d + eps |y| of the
-    first states (theory.md section 6, item 9).
+    first states (`verify/tolerance.py`).
     """
 
     scalar: Scalar

@@ -2,7 +2,7 @@
 
 All arguments of sin, cos and tan are integer combinations of a few *atoms*.  The atoms are chosen among the arguments
 themselves (preferably those of the constraints), so that a mechanism written in relative angles still gets its short
-closed forms in absolute ones (theory.md, section 5, step 1).
+closed forms in absolute ones.
 """
 
 from __future__ import annotations

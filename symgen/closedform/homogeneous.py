@@ -2,7 +2,7 @@
 
 A polynomial whose monomials all have the same degree parity in (s_i, c_i) becomes homogeneous in each pair after
 multiplication with powers of s_i^2 + c_i^2 = 1.  There the ordinary polynomial ring is a unique factorisation domain,
-so ordinary gcd and factorisation recognise sin(a - b) and the like (theory.md, section 5).
+so ordinary gcd and factorisation recognise sin(a - b) and the like.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Null spaces by minors: the form Phi of a constraint Jacobian, its projector and the pseudoinverse of N_B M.
 
 Phi_J, for a delta-subset J of the coordinates, is det[e_J, B^T]: the signed minor of B without the columns J.  For
-delta = 1 it is the generalized cross product of the rows, for delta = 2 an antisymmetric matrix (theory.md, 3.1).
+delta = 1 it is the generalized cross product of the rows, for delta = 2 an antisymmetric matrix (decision 1).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """The ring Q[names, opaque atoms][s_i, c_i] / (s_i^2 + c_i^2 - 1) and its field of fractions.
 
 Elements are SymPy's sparse polynomials.  {s_i^2 + c_i^2 - 1} is a Groebner basis with coprime leading terms, so "every
-s_i to the power 0 or 1" is a canonical form: two elements are equal exactly when their normal forms are
-(theory.md, section 5).
+s_i to the power 0 or 1" is a canonical form: two elements are equal exactly when their normal forms are.
 """
 
 from __future__ import annotations

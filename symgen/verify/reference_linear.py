@@ -71,7 +71,7 @@ def determinant(matrix: Any) -> Any:
 def right_pseudoinverse(matrix: Any, rank: int) -> Any:
     """B+ (n x r) of B (r x n) of the given generic rank.
 
-    For rank < r the Cauchy-Binet mean over the row subsets I of that size (theory.md 3.1): B+ = sum_I w_I [B_I+],
+    For rank < r the Cauchy-Binet mean over the row subsets I of that size: B+ = sum_I w_I [B_I+],
     w_I = det(B_I B_I') / sum.  It is smooth near the manifold, and the Moore-Penrose inverse on it.  With e_k the sum
     of the principal minors of size k of A = B B', it is B' times the gradient of e_rank by A, divided by e_rank.
     """

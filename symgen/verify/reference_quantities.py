@@ -1,6 +1,6 @@
-"""The quantities of interface.md section 2 at one state, each from its definition.
+"""The quantities of docs/quantities.md at one state, each from its definition.
 
-Equation numbers are those of the paper as corrected in theory.md; notation as in `reference_evaluation`.
+Equation numbers are those of the paper as corrected in the README; notation as in `reference_evaluation`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How far a correct kernel may be from the reference (theory.md section 6, item 9).
+"""How far a correct kernel may be from the reference.
 
 |y - y*| <= 16 (d + eps |y*|), where d is the largest |y*(x + dx) - y*| over 8 random dx with |dx_i| = eps |x_i| in
 all inputs, run-time parameters and literals of the model.  So d holds the condition of the quantity at this state.

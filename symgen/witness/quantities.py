@@ -1,4 +1,4 @@
-"""The projected quantities of interface.md section 2, from the unprojected mechanics and the generic ranks."""
+"""The projected quantities, from the unprojected mechanics and the generic ranks."""
 
 from __future__ import annotations
 

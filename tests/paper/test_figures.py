@@ -1,4 +1,4 @@
-"""Figures 4 to 7 of the paper, recomputed for the RA-PKM on its circle; the numbers are theory.md's, section 4."""
+"""Figures 4 to 7 of the paper, recomputed for the RA-PKM on its circle."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_figure_6_some_pair_is_always_far_from_singular() -> None:
 
 
 def test_figure_6_determinants_are_those_of_the_projected_columns() -> None:
-    """det M̃_JᵀM̃_J = Δ_J²/det BBᵀ with Δ_J = det[M_J, Bᵀ] (theory.md 3.1)."""
+    """det M̃_JᵀM̃_J = Δ_J²/det BBᵀ with Δ_J = det[M_J, Bᵀ] (decision 1)."""
     data = rapkm()[1]
     for c in data.curves:
         bordered = np.concatenate([data.forces.M[:, :, list(c.inputs)], np.swapaxes(data.forces.B, 1, 2)], axis=2)

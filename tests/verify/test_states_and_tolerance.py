@@ -1,4 +1,4 @@
-"""Verification states lie where they should, and the tolerance is the one of theory.md section 6, item 9."""
+"""Verification states lie where they should, and the tolerance is d + eps |y|, 16 times."""
 
 from __future__ import annotations
 
