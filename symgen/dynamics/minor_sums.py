@@ -22,6 +22,8 @@ def squared_minors(graph: Graph, columns: Sequence[Vector], degree: int) -> Scal
     # those of columns that share no coordinate multiply
     sums = [graph.one, *(graph.zero for _ in range(degree))]
     for block in components(transpose(tuple(columns), len(columns[0]))):
+        if not block.columns:
+            continue  # a coordinate that no column has an entry for
         own = _of_block(graph, tuple(columns[k] for k in block.columns), degree)
         sums = [graph.sum(sums[k - i] * x for i, x in enumerate(own[: k + 1])) for k in range(degree + 1)]
     return sums[degree]

@@ -46,6 +46,17 @@ def test_no_digit_is_lost_between_many_minors(rows: int, number: int, degree: in
     assert abs(Fraction(found) - meant) <= Fraction(200 * 2**-53 / near) * meant
 
 
+def test_coordinates_without_entries_change_nothing() -> None:
+    graph = Graph()
+    inner = [tuple(graph.symbol(f"x{i}_{k}") for i in range(6)) for k in range(8)]
+    columns = [(graph.zero, *column, graph.zero) for column in inner]
+    point = {f"x{i}_{k}": ((3 * i + 5 * k + i * k) % 11 - 5.5) / 7 for i in range(6) for k in range(8)}
+    assert not small_family([[0]], columns, 4)
+    (padded,) = Evaluator([squared_minors(graph, columns, 4)])(point)
+    (alone,) = Evaluator([squared_minors(graph, inner, 4)])(point)
+    assert padded == alone > 0
+
+
 def test_columns_that_depend_on_each_other_have_no_minors() -> None:
     graph = Graph()
     column = tuple(graph.symbol(f"x{i}") for i in range(12))
