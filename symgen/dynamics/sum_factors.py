@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 
-from symgen.dynamics.terms import product_of, sum_of, terms_of
+from symgen.dynamics.terms import MOST_TERMS, SUMS, product_of, sum_of, terms_of, without_opposites
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import topological, uses_of
 from symgen.records import dataclass
-
-_SUMS = frozenset({"add", "sub"})
-# Longer sums stay as they are.
-MOST_TERMS = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +40,13 @@ def with_common_factors(
     order = topological(outputs)
     uses = uses_of(order, outputs)
     whole = {node for node in order if uses[node] > 1 and (apart is None or not apart(node))}
-    sums = [a for node in order if node.op in _SUMS for a in node.args if a.op in _SUMS]
+    sums = [a for node in order if node.op in SUMS for a in node.args if a.op in SUMS]
     inside = {a for a in sums if uses[a] == 1 or (apart is not None and any(map(apart, a.args)))}
     image: dict[Scalar, Scalar] = {}
     for node in order:
         args = tuple(map(image.__getitem__, node.args))
         image[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
-        if node.op in _SUMS and (node not in inside or uses[node] > 1):
+        if node.op in SUMS and (node not in inside or uses[node] > 1):
             terms = [_Term(sign, term, _factors(term, whole)) for sign, term in terms_of(node, inside)]
             groups = _grouped(terms, numbers=apart is not None)
             if any(group.common for group in groups):
@@ -117,7 +113,8 @@ class _Quotients:
     def product(self, group: _Group, sign: int) -> Scalar:
         """The group, divided by a sign."""
         rests = [(sign * term.sign, self._rest(term.product, Counter(group.common))) for term in group.terms]
-        inner = sum_of(self.graph, [(s, self.graph.one if rest is None else rest) for s, rest in rests])
+        terms = [(s, self.graph.one if rest is None else rest) for s, rest in rests]
+        inner = sum_of(self.graph, without_opposites(terms) if group.common else terms)
         if not group.common:
             return inner
         return self.graph.raw("mul", (product_of(self.graph, [self.image[f] for f in group.common]), inner))

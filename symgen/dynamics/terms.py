@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Sequence
 from typing import TypeAlias
 
 from symgen.graph.scalar import Graph, Scalar
 
 Term: TypeAlias = tuple[int, Scalar]
+SUMS = frozenset({"add", "sub"})
+# Longer sums stay as they are.
+MOST_TERMS = 64
 
 
 def terms_of(node: Scalar, inside: Collection[Scalar]) -> list[Term]:
@@ -22,6 +26,35 @@ def terms_of(node: Scalar, inside: Collection[Scalar]) -> list[Term]:
         else:
             found.append((sign, part))
     return found
+
+
+def without_opposites(terms: Sequence[Term]) -> list[Term]:
+    """The terms, each sum among them taken apart that holds the opposite of another: (a + b) - b is a.
+
+    What is added and taken off again takes digits of the rest with it. Terms that come to 0 stay as they are.
+    """
+    for place, (sign, node) in enumerate(terms):
+        inside = Counter((sign * own, part) for own, part in _added_up(node))
+        beside = Counter([*terms[:place], *terms[place + 1 :]])
+        gone = inside & Counter({(-own, part): count for (own, part), count in beside.items()})
+        left = (inside - gone) + (beside - Counter({(-own, part): count for (own, part), count in gone.items()}))
+        if gone and left:
+            return without_opposites(list(left.elements()))
+    return list(terms)
+
+
+def _added_up(node: Scalar) -> list[Term]:
+    """The terms of a sum and of the sums that it adds up; none for what is no sum."""
+    found: list[Term] = []
+    stack = [(1, node)] if node.op in SUMS else []
+    while stack and len(found) + len(stack) <= MOST_TERMS:
+        sign, part = stack.pop()
+        if part.op in SUMS:
+            left, right = part.args
+            stack += [(-sign if part.op == "sub" else sign, right), (sign, left)]
+        else:
+            found.append((sign, part))
+    return [] if stack else found
 
 
 def sum_of(graph: Graph, terms: Sequence[Term]) -> Scalar:

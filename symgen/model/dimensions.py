@@ -1,7 +1,7 @@
 """Dimensions inferred through the expressions of a model: only contradictions in what the user wrote are mistakes.
 
-Names without a unit are free and fit everywhere.  So are literals, save those that are plainly counts: 1/2, 1, 2, 4,
-integers that something is divided by, and quotients of integers (so that `m/2*x_dot**2` has a unit).
+Names without a unit are free and fit everywhere.  So are literals (0.25 may be a length), save those that are plainly
+counts: 1/2, 1, 2, 4, integers that something is divided by, and quotients of integers (`m/2*x_dot**2` has a unit).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from symgen.model.walk import names_in
 Dimension: TypeAlias = Unit | None
 """None where a dimension is free."""
 
-_COUNTS = frozenset({Fraction(1), Fraction(2), Fraction(4), Fraction(1, 2), Fraction(1, 4)})
+_COUNTS = frozenset({Fraction(1), Fraction(2), Fraction(4), Fraction(1, 2)})
 _SAME_UNIT = "use one unit for each kind of quantity, such as m throughout; nothing is converted"
 _CHECK_TERMS = "check the terms, and the units declared for their names"
 

@@ -115,3 +115,15 @@ rolling: {ground: {frame: hoop, radius: RADIUS}}
 """
     for radius in ("1", "2", "0.35", "1/4"):
         assert load_text(text.replace("RADIUS", radius), "hoop.yaml").r == 2
+
+
+def test_a_quarter_may_be_a_length() -> None:
+    """A user's 0.25 is as good a length as his 0.3; numbers that count are those of energies and of integers."""
+    text = """\
+model: pin
+coordinates: {x: {unit: m}, a: {unit: rad}}
+kinetic_energy: 3*x_dot**2 + 1/4*a_dot**2
+constraints: {geometric: {pin: "x - 0.25*sin(a)"}}
+configuration: {x: 0, a: 0}
+"""
+    assert load_text(text, "pin.yaml").r == 1

@@ -13,7 +13,7 @@ from symgen.dynamics.late_factors import with_late_factors
 from symgen.dynamics.sum_factors import MOST_TERMS, with_common_factors
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Graph, Scalar
-from symgen.graph.traverse import cost
+from symgen.graph.traverse import cost, topological
 
 NAMES = "a b c f g h k x y z"
 POINT = {name: 0.7 + 0.31 * place for place, name in enumerate(NAMES.split())}
@@ -42,6 +42,23 @@ def test_a_factor_leaves_terms_that_are_no_neighbours(graph: Graph) -> None:
     found = with_common_factors(graph, outputs)
     assert multiplications(found) == multiplications(outputs) - 1
     assert values(found) == pytest.approx(values(outputs))
+
+
+def test_what_a_sum_adds_and_another_term_takes_off_is_gone(graph: Graph) -> None:
+    a, b, c, f, g, *_ = symbols(graph)
+    for outer in (a + b, a - b, (b - c) + a, (a + c) + b):
+        rest = outer - a if outer.args[0] is a or outer.args[1] is a else None
+        # the sum is needed by itself, too, so that it stays whole when terms are collected
+        outputs = [(outer * f - g) - a * f, outer]
+        (found, whole) = with_common_factors(graph, outputs)
+        (inner,) = [node for node in topological([found]) if node.op == "mul" and f in node.args]
+        assert a not in topological([inner])
+        assert whole is outer
+        assert rest is None or rest in inner.args
+        assert values([found]) == pytest.approx(values(outputs[:1]))
+    big = {**POINT, "a": 1e20}
+    (found, _) = with_common_factors(graph, [((a + b) * f - g) - a * f, a + b])
+    assert Evaluator([found])(big) == pytest.approx(values([b * f - g]))
 
 
 def test_terms_without_a_partner_and_all_signs(graph: Graph) -> None:
