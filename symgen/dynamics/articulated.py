@@ -12,8 +12,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from symgen.dynamics.bodies import Bodies, Vector3
-from symgen.dynamics.free_joints import free_joint
+from symgen.dynamics.free_joints import FreeJoint, free_joint
 from symgen.dynamics.guards import Guard, magnitude
+from symgen.dynamics.quaternion_joints import QuaternionJoint, quaternion_joint
 from symgen.graph.calculus import gradient
 from symgen.graph.matrix import Matrix, Vector, dot
 from symgen.graph.scalar import Graph, Scalar
@@ -50,13 +51,19 @@ class ArticulatedFactor:
         self._parents = {frame.name: frame.parent for frame in mechanism.frames}
         self.rotors = self._rotor_inertias()
         directions = {name: self._moved_by(name) for name in self.frames}
-        free = {name: free_joint(dict(own)) for name, own in directions.items() if len(own) == 6}
-        self._free = {name: joint for name, joint in free.items() if joint is not None}
+        # rotors resist coordinates, not twists
+        plain = {name: dict(own) for name, own in directions.items() if self.rotors.keys().isdisjoint(dict(own))}
+        free = {name: joint for name, own in plain.items() if (joint := free_joint(own)) is not None}
+        quaternions = {name: quaternion_joint(bodies, name, own) for name, own in plain.items()}
+        turned = {name: joint for name, joint in quaternions.items() if joint is not None}
+        self.quaternions = list(turned.values())
+        self._free: dict[str, FreeJoint | QuaternionJoint] = {**free, **turned}
         moved = [coordinate for own in directions.values() for coordinate, _ in own]
         if sorted(moved) != list(range(len(bodies.q))):
             raise ValueError("a coordinate moves no frame, or several")
         # by frame: its coordinates, and the motions they give the frame in its axes; unit twists where it moves freely
-        self.directions = directions | {name: joint.directions(self.graph) for name, joint in self._free.items()}
+        unit = {name: joint.directions(dict(directions[name]), self.graph) for name, joint in self._free.items()}
+        self.directions = directions | unit
         self._yielding: dict[str, list[Yielding]] = {}
         sizes = self.sizes()
         pivots: dict[int, Scalar] = {}
@@ -66,25 +73,26 @@ class ArticulatedFactor:
         for name in reversed(self.frames):
             inertia = inertias[name]
             rigid = self.own_inertia(name)
-            found: list[Yielding] = []
+            yielding: list[Yielding] = []
             for coordinate, direction in reversed(self.directions[name]):
                 rotor = self.rotors.get(coordinate, self.graph.zero)
                 met = self._times(inertia, direction)
                 pivot = self._dot(direction, met) + rotor
                 share = tuple(x if x.is_zero else x / pivot for x in met)
                 inertia = self.freed(inertia, direction, met, share, rotor)
-                found.append(Yielding(coordinate, direction, pivot, share))
+                yielding.append(Yielding(coordinate, direction, pivot, share))
                 pivots[coordinate] = pivot
                 self.own[coordinate] = self._dot(direction, self._times(rigid, direction)) + rotor
                 scales[coordinate] = self.size(direction, sizes[name]) + rotor
-            self._yielding[name] = found
+            self._yielding[name] = yielding
             parent = self._parents[name]
             if parent != WORLD:
                 inertias[parent] = _summed(inertias[parent], self.carried_inertia(name, inertia))
-        order = range(len(bodies.q))
-        self.pivots: list[Scalar] = [pivots[j] for j in order]
-        turns = (Guard(Status.MASS_RANK, joint.determinant, 1) for joint in self._free.values())
-        self.guards = (*(Guard(Status.MASS_RANK, pivots[j], 1, scale=scales[j]) for j in order), *turns)
+        # of the length of a quaternion the pivot says nothing: its rate is that of the row that holds it
+        self.pivots: list[Scalar] = [pivots.get(j, self.graph.one) for j in range(len(bodies.q))]
+        turns = (Guard(Status.MASS_RANK, joint.determinant, 1) for joint in free.values())
+        along = (Guard(Status.MASS_RANK, pivots[j], 1, scale=scales[j]) for j in sorted(pivots))
+        self.guards = (*along, *turns)
 
     def lowered(self, b: Sequence[Scalar], wrenches: Mapping[str, Six] | None = None) -> Vector:
         """The solution of L y = b; `wrenches` on frames are part of the generalized force b."""

@@ -236,11 +236,18 @@ def derive(entry: Entry, derivation: Derivation) -> Derived:
     """A quantity along one null space."""
     shape = entry.shape(sizes(derivation.mechanics.model, derivation.generic))
     outputs = entry.outputs(derivation)
-    if all(output.constant is not None for output in outputs):
-        # a status is decided on what the result depends on: here on nothing
-        return Derived(entry.name, shape, outputs, ())
-    guards = tuple(g for g in entry.guards(derivation) if g.denominator.constant is None)
+    guards = () if _fixed(outputs) else tuple(g for g in entry.guards(derivation) if g.denominator.constant is None)
     return Derived(entry.name, shape, outputs, guards)
+
+
+def resting_on(guards: tuple[Guard, ...], name: str, outputs: Vector) -> Derived:
+    """A vector that divides by what these guards look at."""
+    return Derived(name, (len(outputs),), outputs, () if _fixed(outputs) else guards)
+
+
+def _fixed(outputs: Vector) -> bool:
+    """Whether a result depends on nothing: a status is decided on what it depends on."""
+    return all(output.constant is not None for output in outputs)
 
 
 def scalars(derived: Derived) -> tuple[Scalar, ...]:

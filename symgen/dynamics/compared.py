@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.dynamics.catalogue import Derived
+from symgen.dynamics.catalogue import Derived, resting_on
 from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.articulated import articulated
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
@@ -77,8 +77,8 @@ def _quantities(mechanics: Mechanics, generic: Genericity, space: NullSpace, nam
 
 
 def _of_motion(generic: Genericity, made: Motion) -> tuple[Derived, ...]:
-    accelerations = Derived("forward_dynamics", (generic.n,), made.accelerations, made.guards)
-    multipliers = Derived("multipliers", (generic.r,), made.multipliers, made.guards)
+    accelerations = resting_on(made.guards, MOTIONS[0], made.accelerations)
+    multipliers = resting_on(made.guards, MOTIONS[1], made.multipliers)
     return (accelerations, multipliers) if generic.r else (accelerations,)
 
 

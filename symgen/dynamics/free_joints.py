@@ -26,7 +26,7 @@ class FreeJoint:
     back: Rows[Scalar]
     determinant: Scalar
 
-    def directions(self, graph: Graph) -> list[tuple[int, Six]]:
+    def directions(self, _: Mapping[int, Six], graph: Graph) -> list[tuple[int, Six]]:
         """Unit twists in place of the coordinates' directions; forces are met last from the tip."""
         units = [tuple(graph.one if i == j else graph.zero for j in range(6)) for i in range(6)]
         return list(zip((*self.angles, *self.places), units, strict=True))

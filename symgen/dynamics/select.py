@@ -19,6 +19,7 @@ from symgen.dynamics.catalogue import (
     by_blocks,
     derive,
     missing,
+    resting_on,
     scalars,
 )
 from symgen.dynamics.derivation import Derivation
@@ -135,7 +136,7 @@ def articulated_motion(model: Model, generic: Genericity) -> dict[str, Derived]:
         return {}
     motion = found[1]
     outputs = dict(zip(MOTIONS, (motion.accelerations, motion.multipliers), strict=True))
-    return {name: Derived(name, (len(values),), values, motion.guards) for name, values in outputs.items() if values}
+    return {name: resting_on(motion.guards, name, values) for name, values in outputs.items() if values}
 
 
 def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:

@@ -13,10 +13,10 @@ from dataclasses import replace
 from functools import cached_property
 
 from symgen.dynamics.articulated import ArticulatedFactor, Six
+from symgen.dynamics.forms.held_lengths import along_factor_with_lengths, held_lengths
 from symgen.dynamics.forms.local_inertias import definite_by_frames
 from symgen.dynamics.forms.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.dynamics.forms.motion import Motion, Problem
-from symgen.dynamics.forms.schur import along_factor
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
@@ -108,8 +108,13 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
     if not definite_by_frames(mechanics, factor):
         return None
     rows, graph = mechanics.constraint_jacobian, mechanics.graph
-    few = 0 < len(rows) <= LONGEST_PRODUCT
-    guards = reflected(graph, rows, mechanics.n, generic.rank).guards if few else ()
+    held = held_lengths(factor.quaternions, rows, graph)
+    if held is None:
+        return None
+    others = held.others(len(rows))
+    tested = [rows[i] for i in others] if held.apart(rows) else rows
+    few = 0 < len(others) <= LONGEST_PRODUCT
+    guards = reflected(graph, tuple(tested), mechanics.n, len(tested)).guards if few else ()
     columns = [factor.lowered(direct, loads) for direct, loads in _forces(mechanics)]
     loops = list[tuple[LoopPoint, str]]()
     for loop in loop_points(mechanics):
@@ -119,7 +124,7 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
         loops.append((loop, frame))
     problem = _Loops(mechanics, guards, loops)
     force = factor.lowered(mechanics.given_force, _weights_and_inertial_forces(mechanics))
-    motion = along_factor(problem, factor, columns, force)
+    motion = along_factor_with_lengths(problem, factor, columns, force, held)
     return mechanics, replace(motion, multipliers=problem.of_the_model(motion.multipliers))
 
 

@@ -1,0 +1,125 @@
+"""q_ddot and lambda of bodies that quaternions turn go from body to body, the lengths of the quaternions apart."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from symgen.dynamics.articulated import ArticulatedFactor
+from symgen.dynamics.compared import quantities_by
+from symgen.dynamics.forms.articulated import articulated
+from symgen.dynamics.genericity import genericity, parameter_values
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.select import derive_quantities
+from symgen.graph.evaluate import Evaluator
+from symgen.model.load import load_text
+from symgen.model.model import Model
+
+SWING = """model: swing
+parameters: {{m: 1.3, l: 0.4, g: 9.81}}
+gravity: [0, -g, 0]
+joints:
+  shoulder: {{type: spherical, at: [0, l, 0], child: arm, coordinates: [a_0, a_1, a_2, a_3]}}
+  elbow: {{type: revolute, parent: arm, at: [l, 0, 0.1], axis: [0, 0.6, 0.8], coordinate: b}}
+  wrist: {{type: spherical, parent: elbow, at: [0, l, 0], rotation: [[x, 0.3]], child: hand,
+          coordinates: [w_0, w_1, w_2, w_3]}}
+bodies:
+  arm: {{mass: m, com: [l/2, 0, 0.02], inertia: {{xx: 0.02, yy: 0.03, zz: 0.035, xy: 0.002}}}}
+  elbow: {{mass: 2*m, com: [0, l/2, 0], inertia: {{xx: 0.03, yy: 0.01, zz: 0.03}}}}
+  hand: {{mass: 0.5, com: [0.1, 0, 0.05], inertia: {{xx: 0.002, yy: 0.003, zz: 0.004}}}}
+points: {{tip: {{frame: hand, at: [0.2, 0, 0.1]}}, hook: {{at: [1, 0.2, -1]}}}}
+{constraints}
+inputs:
+  u: {{joint: b}}
+  v: {{cable: [tip, hook]}}
+{inputs}
+outputs: [forward_dynamics, multipliers]
+"""
+HELD = "constraints: {geometric: {height: tip.y - 0.3}}"
+# a row and a force that know a quaternion's length
+FELT = "constraints: {geometric: {gear: w_0 - 0.4*b - 0.9*a_1}}"
+DRIVEN = "  w: {acts_on: {w_0: 1, w_2: -0.3}}"
+
+CRAFT = """model: craft
+parameters: {m: 3, J: 0.1}
+gravity: [0, 0, -9.81]
+joints:
+  hull: {type: floating, coordinates: [x, y, z, e_0, e_1, e_2, e_3]}
+  wheel: {type: revolute, parent: hull, axis: [0, 0.6, 0.8], at: [0.1, 0, 0.2], coordinate: a}
+  pod: {type: spherical, parent: hull, at: [0, 0.3, 0], coordinates: [p_0, p_1, p_2, p_3]}
+bodies:
+  hull: {mass: m, com: [0.05, 0, 0.02], inertia: {xx: J, yy: 1.2*J, zz: 0.9*J, xy: 0.01}}
+  wheel: {mass: 1, inertia: {xx: 0.01, yy: 0.01, zz: 0.015}}
+  pod: {mass: 0.8, com: [0, 0, -0.1], inertia: {xx: 0.01, yy: 0.01, zz: 0.004}}
+inputs:
+  f: {point: hull, direction: [0, 0, 1], axes: hull}
+  spin: {joint: a}
+  s: {acts_on: {y: 1, e_3: 2}}
+outputs: [forward_dynamics, multipliers]
+"""
+
+
+def swing(constraints: str = "", inputs: str = "") -> Model:
+    """Two ball joints and a hinge between them."""
+    return load_text(SWING.format(constraints=constraints, inputs=inputs), "swing.yaml")
+
+
+def quaternions(model: Model) -> list[list[str]]:
+    """The coordinates of each quaternion."""
+    names = [c.name for c in model.coordinates]
+    mechanics = Mechanics(model)
+    return [[names[j] for j in joint.parts] for joint in ArticulatedFactor(mechanics.bodies).quaternions]
+
+
+MODELS = {
+    "free": swing(),
+    "held": swing(HELD),
+    "felt": swing(FELT, DRIVEN),
+    "craft": load_text(CRAFT, "craft.yaml"),
+}
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS.keys())
+def test_as_along_an_orthonormal_basis(model: Model) -> None:
+    """At random states, where no quaternion has length 1 and no row is 0."""
+    generic = genericity(Mechanics(model))
+    found = articulated(model, generic)
+    assert found is not None
+    mechanics, derived = quantities_by(model, generic, "nullspace")
+    one = Evaluator([*found[1].accelerations, *found[1].multipliers])
+    other = Evaluator([x for quantity in derived for x in quantity.outputs])
+    source = random.Random(5)
+    for _ in range(4):
+        point = dict(parameter_values(mechanics))
+        for c in model.coordinates:
+            point[c.name], point[c.rate] = source.uniform(-1, 1), source.uniform(-1, 1)
+        for four in quaternions(model):
+            point |= {name: source.choice([-1, 1]) * source.uniform(0.3, 0.9) for name in four}
+        point |= {control.name: source.uniform(-1, 1) for control in model.inputs}
+        assert one(point) == pytest.approx(other(point), rel=1e-9, abs=1e-9)
+
+
+def test_what_holds_a_length_is_free_of_force() -> None:
+    """Exactly 0 as long as nothing acts on the coordinates themselves; a cable acts on a body."""
+    found = articulated(swing(), genericity(Mechanics(swing())))
+    driven = articulated(swing(inputs=DRIVEN), genericity(Mechanics(swing())))
+    assert found is not None
+    assert driven is not None
+    assert [x.is_zero for x in found[1].multipliers] == [True, True]
+    assert [x.is_zero for x in driven[1].multipliers] == [True, False]
+
+
+def test_chains_of_ball_joints_go_from_body_to_body() -> None:
+    choices = derive_quantities(swing(HELD), ["forward_dynamics", "multipliers"]).choices
+    assert [choice.way for choice in choices] == ["articulated inertias"] * 2
+
+
+def test_a_rotor_resists_a_coordinate_and_no_turn() -> None:
+    text = SWING.replace("type: spherical, at", "type: revolute, at").replace("[a_0, a_1, a_2, a_3]", "[a_0]")
+    plain, rotor = (
+        load_text(text.format(constraints=held, inputs=""), "swing.yaml")
+        for held in ("", "rotor_inertias: {w_1: 0.01}")
+    )
+    assert quaternions(plain) == [["w_0", "w_1", "w_2", "w_3"]]
+    assert quaternions(rotor) == []
