@@ -36,7 +36,8 @@ def compensated(kernel: Kernel, scalar: Scalar, chosen: Collection[str]) -> Kern
     blocks = [replace(block, statements=writer.block(block.statements)) for block in kernel.blocks]
     last, outputs = writer.corrected(kernel.outputs)
     blocks[-1] = replace(blocks[-1], statements=(*blocks[-1].statements, *last))
-    made = replace(kernel, blocks=_needed(blocks, outputs), outputs=outputs, alike=())
+    blocks_needed, own_pairs = _needed(blocks, outputs), frozenset(writer.turned)
+    made = replace(kernel, blocks=blocks_needed, outputs=outputs, alike=(), own_pairs=own_pairs)
     same_kernel(f"carrying rounding errors of {kernel.name}", Lifted(kernel), Lifted(made), squares_roots=True)
     return made
 
@@ -66,9 +67,9 @@ class _Writer:
         self._statements: list[Statement] = []
         self._errors: dict[str, Operand] = {}
         self._halves: dict[Operand, tuple[Operand, Operand]] = {}
-        self._angles = {load.local for load in kernel.loads if load.argument == "q"}
         self._taken = {load.local for load in kernel.loads} | _targets(kernel.blocks)
         self._count = 0
+        self.turned: set[str] = set()
 
     def block(self, statements: Sequence[Statement]) -> tuple[Statement, ...]:
         """The statements, with those for their errors."""
@@ -77,9 +78,6 @@ class _Writer:
             self._statements.append(statement)
             if statement.operation == "sincos":
                 self._pair(statement)
-            elif self._is_angle(statement):
-                # what rounding takes of a sum of coordinates is no more than what it took of them
-                self._angles.update(statement.targets)
             else:
                 self._one(statement)
         return tuple(self._statements)
@@ -93,14 +91,6 @@ class _Writer:
             if output not in found:
                 found[output] = output if error is None else self.emit("add", output, error)
         return tuple(self._statements), tuple(found[output] for output in outputs)
-
-    def _is_angle(self, statement: Statement) -> bool:
-        read = names_in(statement.operands)
-        whole = all(o.value.denominator == 1 for o in statement.operands if isinstance(o, Literal))
-        if not read or not read <= self._angles:
-            return False
-        multiple = statement.operation == "mul" and whole and len(read) == 1
-        return multiple or statement.operation in ("add", "sub", "neg")
 
     def _one(self, statement: Statement) -> None:
         (target,) = statement.targets
@@ -117,6 +107,8 @@ class _Writer:
         """Along the radius onto the unit circle, and along the circle by the error of the angle."""
         sine, cosine = map(Local, statement.targets)
         turned = self._error(statement.operands[0])
+        if turned is not None:
+            self.turned |= names_in(statement.operands)
         inwards: _Error = None
         if not self._chosen.isdisjoint(statement.targets):
             squares = [self.emit("mul", x, x) for x in (sine, cosine)]

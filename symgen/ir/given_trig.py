@@ -1,6 +1,7 @@
 """Kernels that take the sines and cosines of coordinates from the caller, who has them from an encoder or a table.
 
-Sines and cosines of sums of coordinates follow by addition; every other pair stays as it is.
+Sines and cosines of sums of coordinates follow by addition; every other pair stays as it is, and so does that of a sum
+whose rounding error the kernel carries along.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ def _sums(kernel: Kernel, coordinates: Mapping[str, Load]) -> dict[Operand, Sum]
         return None
 
     arguments = [s.operands[0] for block in kernel.blocks for s in _all_statements(block) if s.operation == "sincos"]
-    found = {argument: parts(argument) for argument in arguments}
+    found = {a: parts(a) for a in arguments if not (isinstance(a, Local) and a.name in kernel.own_pairs)}
     return {a: p for a, p in found.items() if p and sum(map(abs, p.values())) <= LONGEST_SUM}
 
 

@@ -133,7 +133,8 @@ class Kernel:
     Order at run time: loads, then `blocks` one after the other (statements, then their checks), then the test that
     every output is finite (status NOT_FINITE), then the stores.  `outputs` are row-major entries of `shape`.
     `remark` is for the comments of its functions.  `alike` numbers blocks side by side whose statements are the same
-    one by one, on other operands: none of them reads what another one of them assigns.
+    one by one, on other operands: none of them reads what another one of them assigns.  `own_pairs` are arguments of
+    sines and cosines whose rounding errors are carried along: given sines and cosines do not stand for theirs.
     """
 
     name: str
@@ -144,6 +145,7 @@ class Kernel:
     shape: tuple[int, ...]
     remark: str = ""
     alike: tuple[tuple[int, ...], ...] = ()
+    own_pairs: frozenset[str] = frozenset()
 
     @property
     def statements(self) -> tuple[Statement, ...]:
