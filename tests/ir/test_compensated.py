@@ -140,7 +140,7 @@ def test_functions_hand_errors_on(scalar: Scalar) -> None:
 
 @pytest.mark.parametrize("scalar", SCALARS)
 def test_sums_of_angles_are_sums_like_all_others(scalar: Scalar) -> None:
-    """A small angle beside a large one: what rounding takes of their sum is large beside what it takes of the small one."""
+    """A small angle beside a large one: their sum loses what the small one holds."""
     statements = (
         Statement(("sum",), "add", (Local("a"), Local("b"))),
         Statement(("s", "c"), "sincos", (Local("sum"),)),
