@@ -220,7 +220,9 @@ def null_space(at: Numbers) -> Any:
     if not rows.size:
         return np.eye(at.n)
     values, directions = np.linalg.svd(rows)[1:]
-    return directions[int((values > SAME * values.max()).sum()) :].T
+    free = directions[int((values > SAME * values.max()).sum()) :].T
+    # a coordinate that cannot move stands still: float32 has no squares of what rounding leaves of its rate
+    return np.where(np.abs(free) > NOTHING, free, 0.0)
 
 
 def rank_of(rows: Any, threshold: float, absolute: bool = False) -> int:
