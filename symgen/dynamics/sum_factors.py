@@ -47,9 +47,11 @@ def with_common_factors(
         args = tuple(map(image.__getitem__, node.args))
         image[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
         if node.op in SUMS and (node not in inside or uses[node] > 1):
-            terms = [_Term(sign, term, _factors(term, whole)) for sign, term in terms_of(node, inside)]
+            plain = terms_of(node, inside)
+            kept = without_opposites(plain)
+            terms = [_Term(sign, term, _factors(term, whole)) for sign, term in kept]
             groups = _grouped(terms, numbers=apart is not None)
-            if any(group.common for group in groups):
+            if len(kept) < len(plain) or any(group.common for group in groups):
                 quotients = _Quotients(graph, whole, image)
                 signs = _signs(groups)
                 image[node] = sum_of(graph, [(s, quotients.product(g, s)) for s, g in zip(signs, groups, strict=True)])

@@ -29,18 +29,31 @@ def terms_of(node: Scalar, inside: Collection[Scalar]) -> list[Term]:
 
 
 def without_opposites(terms: Sequence[Term]) -> list[Term]:
-    """The terms, each sum among them taken apart that holds the opposite of another: (a + b) - b is a.
+    """The terms without pairs that cancel, each sum among them taken apart that holds the opposite of another.
 
-    What is added and taken off again takes digits of the rest with it. Terms that come to 0 stay as they are.
+    (a + b) - b is a: what is added and taken off again takes digits of the rest with it. Terms that come to 0 stay.
     """
-    for place, (sign, node) in enumerate(terms):
+    kept = _less_opposites(terms)
+    for place, (sign, node) in enumerate(kept):
         inside = Counter((sign * own, part) for own, part in _added_up(node))
-        beside = Counter([*terms[:place], *terms[place + 1 :]])
-        gone = inside & Counter({(-own, part): count for (own, part), count in beside.items()})
-        left = (inside - gone) + (beside - Counter({(-own, part): count for (own, part), count in gone.items()}))
-        if gone and left:
-            return without_opposites(list(left.elements()))
-    return list(terms)
+        beside = Counter([*kept[:place], *kept[place + 1 :]])
+        if any((-own, part) in beside for own, part in inside):
+            left = _less_opposites([*(inside + beside).elements()])
+            if len(left) < sum((inside + beside).values()):
+                return without_opposites(left)
+    return kept
+
+
+def _less_opposites(terms: Sequence[Term]) -> list[Term]:
+    """The terms without pairs a, -a, in their order; all of them where nothing would be left."""
+    counts = Counter(terms)
+    left = {term: max(0, count - counts[-term[0], term[1]]) for term, count in counts.items()}
+    found: list[Term] = []
+    for term in terms:
+        if left[term] > 0:
+            left[term] -= 1
+            found.append(term)
+    return found or list(terms)
 
 
 def _added_up(node: Scalar) -> list[Term]:
