@@ -260,5 +260,5 @@ def _with_one_difference(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) 
 _SIGNS_AND_NUMBERS = (_with_one_difference, _with_numbers_joined)
 _STEPS = (_with_numbers_moved, _with_parameters_joined)
 # what two sums held is found in more of them once those two are one: short outputs are gone through twice
-_LAST_STEPS = (_with_shared_sums, _with_shared_sums, _with_shared_products)
-_ONE_WAY = (_with_common_factors, _with_collected_factors, *_STEPS, with_late_factors, *_LAST_STEPS[1:])
+_LAST_STEPS = (_with_collected_factors, _with_shared_sums, _with_shared_sums, _with_shared_products)
+_ONE_WAY = (_with_common_factors, _with_collected_factors, *_STEPS, with_late_factors, *_LAST_STEPS[2:])

@@ -48,11 +48,11 @@ def with_common_factors(
         image[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
         if node.op in SUMS and (node not in inside or uses[node] > 1):
             plain = terms_of(node, inside)
-            kept = without_opposites(plain)
+            kept = without_opposites(plain, uses) if len(plain) <= MOST_TERMS else plain
             terms = [_Term(sign, term, _factors(term, whole)) for sign, term in kept]
             groups = _grouped(terms, numbers=apart is not None)
             if len(kept) < len(plain) or any(group.common for group in groups):
-                quotients = _Quotients(graph, whole, image)
+                quotients = _Quotients(graph, whole, image, uses)
                 signs = _signs(groups)
                 image[node] = sum_of(graph, [(s, quotients.product(g, s)) for s, g in zip(signs, groups, strict=True)])
     return [image[output] for output in outputs]
@@ -111,12 +111,13 @@ class _Quotients:
     graph: Graph
     kept: Collection[Scalar]
     image: Mapping[Scalar, Scalar]
+    uses: Mapping[Scalar, int]
 
     def product(self, group: _Group, sign: int) -> Scalar:
         """The group, divided by a sign."""
         rests = [(sign * term.sign, self._rest(term.product, Counter(group.common))) for term in group.terms]
         terms = [(s, self.graph.one if rest is None else rest) for s, rest in rests]
-        inner = sum_of(self.graph, without_opposites(terms) if group.common else terms)
+        inner = sum_of(self.graph, without_opposites(terms, self.uses) if group.common else terms)
         if not group.common:
             return inner
         return self.graph.raw("mul", (product_of(self.graph, [self.image[f] for f in group.common]), inner))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from itertools import combinations
 from typing import TypeAlias
 
 from symgen.graph.scalar import Graph, Scalar
@@ -28,24 +29,27 @@ def terms_of(node: Scalar, inside: Collection[Scalar]) -> list[Term]:
     return found
 
 
-def without_opposites(terms: Sequence[Term]) -> list[Term]:
-    """The terms without pairs that cancel, each sum among them taken apart that holds the opposite of another.
+def without_opposites(terms: Sequence[Term], uses: Mapping[Scalar, int]) -> list[Term]:
+    """The terms without what is added and taken off again, which takes digits of the rest with it: (a + b) - b is a.
 
-    (a + b) - b is a: what is added and taken off again takes digits of the rest with it. Terms that come to 0 stay.
+    Two sums among them are taken apart for that where no additions come of it: `uses` tells what is needed elsewhere.
     """
-    kept = _less_opposites(terms)
-    for place, (sign, node) in enumerate(kept):
-        inside = Counter((sign * own, part) for own, part in _added_up(node))
-        beside = Counter([*kept[:place], *kept[place + 1 :]])
-        if any((-own, part) in beside for own, part in inside):
-            left = _less_opposites([*(inside + beside).elements()])
-            if len(left) < sum((inside + beside).values()):
-                return without_opposites(left)
-    return kept
+    parts = [_added_up(node) or [(1, node)] for _, node in terms]
+    signed = [[(sign * own, part) for own, part in inner] for (sign, _), inner in zip(terms, parts, strict=True)]
+    sets = [frozenset(inner) for inner in signed]
+    for first, second in combinations(range(len(terms)), 2):
+        if all((-sign, part) not in sets[second] for sign, part in sets[first]):
+            continue
+        left = _less_opposites([*signed[first], *signed[second]])
+        alone = sum(len(parts[k]) - 1 for k in (first, second) if uses.get(terms[k][1], 0) < 2)
+        rest = [term for place, term in enumerate(terms) if place not in (first, second)]
+        if (left or rest) and len(left) <= alone + 2:
+            return without_opposites([*rest, *left], uses)
+    return list(terms)
 
 
 def _less_opposites(terms: Sequence[Term]) -> list[Term]:
-    """The terms without pairs a, -a, in their order; all of them where nothing would be left."""
+    """The terms without pairs a, -a, in their order."""
     counts = Counter(terms)
     left = {term: max(0, count - counts[-term[0], term[1]]) for term, count in counts.items()}
     found: list[Term] = []
@@ -53,7 +57,7 @@ def _less_opposites(terms: Sequence[Term]) -> list[Term]:
         if left[term] > 0:
             left[term] -= 1
             found.append(term)
-    return found or list(terms)
+    return found
 
 
 def _added_up(node: Scalar) -> list[Term]:
