@@ -161,3 +161,39 @@ def test_a_middle_without_mass_is_looked_at_with_what_it_carries(axis: str, exis
     model = load_text(text, "universal.yaml")
     mechanics = Mechanics(model)
     assert (articulated(model, genericity(mechanics)) is not None) is exists
+
+
+LEVERS = """model: levers
+gravity: [0, -9.81, 0]
+joints:
+  a: {{type: revolute, axis: z, coordinate: q_a}}
+  b: {{type: revolute, parent: a, at: [0.4, 0, 0], axis: z, coordinate: q_b}}
+  c: {{type: revolute, parent: b, at: [{arm}, 0, 0], axis: z, coordinate: q_c}}
+  d: {{type: prismatic, parent: c, at: [0.2, 0, 0], axis: y, coordinate: q_d}}
+bodies:
+  a: {{mass: 1, inertia: {{zz: 0.05}}}}
+  d: {{mass: 4, com: [0.1, 0, 0], inertia: {{zz: 0.2}}}}
+rotor_inertias: {{q_c: {rotor}}}
+points: {{tip: {{frame: d, at: [0.1, 0, 0]}}}}
+{held}
+inputs: {{u: {{joint: q_a}}}}
+"""
+
+
+def levers(held: str = "", rotor: float = 0.03) -> Model:
+    """A carriage on two massless levers, and a rotor between."""
+    return load_text(LEVERS.format(arm=0.5, rotor=rotor, held=held), "levers.yaml")
+
+
+def test_a_joint_that_a_rotor_resists_hands_on_what_it_carries() -> None:
+    """The lever before it has the inertia of the carriage behind it; 0 it was taken for."""
+    model = levers("constraints: {geometric: {height: tip.y - 0.3*q_a}}", rotor=2)
+    assert articulated(model, genericity(Mechanics(model))) is not None
+
+
+def test_what_moves_freely_has_that_form_wherever_its_motion_is_determined() -> None:
+    """Beside straight levers the pivots are small, and zero where the motion is not determined without the rotor."""
+    model = levers(rotor=1e-6)
+    assert articulated(model, genericity(Mechanics(model))) is not None
+    held = levers("constraints: {geometric: {height: tip.y - 0.3*q_a}}", rotor=1e-6)
+    assert articulated(held, genericity(Mechanics(held))) is None

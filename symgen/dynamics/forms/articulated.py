@@ -14,7 +14,7 @@ from functools import cached_property
 
 from symgen.dynamics.articulated import ArticulatedFactor, Six
 from symgen.dynamics.forms.held_lengths import along_factor_with_lengths, held_lengths
-from symgen.dynamics.forms.local_inertias import definite_by_frames
+from symgen.dynamics.forms.local_inertias import definite_along_motion, definite_by_frames
 from symgen.dynamics.forms.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.genericity import Genericity
@@ -105,13 +105,14 @@ def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] |
         factor = ArticulatedFactor(mechanics.bodies)
     except ValueError:
         return None
-    if not definite_by_frames(mechanics, factor):
-        return None
     rows, graph = mechanics.constraint_jacobian, mechanics.graph
     held = held_lengths(factor.quaternions, rows, graph)
     if held is None:
         return None
     others = held.others(len(rows))
+    # where no row may hold what has no mass, pivots vanish only where the motion is not determined
+    if not (definite_by_frames(mechanics, factor) if others else definite_along_motion(mechanics, factor)):
+        return None
     tested = [rows[i] for i in others] if held.apart(rows) else rows
     few = 0 < len(others) <= LONGEST_PRODUCT
     guards = reflected(graph, tuple(tested), mechanics.n, len(tested)).guards if few else ()

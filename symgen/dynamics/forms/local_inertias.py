@@ -36,6 +36,12 @@ def definite_by_frames(mechanics: Mechanics, factor: ArticulatedFactor) -> bool:
     return _Frames(apart, ArticulatedFactor(apart.bodies)).definite
 
 
+def definite_along_motion(mechanics: Mechanics, factor: ArticulatedFactor) -> bool:
+    """Whether pivots of a system that moves freely vanish only where its motion is not determined."""
+    sound = not unsound_bodies(mechanics.model.mechanism, default_values(mechanics.model.parameters))
+    return sound and not any(pivot.is_zero for pivot in factor.pivots)
+
+
 class _Frames:
     """The joints of one factor, each with the inertia it is sure to meet."""
 
@@ -45,18 +51,23 @@ class _Frames:
 
     @cached_property
     def _sure(self) -> frozenset[str]:
-        """The frames whose own bodies resist all motions of their joint."""
+        """The frames whose own bodies, or rotors, resist all motions of their joint."""
         return frozenset(name for name in self._factor.frames if self._own_bodies_resist(name))
+
+    @cached_property
+    def _alone(self) -> frozenset[str]:
+        """Those whose own bodies are taken for all they carry: a joint that a rotor resists may have none."""
+        return frozenset(name for name in self._sure if self._factor.bodies_of(name)[0])
 
     @property
     def definite(self) -> bool:
         """Whether all pivots are positive."""
         freed: dict[str, Matrix] = {}
         whole: dict[str, Matrix] = {}
-        sizes = self._factor.sizes(self._sure)
+        sizes = self._factor.sizes(self._alone)
         for name in reversed(self._factor.frames):
             inertia = composite = self._factor.own_inertia(name)
-            if name not in self._sure:
+            if name not in self._alone:
                 for child in self._factor.children(name):
                     inertia = _plus(inertia, self._factor.carried_inertia(child, freed[child]))
                     composite = _plus(composite, self._factor.carried_inertia(child, whole[child]))
