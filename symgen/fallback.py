@@ -34,6 +34,7 @@ from symgen.verify.rounding import losing
 from symgen.verify.tolerance import FACTOR
 
 REJECTED = "verification rejects it"
+TOO_LONG = "not tried: it takes many times as long to derive"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
 # What keeping a margin may cost, in operations.
@@ -107,7 +108,9 @@ class Fallback:
         without = tuple(scalar for scalar in kernels if scalar not in passed)
         if not without:
             return draft
-        left_out = LeftOut(quantity, without, tuple(tried), self._remedy(quantity, without))
+        given_up = () if self._alternatives is None else self._alternatives.too_long.get(quantity, ())
+        every = (*tried, *((name, TOO_LONG) for name in given_up))
+        left_out = LeftOut(quantity, without, every, self._remedy(quantity, without))
         others = (one for one in draft.left_out if one.quantity != quantity)
         return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
 

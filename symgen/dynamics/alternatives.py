@@ -5,6 +5,8 @@ Each is derived on a graph of its own, so that it depends neither on what was de
 
 from __future__ import annotations
 
+from collections import defaultdict
+
 from symgen.dynamics.catalogue import BY_NAME, Derived, derive, scalars
 from symgen.dynamics.compared import MOTIONS, quantities_by
 from symgen.dynamics.forms.motions import BY_FRAMES
@@ -14,6 +16,7 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.row_units import in_ordinary_units
 from symgen.dynamics.select import Choice, block_way, finished, ways
+from symgen.effort import TooLongError, at_most, worth_trying
 from symgen.graph.matrix import flatten
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
@@ -50,15 +53,29 @@ class Alternatives:
         self._generic = generic
         self._inverse = inverse
         self._motions: dict[str, tuple[Mechanics, tuple[Derived, ...]]] = {}
+        self.too_long: dict[str, list[str]] = defaultdict(list)
 
     def of(self, quantity: str, taken: Choice, tier: int) -> tuple[Alternative, ...]:
         """The ways of a tier to a quantity, but the one taken, that are valid at all regular states.
 
-        The one that counts least comes first.
+        The one that counts least comes first.  Ways that take much longer to derive than the one taken is are given
+        up, and named in `too_long`.
         """
         same = taken.form if taken.way in ("minors", "householder", taken.form) else ""
-        named = (self._named(quantity, name) for name in _tiers(quantity)[tier] if name not in (taken.way, same))
-        return tuple(sorted((one for one in named if one is not None), key=lambda one: one.cost))
+        most = worth_trying(dict(taken.costs)[taken.way])
+        found = []
+        for name in _tiers(quantity)[tier]:
+            if name in (taken.way, same):
+                continue
+            try:
+                with at_most(most):
+                    one = self._named(quantity, name)
+            except TooLongError:
+                self.too_long[quantity].append(name)
+                continue
+            if one is not None:
+                found.append(one)
+        return tuple(sorted(found, key=lambda one: one.cost))
 
     def named(self, quantity: str, name: str) -> Alternative | None:
         """One way to a quantity by its name; None where the system does not have it."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
@@ -34,6 +36,7 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.row_units import in_ordinary_units, in_units_of_the_file
 from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
+from symgen.effort import TooLongError, at_most, worth_trying
 from symgen.graph.traverse import cost, reached
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
@@ -202,7 +205,12 @@ def derive_quantities(
         elif name in MOTIONS and absolute is not None:
             candidates = {ABSOLUTE: brought_back(mechanics.graph, absolute.mechanics, derive(entry, absolute))}
         else:
-            candidates = {way: derive(entry, derivation) for way, derivation in derivations.items()}
+            # a tree has articulated inertias; what goes without them may take as long as they are worth, and no longer
+            most = worth_trying(cost(scalars(by_frames[name])).weight) if name in by_frames else math.inf
+            candidates = {}
+            for way, derivation in derivations.items():
+                with suppress(TooLongError), at_most(most):
+                    candidates[way] = derive(entry, derivation)
         if blocks is not None and by_blocks(entry):
             candidates["blocks"] = derive(entry, blocks)
         if name in by_frames and not many:

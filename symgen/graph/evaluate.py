@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
 from symgen.diagnostics import SymgenBug
+from symgen.effort import spend
 from symgen.graph.scalar import Scalar
 from symgen.graph.sines import cosine, sine
 from symgen.graph.traverse import topological
@@ -66,6 +67,7 @@ class Evaluator:
 
     def __call__(self, point: Mapping[str, float]) -> list[float]:
         """The outputs with symbols at `point`; NaN where a function is undefined."""
+        spend(len(self._steps))
         values = self._start.copy()
         for k, name in self._symbols:
             values[k] = point[name]

@@ -13,6 +13,7 @@ from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING, TypeAlias
 
+from symgen.effort import SCALAR, spend
 from symgen.graph.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
 from symgen.graph.products import Products
 
@@ -140,6 +141,7 @@ class Graph:
         return node
 
     def _new(self, key: tuple[object, ...], op: str, args: tuple[Scalar, ...], payload: object) -> Scalar:
+        spend(SCALAR)
         node = self._nodes[key] = Scalar(self, len(self._serials), op, args, payload)
         self._serials.append(node)
         if op == "const":

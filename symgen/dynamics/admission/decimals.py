@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from decimal import Decimal, localcontext
 
+from symgen.effort import DECIMAL, spend
 from symgen.graph.scalar import PI, Scalar
 from symgen.graph.traverse import topological
 
@@ -64,6 +65,7 @@ class DecimalEvaluator:
             return [known[output] for output in self._outputs], rows
 
     def _slopes(self, output: Scalar, known: Mapping[Scalar, Decimal], names: Sequence[str]) -> list[Decimal]:
+        spend(DECIMAL * len(self._order))
         adjoint = {output: ONE}
         slopes: dict[str, Decimal] = {}
         for node in reversed(self._order):
@@ -77,6 +79,7 @@ class DecimalEvaluator:
         return [slopes.get(name, ZERO) for name in names]
 
     def _sweep(self, point: Mapping[str, Decimal]) -> dict[Scalar, Decimal]:
+        spend(DECIMAL * len(self._order))
         known: dict[Scalar, Decimal] = {}
         pairs: dict[Scalar, tuple[Decimal, Decimal]] = {}
         with localcontext() as context:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
+from symgen.effort import SLOPE, spend
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Scalar
 from symgen.graph.sines import cosine, sine
@@ -63,6 +64,7 @@ class FloatGradients:
 
 def _slopes(way: _Way, known: Sequence[float]) -> Row:
     output, steps, columns = way
+    spend(SLOPE * len(steps))
     adjoint = {output: 1.0}
     for place, op, arguments in steps:
         weight = adjoint.get(place, 0.0)

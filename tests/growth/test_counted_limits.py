@@ -1,0 +1,77 @@
+"""What is offered as another way may take so much counted work and no more; what takes more is given up, and named."""
+
+from __future__ import annotations
+
+import pytest
+from linkages import row_of_four_bars
+
+from symgen import effort
+from symgen.dynamics.alternatives import Alternatives
+from symgen.dynamics.genericity import genericity
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.select import ARTICULATED, derive_quantities
+from symgen.effort import SCALAR, TooLongError, at_most
+from symgen.graph.scalar import Graph
+from symgen.model.load import load_text
+
+
+def tree(links: int) -> str:
+    """A tail of uniform rods that hangs freely, turned in space."""
+    lines = ["model: tail", "gravity: [0, 0, -9.81]", "joints:"]
+    for k in range(links):
+        parent = f", parent: j{k - 1}, at: [0, 0, -0.3]" if k else ""
+        lines.append(f"  j{k}: {{type: revolute, axis: {'xy'[k % 2]}, coordinate: a{k}{parent}}}")
+    lines.append("bodies:")
+    rod = "{mass: 2, com: [0, 0, -0.15], inertia: {xx: 0.02, yy: 0.02, zz: 0.01}}"
+    lines += [f"  j{k}: {rod}" for k in range(links)]
+    return "\n".join([*lines, "outputs: [forward_dynamics]", ""])
+
+
+def powers(graph: Graph, count: int) -> None:
+    x = graph.symbol("x")
+    for _ in range(count):
+        x = x * x + 1
+
+
+def test_work_beyond_a_limit_ends_and_what_comes_after_goes_on() -> None:
+    graph = Graph()
+    with at_most(100 * SCALAR):
+        powers(graph, 20)
+    with pytest.raises(TooLongError), at_most(100 * SCALAR):
+        powers(graph, 1000)
+    powers(graph, 1000)
+
+
+def test_a_limit_is_never_wider_than_the_one_around_it() -> None:
+    with pytest.raises(TooLongError), at_most(50 * SCALAR), at_most(10_000 * SCALAR):
+        powers(Graph(), 1000)
+
+
+def test_a_tree_is_not_derived_densely_for_longer_than_that_may_be_worth(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = load_text(tree(9), "tail.yaml")
+    compared = derive_quantities(model, model.outputs)
+    monkeypatch.setattr(effort, "FREE_SCALARS", 0)
+    monkeypatch.setattr(effort, "SCALARS_AN_OPERATION", 3)
+    alone = derive_quantities(model, model.outputs)
+    (before,), (after,) = compared.choices, alone.choices
+    assert before.way == after.way == ARTICULATED
+    assert len(before.costs) == 2
+    assert [way for way, _ in after.costs] == [ARTICULATED]
+    # the same function, by its values in a field
+    assert [x.value for x in alone.quantities[0].outputs] == [x.value for x in compared.quantities[0].outputs]
+
+
+def test_ways_that_take_too_long_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    tail = "configuration: {a0: 1, a1: 1, a2: 1, b1: 0, b2: 0}"
+    model = load_text(row_of_four_bars(2, ground="0.5", tail=tail), "row.yaml")
+    choice = derive_quantities(model, ("inverse_dynamics",)).choices[0]
+    free = Alternatives(model, genericity(Mechanics(model)), None)
+    ways = [one.choice.way for one in free.of("inverse_dynamics", choice, 1)]
+    assert ways
+    assert not free.too_long
+    monkeypatch.setattr(effort, "FREE_SCALARS", 1000)
+    monkeypatch.setattr(effort, "SCALARS_AN_OPERATION", 1)
+    short = Alternatives(model, genericity(Mechanics(model)), None)
+    left = [one.choice.way for one in short.of("inverse_dynamics", choice, 1)]
+    assert short.too_long["inverse_dynamics"]
+    assert {*left, *short.too_long["inverse_dynamics"]} >= {*ways}
