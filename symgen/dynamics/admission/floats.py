@@ -17,7 +17,9 @@ from symgen.graph.sines import cosine, sine
 from symgen.graph.traverse import topological
 from symgen.model.sparse import Row
 
-_Way: TypeAlias = tuple[int, list[tuple[int, str, tuple[int, ...]]], list[tuple[int, int]]]
+_Step: TypeAlias = tuple[int, str, int, int]
+"""The place of an operation, its name, and the places of its operands: -1 where there is no second one."""
+_Way: TypeAlias = tuple[int, list[_Step], list[tuple[int, int]]]
 """The place of an output; the operations behind it, last first; the places and numbers of the symbols it reaches."""
 
 
@@ -43,9 +45,13 @@ class FloatGradients:
         self._ways: list[_Way] = []
         for output in outputs:
             reached = [place[node] for node in reversed(topological([output])) if place[node] in moving]
-            steps = [(k, nodes[k].op, tuple(place[argument] for argument in nodes[k].args)) for k in reached]
+            steps: list[_Step] = []
+            for k in reached:
+                if operands := [place[argument] for argument in nodes[k].args]:
+                    first, second = (*operands, -1)[:2]
+                    steps.append((k, nodes[k].op, first, second))
             own = [(k, columns[k]) for k in reached if k in columns]
-            self._ways.append((place[output], [step for step in steps if step[2]], own))
+            self._ways.append((place[output], steps, own))
 
     def __call__(self, point: Mapping[str, float]) -> tuple[list[float], list[Row]] | None:
         """The outputs and their slopes; None where one has no value."""
@@ -65,24 +71,33 @@ class FloatGradients:
 def _slopes(way: _Way, known: Sequence[float]) -> Row:
     output, steps, columns = way
     spend(SLOPE * len(steps))
-    adjoint = {output: 1.0}
-    for place, op, arguments in steps:
-        weight = adjoint.get(place, 0.0)
-        if weight:
-            partials = _partials(op, [known[k] for k in arguments], known[place])
-            for argument, partial in zip(arguments, partials, strict=True):
-                adjoint[argument] = adjoint.get(argument, 0.0) + weight * partial
-    return {column: adjoint[place] for place, column in columns if place in adjoint}
+    adjoint = [0.0] * len(known)
+    adjoint[output] = 1.0
+    # sums and products, which most steps are, as they stand
+    for place, op, first, second in steps:
+        weight = adjoint[place]
+        if not weight:
+            continue
+        if op == "mul":
+            adjoint[first] += weight * known[second]
+            adjoint[second] += weight * known[first]
+        elif op == "add":
+            adjoint[first] += weight
+            adjoint[second] += weight
+        elif op == "sub":
+            adjoint[first] += weight
+            adjoint[second] -= weight
+        else:
+            args = [known[first]] if second < 0 else [known[first], known[second]]
+            partials = _partials(op, args, known[place])
+            adjoint[first] += weight * partials[0]
+            if second >= 0:
+                adjoint[second] += weight * partials[1]
+    return {column: slope for place, column in columns if (slope := adjoint[place])}
 
 
 def _partials(op: str, args: list[float], value: float) -> tuple[float, ...]:
     match op:
-        case "add":
-            return 1.0, 1.0
-        case "sub":
-            return 1.0, -1.0
-        case "mul":
-            return args[1], args[0]
         case "div":
             return 1 / args[1], -value / args[1]
         case "ratio_or_zero":
