@@ -9,7 +9,8 @@ from typing import Any
 from symgen.bench.candidate import Task
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.verify.reference import Reference, State
-from symgen.verify.states import SAMPLING_BITS, Sample, rounded, sample_states
+from symgen.verify.regular import SAMPLING_BITS
+from symgen.verify.states import Sample, rounded, sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
 UNIT_STATES = 48  # of these the unit d + eps |y| is found; it costs 9 reference evaluations a state

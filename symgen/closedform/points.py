@@ -22,6 +22,7 @@ from symgen.model.model import Model
 DIGITS = 40
 RANK_THRESHOLD = mpf(10) ** -18
 MOST_STEPS = 60
+FARTHEST = 1e6  # times where a search starts
 LEAST_DAMPING = 1e-25
 
 
@@ -106,6 +107,11 @@ class Point:
         """The values of a matrix."""
         return [[_as_mpf(value) for value in row] for row in self.flint_matrix(matrix)]
 
+    def constraints(self, mechanics: Mechanics, model: Model) -> list[list[mpf]]:
+        """B with rows of ordinary size."""
+        rows = zip(self.matrix(mechanics.jacobian), _units(model), strict=True)
+        return [[mpf(2) ** unit * x for x in row] for row, unit in rows]
+
     def flint_matrix(self, matrix: Matrix) -> list[list[flint.arb]]:
         """The same as flint's numbers, without their error bounds."""
         with _working_precision():
@@ -156,15 +162,15 @@ def parameter_values(model: Model) -> dict[str, mpf]:
 def generic_points(model: Model, mechanics: Mechanics, count: int, on_constraints: bool = True) -> list[Point]:
     """Points at the default parameters, random (but the same every time) in everything else; on V by default.
 
-    Fewer than `count` when Newton's method does not reach V or expressions have no real value.  Where V has several
-    branches they lie near the configurations that loading found on the one that is meant.
+    Fewer than `count` when Newton's method does not reach V or expressions have no real value.  They lie near the
+    configurations that loading found on the branch of V that is meant.
     """
     mp.dps = DIGITS + 10
     source = random.Random(1)
     parameters = parameter_values(model)
     known = model.assembly
     starts = [dict(model.configuration)]
-    if on_constraints and known is not None and known.has_branches:
+    if on_constraints and known is not None and (known.has_branches or mechanics.residual):
         names = [c.name for c in model.coordinates]
         starts = [dict(zip(names, map(Fraction, place.q), strict=True)) for place in known.places]
     points: list[Point] = []
@@ -197,22 +203,24 @@ def _onto_constraints(model: Model, mechanics: Mechanics, values: dict[str, mpf]
     point = Point(mechanics, values)
     if not mechanics.residual:
         return point
-    residual = point.flint_matrix(mechanics.residual)
+    units = _units(model)[: len(mechanics.residual)]
+    residual = _scaled(point.flint_matrix(mechanics.residual), units)
     size, damping = _largest(residual), 1e-3
+    farthest = FARTHEST * max(1.0, *(abs(float(values[name])) for name in names))
     for _ in range(MOST_STEPS):
         if size < 10.0**-DIGITS:
             return point
-        step = _step(point, mechanics, residual, damping)
+        step = _step(point, mechanics, residual, units, damping)
         if step is None:
             damping *= 10
             continue
         trial = dict(values)
         for j, name in enumerate(names):
             trial[name] -= _as_mpf(step[j, 0])
-            if abs(trial[name]) > 1e6:
+            if abs(trial[name]) > farthest:
                 return None
         there = Point(mechanics, trial)
-        fresh = there.flint_matrix(mechanics.residual)
+        fresh = _scaled(there.flint_matrix(mechanics.residual), units)
         smaller = _largest(fresh)
         if smaller < size:
             damping = max(damping * min(0.03, smaller / size), LEAST_DAMPING)
@@ -224,10 +232,22 @@ def _onto_constraints(model: Model, mechanics: Mechanics, values: dict[str, mpf]
     return None
 
 
-def _step(point: Point, mechanics: Mechanics, residual: list[list[flint.arb]], damping: float) -> flint.arb_mat | None:
+def _units(model: Model) -> tuple[int, ...]:
+    """The powers of 2 that bring rows to ordinary size."""
+    found = () if model.assembly is None else model.assembly.units
+    return found or (0,) * model.r
+
+
+def _scaled(rows: list[list[flint.arb]], units: Sequence[int]) -> list[list[flint.arb]]:
+    return [[flint.arb(2) ** unit * x for x in row] if unit else row for row, unit in zip(rows, units, strict=True)]
+
+
+def _step(
+    point: Point, mechanics: Mechanics, residual: list[list[flint.arb]], units: Sequence[int], damping: float
+) -> flint.arb_mat | None:
     """J' (J J' + shift)^-1 g; None where rounding leaves the matrix singular, so that more damping is due."""
     with _working_precision():
-        jacobian = flint.arb_mat(point.flint_matrix(mechanics.jacobian[: len(residual)]))
+        jacobian = flint.arb_mat(_scaled(point.flint_matrix(mechanics.jacobian[: len(residual)]), units))
         gram = (jacobian * jacobian.transpose()).mid()
         shift = damping * max(gram[i, i] for i in range(len(residual)))
         for i in range(len(residual)):

@@ -44,7 +44,7 @@ def derive_structure(model: Model, mechanics: Mechanics, points: list[Point]) ->
     geometric = len(mechanics.residual)
     geometric_rank = constraint_rank = actuation_degree = 0
     for point in points:
-        jacobian = point.matrix(mechanics.jacobian)
+        jacobian = point.constraints(mechanics, model)
         own = rank(jacobian)
         geometric_rank = max(geometric_rank, rank(jacobian[:geometric]))
         constraint_rank = max(constraint_rank, own)

@@ -2,7 +2,7 @@
 
 Systems are derived with rows times powers of 2, which change no digit; what depends on the units of rows is given in
 those of the file in the end: g and B as they are, B^+ and lambda the other way round.  Where rows depend on each other
-the smallest multipliers are meant, in the units of the file, so that all rows have one factor.
+the smallest multipliers are meant, in the units of the file, so that these rows have one factor (`model/branches`).
 """
 
 from __future__ import annotations
@@ -39,8 +39,6 @@ def in_ordinary_units(model: Model) -> Model:
     if found is None or model.row_units or not any(found.units):
         return model
     units = found.units
-    if found.ranks.constraints < model.r:
-        units = (max(units, key=abs) if len({unit > 0 for unit in units if unit}) == 1 else 0,) * model.r
     rows = tuple(
         replace(row, expression=Binary("*", Number(TWO**unit), row.expression)) if unit else row
         for row, unit in zip(model.constraints, units, strict=True)

@@ -32,8 +32,9 @@ class Assembly:
     configuration exceeds: the ranks of B and of [B; M^T] off the constraints, where q is free.  `start` is where the
     declared start leads, with its ranks, where it is singular.  `tied` are parameters for whose default values
     alone the loops close, because rows depend on each other.
+    `losing` are the numbers of the rows that lose rank at the first place, where none is regular.
     `held` are the numbers of coordinates that no admissible motion changes.
-    Rows times 2 to the power of their `units` are of ordinary size.
+    Rows times 2 to the power of their `units` are of ordinary size; rows that depend on each other share one.
     """
 
     ranks: Ranks
@@ -43,6 +44,7 @@ class Assembly:
     start: Place | None = None
     regular: bool = True
     tied: tuple[str, ...] = ()
+    losing: tuple[int, ...] = ()
     held: tuple[int, ...] = ()
     units: tuple[int, ...] = ()
 

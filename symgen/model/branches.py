@@ -20,7 +20,7 @@ from dataclasses import replace
 from itertools import islice
 
 from symgen.model.assembly import Assembly, Place, Ranks
-from symgen.model.closing import Closer, Loop, row_unit
+from symgen.model.closing import CLOSED, Closer, Loop, row_unit
 from symgen.model.dense import null_space
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Input
@@ -37,10 +37,12 @@ RETRIES = 3  # for loops that stay open where others close
 # Rows evaluated on the way, and how many times as many as long as nothing regular is found.
 EFFORT, LONGEST = 30_000, 5
 SHAKEN_POINTS = 2  # where entries are told from rounding
-STEP = 1e-3  # in coordinate widths, along a branch
-WALK, STRIDE = 5, 0.2  # configurations along a branch, and how far they are apart
+# In coordinate widths, along a branch; where motion is confined to less, a smaller one is told from none.
+STEPS = (1e-3, 1e-4, 1e-5, 1e-6)
+WALK, STRIDE = 5, 0.2  # configurations along a branch, and how far they are apart at most
 ENOUGH_HELD, HELD = 3, 1e-7  # configurations that say that a coordinate is held, and motions in its width that are none
 STRAIGHT = 0.1  # of a step, by which a regular branch leaves its tangent at most
+SINGULAR, SHARE = 1e-3, 0.05  # of rows of length 1, at a singular configuration, and of what they lack of a rank
 TRIED = 3  # configurations of the same ranks that are looked at for a regular one
 
 
@@ -85,8 +87,31 @@ class _Search:
             places = [Place(q, ranks) for q in configurations if (ranks := self._ranks(q, plain)) is not None]
             if places:
                 found = self._chosen(places, configurations[0])
-                return replace(found, held=self._held(found), units=self._units)
+                losing = () if found.regular else self._losing(found.places[0])
+                return replace(found, held=self._held(found), losing=losing, units=self._units_of(found))
         return None
+
+    def _losing(self, place: Place) -> tuple[int, ...]:
+        """The rows that take part in what B lacks of its rank at a singular configuration."""
+        r = len(self._mechanics.constraints)
+        rows = self._scales.scaled(self._rows(place.q) or [{}] * r)[:r]
+        columns = [[row.get(j, 0.0) for row in rows] for j in range(self._n)]
+        telling = [column for column in columns if max(map(abs, column), default=0.0) > SINGULAR]
+        lacking = null_space(telling, r, SINGULAR)
+        return tuple(i for i in range(r) if any(abs(vector[i]) > SHARE for vector in lacking))
+
+    def _units_of(self, found: Assembly) -> tuple[int, ...]:
+        """The units of rows; one for those that depend on each other, whose smallest multipliers are meant."""
+        r = len(self._mechanics.constraints)
+        evaluated = self._rows(found.places[0].q)
+        if found.ranks.constraints == r or evaluated is None or not any(self._units):
+            return self._units
+        rows = self._scales.scaled(evaluated)[:r]
+        least = found.ranks.constraints
+        spare = [i for i in range(r) if clear_rank(rows[:i] + rows[i + 1 :], NEGLIGIBLE) != least - 1]
+        own = [self._units[i] for i in spare if self._units[i]]
+        shared = max(own, key=abs) if len({unit > 0 for unit in own}) == 1 else 0
+        return tuple(shared if i in spare else unit for i, unit in enumerate(self._units))
 
     def _sampled(self) -> Iterator[tuple[list[float], list[Row]]]:
         """B and M at random configurations, whether they satisfy the constraints or not."""
@@ -201,6 +226,7 @@ class _Search:
         for number, (guess, held) in enumerate(self._guesses(found)):
             q = self._close(guess, held)
             if q is not None:
+                q = self._turned_back(q) if number else q
                 found.append(q)
                 yield q
                 if (ranks := self._ranks(q)) is not None:
@@ -233,6 +259,15 @@ class _Search:
                     place[j] = anew[j]
             closed = self._closer.close(place, closed.open)
         return None if closed.open else closed.q
+
+    def _turned_back(self, q: tuple[float, ...]) -> tuple[float, ...]:
+        """The same configuration with angles in their ranges, where whole turns change nothing."""
+        turned = []
+        for x, c in zip(q, self._mechanics.coordinates, strict=True):
+            low, high = map(float, c.range)
+            turns = math.ceil((low - x) / math.tau) if c.is_angle and not low <= x <= high else 0
+            turned.append(x + turns * math.tau if x + turns * math.tau <= high else x)
+        return tuple(turned) if self._closer.rest(turned) <= CLOSED else q
 
     def _chosen(self, places: Sequence[Place], first: tuple[float, ...]) -> Assembly:
         kinds: dict[Ranks, list[Place]] = {}
@@ -277,17 +312,25 @@ class _Search:
 
     def _is_regular(self, place: Place) -> bool:
         """Whether the ranks stay as they are where a step along an admissible direction leads."""
-        q, widths = place.q, self._widths
+        q = place.q
         direction = self._closer.along(q, [self._random.gauss(0, 1) for _ in q])
         if direction is None:
             return False
         longest = max(map(abs, direction))
-        if longest < STEP:
-            return False
-        moved = [x + STEP * a / longest * w for x, a, w in zip(q, direction, widths, strict=True)]
+        return longest >= STEPS[0] and any(self._stays(place, direction, step / longest, step) for step in STEPS)
+
+    def _stays(self, place: Place, direction: Sequence[float], share: float, step: float) -> bool:
+        """Whether a step along an admissible direction leads to a configuration of the same ranks close by.
+
+        Beside a pose at which motion ends rows are closed but for the square of the distance, so that their rest has
+        to be less than the least that a step across them would leave.
+        """
+        moved = [x + share * a * w for x, a, w in zip(place.q, direction, self._widths, strict=True)]
         closed = self._closer.close(moved)
-        off = max(abs(a - b) / w for a, b, w in zip(closed.q, moved, widths, strict=True))
-        return not closed.open and off <= STRAIGHT * STEP and self._ranks(closed.q) == place.ranks
+        if closed.open or not self._closer.rest(closed.q) <= STRAIGHT * PLAIN * step:
+            return False
+        off = max(abs(a - b) / w for a, b, w in zip(closed.q, moved, self._widths, strict=True))
+        return off <= STRAIGHT * step and self._ranks(closed.q) == place.ranks
 
     def _held(self, found: Assembly) -> tuple[int, ...]:
         """Coordinates that no admissible motion changes: along the branch of the declared start, else on any."""
@@ -307,17 +350,19 @@ class _Search:
         return tuple(sorted(held))
 
     def _along(self, place: Place) -> list[Place]:
-        """A walk along a branch."""
-        found = [place]
-        for _ in range(2 * WALK):
+        """A walk along a branch, with shorter steps where it is bent more."""
+        found, stride = [place], STRIDE
+        for _ in range(3 * WALK):
             direction = self._closer.along(found[-1].q, [self._random.gauss(0, 1) for _ in self._widths])
             longest = max(map(abs, direction or ()), default=0.0)
-            if direction is None or longest < STEP or len(found) == WALK:
+            if direction is None or longest < STEPS[0] or len(found) == WALK:
                 break
             pairs = zip(found[-1].q, direction, self._widths, strict=True)
-            closed = self._closer.close([x + STRIDE * a / longest * w for x, a, w in pairs])
+            closed = self._closer.close([x + stride * a / longest * w for x, a, w in pairs])
             if not closed.open and self._ranks(closed.q) == place.ranks:
                 found.append(Place(closed.q, place.ranks))
+            else:
+                stride /= 4
         return found
 
     def _in_ranges(self, place: Place) -> bool:

@@ -80,6 +80,11 @@ class Closer:
         except (ArithmeticError, ValueError):
             return [math.nan] * len(loop.rows)
 
+    def rest(self, q: Sequence[float]) -> float:
+        """What is left of the rows of the widest open loop, in units of their gradients; NaN outside a domain."""
+        scaled = [self._scaled(q, loop.rows, ()) for loop in self.loops]
+        return max((math.nan if one is None else _length(one[0]) for one in scaled), default=0.0)
+
     def along(self, q: Sequence[float], direction: Sequence[float]) -> list[float] | None:
         """The part of a direction (in coordinate widths) that leaves all rows as they are to first order."""
         moved = list(direction)
@@ -88,9 +93,10 @@ class Closer:
             if scaled is None:
                 return None
             rows = scaled[1]
+            size = _mean_square(rows)
             for _ in range(2):
                 rates = [sum(value * moved[j] for j, value in row.items()) for row in rows]
-                weights = solve_gram(rows, rates, 1e-12)
+                weights = solve_gram(rows, rates, 1e-12 * size)
                 if weights is None:
                     return None
                 for j, share in transposed_product(rows, weights).items():
@@ -128,8 +134,7 @@ class Closer:
         for _ in range(STEPS):
             if size <= FINISHED or slow == SLOW_STEPS:
                 break
-            scale = sum(value * value for row in rows for value in row.values()) / len(rows) or 1.0
-            weights = solve_gram(rows, values, damping * scale)
+            weights = solve_gram(rows, values, damping * _mean_square(rows))
             trial = list(q)
             fresh = None
             if weights is not None:
@@ -148,6 +153,11 @@ class Closer:
                 if damping > 1e8 or (size <= CLOSED and refused > MOST_REFUSED):
                     break
         return size <= CLOSED
+
+
+def _mean_square(rows: Sequence[Row]) -> float:
+    """Of the lengths of rows; 1 where all of them vanish."""
+    return sum(value * value for row in rows for value in row.values()) / len(rows) or 1.0
 
 
 def _length(values: Sequence[float]) -> float:

@@ -2,6 +2,7 @@
 
 Names without a unit are free and fit everywhere.  So are literals (0.25 may be a length), save those that are plainly
 counts: 1/2, 1, 2, 4, integers that something is divided by, and quotients of integers (`m/2*x_dot**2` has a unit).
+Before a term of an energy that names nothing but coordinates every number is free: a mass or stiffness, even 1 or 1/2.
 """
 
 from __future__ import annotations
@@ -47,8 +48,8 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
     for parameter in model.parameters:
         what = f"the value of `{parameter.name}`"
         inference.agrees(parameter.value, units.get(parameter.name), what, "its unit")
-    kinetic = inference.of(model.kinetic_energy)
-    potential = inference.of(model.potential_energy)
+    kinetic = inference.of_energy(model.kinetic_energy)
+    potential = inference.of_energy(model.potential_energy)
     if kinetic is not None and potential is not None and kinetic != potential:
         mistakes.append(
             _clash("the potential energy", potential, "the kinetic energy", kinetic, model.potential_energy)
@@ -151,6 +152,11 @@ class _Inference:
                 self._units[coordinate.rate] = units[coordinate.name].times(SECOND, -1)
         self._mistakes = mistakes
         self._counts = _COUNTS
+        # parameters and components of bodies, and definitions that are made of them
+        self._measured = {parameter.name for parameter in model.parameters}
+        for definition in model.definitions:
+            if self._is_measured(definition.value):
+                self._measured.add(definition.name)
         for definition in model.definitions:
             found = self.of(definition.value)
             if found is not None:
@@ -161,6 +167,19 @@ class _Inference:
         found = self._of_term(expression)
         if declared is not None and found is not None and found != declared:
             self._mistakes.append(_clash(what, found, other, declared, expression))
+
+    def of_energy(self, expression: Expression) -> Dimension:
+        """The dimension of an energy, free where its terms are made of coordinates and numbers."""
+        match expression:
+            case Negation(operand=operand):
+                return self.of_energy(operand)
+            case Binary(operator="+" | "-", left=left, right=right):
+                return self._same(self.of_energy(left), self.of_energy(right), right)
+        found = self.of(expression)
+        return found if self._is_measured(expression) or not _has_number(expression) else None
+
+    def _is_measured(self, expression: Expression) -> bool:
+        return any(is_component(name.name) or name.name in self._measured for name in names_in(expression))
 
     def of(self, expression: Expression) -> Dimension:
         """The dimension of an expression."""
@@ -198,7 +217,10 @@ class _Inference:
         return self.of(expression) if any(names_in(expression)) else None
 
     def _sum(self, left: Expression, right: Expression) -> Dimension:
-        a, b = self._of_term(left), self._of_term(right)
+        return self._same(self._of_term(left), self._of_term(right), right)
+
+    def _same(self, a: Dimension, b: Dimension, right: Expression) -> Dimension:
+        """The dimension of a sum of two terms."""
         if a is not None and b is not None and a != b:
             self._mistakes.append(_clash("this term", b, "the one before", a, right))
             return None
@@ -227,6 +249,18 @@ class _Inference:
                 )
             )
         return NUMBER
+
+
+def _has_number(expression: Expression) -> bool:
+    """Whether a product has a factor or divisor that is a number."""
+    match expression:
+        case Number():
+            return True
+        case Negation(operand=operand):
+            return _has_number(operand)
+        case Binary(operator="*" | "/", left=left, right=right):
+            return _has_number(left) or _has_number(right)
+    return False
 
 
 def _declared(tree: MappingNode, mistakes: list[Mistake]) -> dict[str, Unit]:

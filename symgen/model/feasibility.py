@@ -50,9 +50,11 @@ def check_motion(
         )
         return
     if not found.regular:
+        rows = shown_names(mechanics.constraints[i].name for i in found.losing)
+        lost = f"there {rows} {'lose' if len(found.losing) > 1 else 'loses'} rank, and " if found.losing else ""
         yield Mistake(
-            f"only singular configurations were found, such as {_shown(mechanics, found.places[0])}: beside it the "
-            f"constraints that hold there have another rank than {rank}",
+            f"only singular configurations were found, such as {_shown(mechanics, found.places[0])}: {lost}beside "
+            f"it the constraints that hold there have another rank than {rank}",
             "check lengths: what closes in a singular pose alone cannot move; give a regular one under "
             "`configuration`; write rows whose gradients do not vanish where they hold, no squares",
             spans["geometric"],
@@ -94,11 +96,8 @@ def _far_start(
     """That the declared start is far from closing: what it leads to may be another assembly than the one meant."""
     if found.start is not None or not mechanics.geometric:
         return
-    moved = [
-        (c.name, declared[c.name], value)
-        for c, value in zip(mechanics.coordinates, found.places[0].q, strict=True)
-        if c.name in declared and abs(value - declared[c.name]) > FAR * (1.0 if c.is_angle else _width(c))
-    ]
+    # the start may lie on a branch on which the inputs span less
+    moved = min((_moved(mechanics, place, declared) for place in (found.places[0], *found.others)), key=len)
     if moved:
         listed = ", ".join(f"{name} = {value:.3g} in place of {given:.3g}" for name, given, value in moved[:MOST_SHOWN])
         more = ", ..." if len(moved) > MOST_SHOWN else ""
@@ -107,6 +106,15 @@ def _far_start(
             "start that nearly closes the loops says which assembly is meant",
             span,
         )
+
+
+def _moved(mechanics: Mechanics, place: Place, declared: Mapping[str, float]) -> list[tuple[str, float, float]]:
+    """The coordinates whose declared start is far from a configuration, with both values."""
+    return [
+        (c.name, declared[c.name], value)
+        for c, value in zip(mechanics.coordinates, place.q, strict=True)
+        if c.name in declared and abs(value - declared[c.name]) > FAR * (1.0 if c.is_angle else _width(c))
+    ]
 
 
 def _width(coordinate: Coordinate) -> float:

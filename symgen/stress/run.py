@@ -24,7 +24,8 @@ from symgen.stress.scaling import Scaled, scaling
 from symgen.stress.series import Series
 from symgen.stress.sweep import StatusCount, Sweep, Sweeper
 from symgen.verify.reference import Reference
-from symgen.verify.states import FEWEST_STATES, sample_states
+from symgen.verify.regular import FEWEST_STATES
+from symgen.verify.states import sample_states
 from symgen.verify.tolerance import FACTOR
 
 Progress = Callable[[str], None]

@@ -7,7 +7,8 @@ from statistics import median
 from typing import Any
 
 from symgen.verify.reference import Reference
-from symgen.verify.states import SAMPLING_BITS, Sample
+from symgen.verify.regular import SAMPLING_BITS
+from symgen.verify.states import Sample
 
 
 def condition_numbers(reference: Reference, samples: Sequence[Sample]) -> list[tuple[str, float, float]]:

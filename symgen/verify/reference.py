@@ -115,6 +115,7 @@ class Reference:
             u=[ball(x) for x in state.u],
             parameters=[ball(x) for x in state.parameters],
             literals=self.literals() if literals is None else literals,
+            own_literals=literals is None,
         )
 
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from math import hypot
 from typing import Any
 
-from flint import arb, arb_mat
+from flint import arb, arb_mat, ctx
 
 
 def identity(n: int) -> Any:
@@ -86,7 +86,8 @@ def right_pseudoinverse(matrix: Any, rank: int) -> Any:
     for size in range(1, rank):
         gradient = identity(r) * minors[size] - gram * gradient
     total = minors[rank]
-    if total.contains(0):
+    # rows in units far apart lose digits with the power of their sizes: half of the working precision is to be left
+    if total.rel_accuracy_bits() < ctx.prec // 2:
         raise ZeroDivisionError("the matrix may be of lower rank")
     return matrix.transpose() * gradient * (1 / total)
 
@@ -133,26 +134,35 @@ RANK_SIGNAL = -60
 
 
 def numerical_rank(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SIGNAL) -> int | None:
-    """Rank of a matrix by its pivots: above 2^signal of a row's size they count, below 2^noise they do not.
+    """Rank of a matrix by its pivots; None when one of them cannot be told (see `independent_rows`)."""
+    rows = independent_rows(matrix, noise, signal)
+    return None if rows is None else len(rows)
+
+
+def independent_rows(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SIGNAL) -> list[int] | None:
+    """Rows that span all of them, by pivots: above 2^signal of a row's size they count, below 2^noise they do not.
 
     None when a pivot falls between (the point is too close to a singularity to tell).
     """
     rows = [[arb(entry.mid()) for entry in row] for row in matrix.tolist()]
     sizes = [max((float(abs(entry)) for entry in row), default=0.0) for row in rows]
     largest = max(sizes, default=0.0)
-    rows = [
-        [entry / size for entry in row]
-        for row, size in zip(rows, sizes, strict=True)
+    left = {
+        i: [entry / size for entry in row]
+        for i, (row, size) in enumerate(zip(rows, sizes, strict=True))
         if size > largest * 2.0**noise
-    ]
-    rank = 0
-    while rows:
-        size, i, j = max((float(abs(entry).mid()), i, j) for i, row in enumerate(rows) for j, entry in enumerate(row))
+    }
+    chosen: list[int] = []
+    while left:
+        size, i, j = max((float(abs(entry).mid()), i, j) for i, row in left.items() for j, entry in enumerate(row))
         if size < 2.0**noise:
             break
         if size < 2.0**signal:
             return None
-        pivot = rows.pop(i)
-        rows = [[arb((x - row[j] / pivot[j] * y).mid()) for x, y in zip(row, pivot, strict=True)] for row in rows]
-        rank += 1
-    return rank
+        pivot = left.pop(i)
+        left = {
+            k: [arb((x - row[j] / pivot[j] * y).mid()) for x, y in zip(row, pivot, strict=True)]
+            for k, row in left.items()
+        }
+        chosen.append(i)
+    return sorted(chosen)

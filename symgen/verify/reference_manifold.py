@@ -15,6 +15,7 @@ from symgen.verify.reference_linear import (
     RANK_SIGNAL,
     column,
     identity,
+    independent_rows,
     norm,
     numerical_rank,
     right_pseudoinverse,
@@ -190,22 +191,23 @@ def _ranks_at(
     """Ranks at one point of V; the degree of actuation is rank [B; M'] minus rank B."""
     noise, signal = (ROUNDED_NOISE, ROUNDED_SIGNAL) if rounded else (RANK_NOISE, RANK_SIGNAL)
     at = system.configuration(q, parameters, literals)
-    constraints = numerical_rank(at.constraints, noise, signal)
+    rows = independent_rows(at.constraints, noise, signal)
     geometric = numerical_rank(rows_of(at.constraints, range(system.r_geometric)), noise, signal)
-    if constraints is None or geometric is None:
+    if rows is None or geometric is None:
         return None
+    # on V they span all rows: the sums over all subsets of rows in other units lose far more digits
+    basis = rows_of(at.constraints, rows)
     try:
-        inverse = right_pseudoinverse(at.constraints, constraints)
+        projected = at.control - right_pseudoinverse(basis, len(rows)) * (basis * at.control)
     except ZeroDivisionError:
         return None
-    projected = at.control - inverse * (at.constraints * at.control)
     # an input that only loads the constraints leaves rounding alone, which is no direction of motion
     sizes = [_size(at.control, j) for j in range(system.m)]
     moving = [j for j in range(system.m) if _size(projected, j) > sizes[j] * 2.0**noise]
     # units of inputs are no measure of each other
     entries = [projected[i, j] / sizes[j] for i in range(system.n) for j in moving]
     actuation = numerical_rank(arb_mat(system.n, len(moving), entries), noise, signal) if moving else 0
-    return None if actuation is None else Ranks(constraints, geometric, actuation)
+    return None if actuation is None else Ranks(len(rows), geometric, actuation)
 
 
 def _size(matrix: Any, column: int) -> float:

@@ -66,12 +66,12 @@ def expectations(
 
 
 def perturbed(reference: Reference, state: State, scalar: Scalar, generator: random.Random) -> tuple[State, list[Any]]:
-    """The state and the literals with every number x moved by +-eps |x| (balls of the working precision)."""
+    """The state and the literals with every number x moved by +-eps |x| (rounded to the working precision)."""
     eps = ball(UNIT_ROUNDOFF[scalar])
     factors = (arb(1) - eps, arb(1) + eps)
 
     def move(values: Sequence[Any]) -> tuple[Any, ...]:
-        return tuple(ball(x) * factors[generator.getrandbits(1)] for x in values)
+        return tuple((ball(x) * factors[generator.getrandbits(1)]).mid() for x in values)
 
     parts = (move(part) for part in (state.q, state.qd, state.qdd, state.u, state.parameters))
     return State(*parts), list(move(reference.literals()))

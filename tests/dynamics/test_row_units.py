@@ -71,10 +71,10 @@ def test_products_of_rows_stay_in_the_range_of_float32() -> None:
 
 
 def test_rows_that_depend_on_each_other_have_one_factor() -> None:
-    """The smallest multipliers are meant in the units of the file."""
+    """The smallest multipliers are meant in the units of the file; a row that no other follows from has its own."""
     text = CRANE.format(first="1e8", second_row="again: 5e7*(l*cos(a) + 0.9*cos(b) - 1.2*cos(c))", third="1e7")
     model = in_ordinary_units(load_text(text, "crane.yaml"))
-    assert len(set(model.row_units)) == 1
-    assert Fraction(2) ** model.row_units[0] < Fraction(1, 1000)
+    assert model.row_units[0] == model.row_units[1] != model.row_units[2]
+    assert all(Fraction(2) ** unit < Fraction(1, 1000) for unit in model.row_units)
     multipliers = _values(load_text(text, "crane.yaml"), "multipliers")
     assert multipliers[1] == pytest.approx(multipliers[0] / 2, rel=1e-12)

@@ -1,0 +1,312 @@
+"""Regular configurations on the constraint manifold V: from starts all over the ranges, then by steps along V.
+
+Where a mechanism moves there are as many as are asked for, however little of V the starts reach: from one that is
+known a step along an admissible direction, closed again, leads to the next.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite, pi, sqrt
+from typing import Any
+
+from symgen.model.names import shown_names
+from symgen.verify.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference_manifold import admissible, exceeds, onto_manifold, starts
+from symgen.verify.reference_system import ParameterValues, default_parameters
+from symgen.verify.reference_tape import ball
+
+FEWEST_STATES = 8
+REGULAR = 1e-3
+SAMPLING_BITS = 128
+DRIFT = 1e-3
+REST = 1e-25
+# How far angles may lie outside of their ranges in states.
+TURNS = 2
+TYPICAL_POINTS = 8
+PROJECTED = ("admissible_velocity", "admissible_acceleration")
+# Steps along V, in widths of the ranges.
+LONGEST_STEP, SHORTEST_STEP = 0.2, 1e-5
+CLOSED, BRANCH, TURNED = "do not close", "lie on other branches", "lie turns outside of the ranges"
+VALUE, SINGULAR = "have no value", "are singular"
+
+
+@dataclass(frozen=True, slots=True)
+class Regular:
+    """A regular state as drawn, rates and accelerations not projected yet, and the inputs as shares of their size."""
+
+    state: State
+    shares: tuple[float, ...]
+    admissible: bool
+    values: dict[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Sizes:
+    """What tells how far from singular a configuration is: both measures, and the length of each row of B."""
+
+    measures: Sequence[float]
+    rows: Sequence[float]
+
+    @property
+    def finite(self) -> bool:
+        return all(map(isfinite, (*self.measures, *self.rows)))
+
+
+class Search:
+    """The search for `count` regular states of a model, the same for the same seed; `told` says what it met."""
+
+    def __init__(self, reference: Reference, count: int, seed: int) -> None:
+        self._reference, self._system = reference, reference.system
+        self._count = count
+        self._generator = random.Random(f"states {seed}")
+        self._points = starts(self._system, self._generator, 6 * count + 60)
+        self._literals = reference.literals()
+        self._known = reference.model.assembly
+        tied = () if self._known is None else self._known.tied
+        ranged = [p.name for p in reference.model.parameters if p.range is not None and p.name not in tied]
+        self._varied = ParameterValues(reference.model, ranged)
+        self._least = self._limits()
+        self._kept = {True: 0, False: 0}
+        self._met: list[_Sizes] = []
+        self._ends: Counter[str] = Counter()
+        self._lost: Counter[str] = Counter()
+
+    def candidates(self) -> Iterator[tuple[Regular, bool]]:
+        """Regular states, and whether the coordinates lie in their ranges."""
+        last: list[Any] | None = None
+        for index, point in enumerate(self._points):
+            parameters = self._parameters(vary=index > 0)
+            moving = last is not None and index % 4 and self._system.r_geometric
+            found = self._found(self._step(last) if moving and last is not None else point, parameters)
+            if found is not None:
+                last = found[0]
+                yield found[1:]
+        if sum(self._kept.values()) < FEWEST_STATES and self._system.r_geometric:
+            yield from self._along(last)
+
+    def told(self) -> str:
+        """What became of the others, as the end of a sentence."""
+        if not self._ends:
+            return ""
+        ends = ", ".join(f"{count} {end}" for end, count in self._ends.most_common())
+        lost = f", where {shown_names(sorted(self._lost))} lose rank or vanish" if self._lost else ""
+        return f": of the others looked at {ends}{lost}"
+
+    def _along(self, last: list[Any] | None) -> Iterator[tuple[Regular, bool]]:
+        """Most of V are other branches or singular, or its size is far from that of the ranges: steps along it.
+
+        Where all but nothing was regular the closest to it that is met counts.
+        """
+        known = [list(place.q) for place in self._known.places] if self._known is not None else []
+        known = known or [list(self._points[0])]
+        reach = LONGEST_STEP
+        for index in range(len(self._points)):
+            if sum(self._kept.values()) >= self._count:
+                return
+            here = known[index % len(known)] if last is None or reach <= SHORTEST_STEP else last
+            reach = LONGEST_STEP if reach <= SHORTEST_STEP else reach
+            if self._met and sum(self._kept.values()) < FEWEST_STATES:
+                measures = (max(column) for column in zip(*(one.measures for one in self._met), strict=True))
+                rows = (max(column) for column in zip(*(one.rows for one in self._met), strict=True))
+                self._least = _Sizes(
+                    [min(low, most / 10) for low, most in zip(self._least.measures, measures, strict=True)],
+                    [min(low, REGULAR * most) for low, most in zip(self._least.rows, rows, strict=True)],
+                )
+            # other lengths may leave no room to move
+            parameters = self._parameters(vary=index % 2 > 0)
+            found = self._found(self._shifted(here, parameters, reach), parameters)
+            if found is None:
+                reach /= 2
+                continue
+            last, reach = found[0], min(LONGEST_STEP, 2 * reach)
+            yield found[1:]
+
+    def _found(self, start: Sequence[Any], exact: Sequence[Any]) -> tuple[list[Any], Regular, bool] | None:
+        """The point of V that a start leads to, the state there, and whether it lies in the ranges."""
+        reference = self._reference
+        # lengths that others follow from are rounded afterwards: a linkage may close for their exact values alone
+        q = onto_manifold(self._system, start, exact, self._literals, rounded=reference.ranks.rounded)
+        if q is None:
+            self._ends[CLOSED] += 1
+            return None
+        if exceeds(self._system, reference.ranks, q, exact, self._literals):
+            self._ends[BRANCH] += 1
+            return None
+        if self._turned_away(q):
+            self._ends[TURNED] += 1
+            return None
+        in_range = self._in_ranges(q)
+        # what lies outside is rarely needed
+        needed = measured(reference) if in_range else ()
+        found = self._regular(
+            settled(q, [c.range for c in reference.model.coordinates]),
+            [float(x) for x in exact],
+            self._kept[in_range],
+            needed,
+        )
+        if found is None:
+            return None
+        self._kept[in_range] += 1
+        return q, found, in_range
+
+    def _limits(self) -> _Sizes:
+        """What measures and rows must be at a regular state.
+
+        Measures are products of about delta numbers between 0 and 1; many rows, or units that make columns of very
+        different size, leave them small everywhere, so that no more than a tenth of the largest found is asked for.
+        """
+        reference, known = self._reference, self._known
+        parameters = [float(x) for x in self._parameters(vary=False)]
+        points = self._points[:TYPICAL_POINTS]
+        on_it = points if known is None else [place.q for place in known.places[:TYPICAL_POINTS]]
+        rows = self._row_lengths(points, parameters)
+        if known is not None and reference.ranks.constraints < reference.model.r:
+            # of rows that depend on each other some have no gradient anywhere on V, and are no drop of rank there
+            here = self._row_lengths(on_it, parameters)
+            rows = [0.0 if there < REGULAR * x else x for there, x in zip(here, rows, strict=True)]
+        usual = REGULAR ** max(1.0, (reference.model.n - reference.ranks.constraints) / 2)
+        found = []
+        for q in on_it:
+            try:
+                state = _at_rest(reference, q, parameters)
+                found.append(floats(reference.matrices(state, ["singularity"], SAMPLING_BITS)["singularity"]))
+            except ReferenceValueError:
+                continue
+        largest = [max((x for x in column if isfinite(x)), default=1.0) for column in zip(*found, strict=True)]
+        return _Sizes([min(usual, x / 10) for x in largest or (1.0, 1.0)], [REGULAR * x for x in rows])
+
+    def _row_lengths(self, points: Sequence[Sequence[float]], parameters: Sequence[float]) -> list[float]:
+        """The largest length of each row of B over some points, on V or off it."""
+        reference = self._reference
+        lengths = [0.0] * reference.model.r
+        for q in points:
+            try:
+                state = _at_rest(reference, q, parameters)
+                rows = reference.matrices(state, ["constraint_jacobian"], SAMPLING_BITS)["constraint_jacobian"]
+            except ReferenceValueError:
+                continue
+            found = _lengths(floats(rows), reference.model.n)
+            lengths = [max(pair) if isfinite(pair[1]) else pair[0] for pair in zip(lengths, found, strict=True)]
+        return lengths
+
+    def _parameters(self, vary: bool) -> list[Any]:
+        """Parameter values as balls: those with a range drawn from it."""
+        chosen = {
+            parameter.name: self._generator.uniform(float(parameter.range[0]), float(parameter.range[1]))
+            for parameter in self._varied.model.parameters
+            if parameter.range is not None
+        }
+        return self._varied(chosen) if vary else default_parameters(self._varied.model)
+
+    def _step(self, q: Sequence[Any]) -> list[float]:
+        """A start near q: a random step, a tenth of the ranges wide, that the projection brings back to V."""
+        return [
+            float(x) + self._generator.gauss(0, 0.1) * float(c.range[1] - c.range[0])
+            for x, c in zip(q, self._reference.model.coordinates, strict=True)
+        ]
+
+    def _shifted(self, q: Sequence[Any], parameters: Sequence[Any], reach: float) -> list[float]:
+        """A start off q in a direction that the geometric constraints allow, at most about `reach` ranges away."""
+        widths = [float(c.range[1] - c.range[0]) for c in self._reference.model.coordinates]
+        share = reach * self._generator.random()
+        shift = [share * self._generator.gauss(0, 1) * width for width in widths]
+        allowed = admissible(self._system, q, shift, parameters, self._literals)
+        return [float(x) + float(a) for x, a in zip(q, allowed, strict=True)]
+
+    def _regular(
+        self, q: Sequence[float], parameters: Sequence[float], index: int, needed: Sequence[str]
+    ) -> Regular | None:
+        """A state at q with what is `needed` of it, or None near a singularity."""
+        model, generator = self._reference.model, self._generator
+        rates = tuple(generator.uniform(*map(float, c.rate_range)) for c in model.coordinates)
+        accelerations = tuple(generator.uniform(*map(float, c.acceleration_range)) for c in model.coordinates)
+        shares = tuple(generator.uniform(-1, 1) for _ in model.inputs)
+        shifts = [generator.uniform(-1, 1) for _ in model.coordinates]
+        places = [q]
+        if index % 4 == 3 and self._system.r_geometric and self._reference.ranks.constraints == model.r:
+            moved = [x + DRIFT * s * max(abs(x), 0.1) for x, s in zip(q, shifts, strict=True)]
+            given = [*map(ball, moved)], [*map(ball, parameters)]
+            if not exceeds(self._system, self._reference.ranks, *given, self._literals):
+                places.insert(0, moved)
+        for place in places:  # on V where a thousandth of the coordinates is more than a small mechanism moves
+            state = State(tuple(place), rates, accelerations, (0.0,) * model.m, tuple(parameters))
+            values = self._looked_at(state, needed)
+            if values is not None:
+                return Regular(state, shares, index % 2 == 0, values)
+        return None
+
+    def _looked_at(self, state: State, needed: Sequence[str]) -> dict[str, tuple[float, ...]] | None:
+        """What is needed of a state; None where it is not regular, which is counted."""
+        model = self._reference.model
+        try:
+            values = values_at(self._reference, state, ("singularity", "constraint_jacobian", *needed))
+        except ReferenceValueError:
+            self._ends[VALUE] += 1
+            return None
+        sizes = _Sizes(values["singularity"], _lengths(values["constraint_jacobian"], model.n))
+        if sizes.finite:
+            self._met.append(sizes)
+        # the measures compare directions of rows only; a row that all but vanishes is a drop of rank, too
+        small = [i for i, low in enumerate(self._least.rows) if not inf > sizes.rows[i] >= low]
+        if small or not all(inf > x >= low for x, low in zip(sizes.measures, self._least.measures, strict=True)):
+            self._ends[SINGULAR] += 1
+            self._lost.update(model.constraints[i].name for i in small)
+            return None
+        return values
+
+    def _in_ranges(self, q: Sequence[Any]) -> bool:
+        """Whether every coordinate lies in its range, but for a hundredth of its width."""
+        for x, coordinate in zip(q, self._reference.model.coordinates, strict=True):
+            low, high = map(float, coordinate.range)
+            slack = 0.01 * (high - low)
+            if not low - slack <= x <= high + slack:
+                return False
+        return True
+
+    def _turned_away(self, q: Sequence[Any]) -> bool:
+        """Whether an angle is turns outside of its range, where one step after another leads and nothing new is met."""
+        return any(
+            c.is_angle and not float(c.range[0]) - TURNS * 2 * pi <= x <= float(c.range[1]) + TURNS * 2 * pi
+            for x, c in zip(q, self._reference.model.coordinates, strict=True)
+        )
+
+
+def measured(reference: Reference) -> tuple[str, ...]:
+    """What makes a sample of a regular state."""
+    return *PROJECTED, *(("inverse_dynamics",) if reference.model.m else ())
+
+
+def values_at(reference: Reference, state: State, names: Sequence[str]) -> dict[str, tuple[float, ...]]:
+    """Row-major entries of quantities, to the digits that sampling needs."""
+    found = reference.matrices(state, names, SAMPLING_BITS)
+    return {name: (_rates if name in PROJECTED else floats)(matrix) for name, matrix in found.items()}
+
+
+def settled(values: Sequence[Any], ranges: Sequence[tuple[Any, Any]]) -> list[float]:
+    """Floats, with 0 for what searches and projections leave of it: squares of such rests underflow in float32."""
+    pairs = zip(map(float, values), ranges, strict=True)
+    return [0.0 if abs(x) < REST * float(high - low) else x for x, (low, high) in pairs]
+
+
+def floats(matrix: Any) -> tuple[float, ...]:
+    """The entries of a matrix."""
+    return tuple(map(float, matrix.entries()))
+
+
+def _rates(matrix: Any) -> tuple[float, ...]:
+    """Entries rounded to float64; what cannot be told from 0 is 0, such as the rate of a joint that cannot move."""
+    return tuple(0.0 if x.is_finite() and x.contains(0) else float(x) for x in matrix.entries())
+
+
+def _at_rest(reference: Reference, q: Sequence[float], parameters: Sequence[float]) -> State:
+    n, m = reference.model.n, reference.model.m
+    return State(tuple(q), (0.0,) * n, (0.0,) * n, (0.0,) * m, tuple(parameters))
+
+
+def _lengths(rows: Sequence[float], n: int) -> list[float]:
+    """The length of each row of n numbers."""
+    return [sqrt(sum(x**2 for x in rows[start : start + n])) for start in range(0, len(rows), n)]

@@ -1,0 +1,58 @@
+"""Dependent rows and one in units of its own, drives on joints that cannot move: the reference keeps its digits."""
+
+from __future__ import annotations
+
+import pytest
+from flint import arb_mat
+
+from symgen.model.load import load_text
+from symgen.verify.reference import Reference
+from symgen.verify.reference_linear import independent_rows, right_pseudoinverse
+from symgen.verify.reference_tape import precision
+from symgen.verify.states import sample_states
+
+# the shelf holds the tip of an arm, so that its joints stand still; the crank turns beside it
+SHELF = """\
+model: shelf_and_crank
+coordinates: {{a: {{unit: rad}}, b: {{unit: rad}}, c: {{unit: rad}}, d: {{unit: rad}}, e: {{unit: rad}}}}
+kinetic_energy: 2*a_dot**2 + b_dot**2 + cos(a - b)*a_dot*b_dot/2 + c_dot**2/3 + d_dot**2/5 + e_dot**2/4
+potential_energy: 7*sin(a) + 3*sin(b) + 5*sin(d)
+constraints:
+  geometric:
+    tip_x: 0.7*cos(a) + 0.5*cos(b) - 0.9
+    tip_y: 0.7*sin(a) + 0.5*sin(b) - 0.4
+    both: 0.7*cos(a) + 0.5*cos(b) - 0.9 + 2*(0.7*sin(a) + 0.5*sin(b) - 0.4)
+    ring_x: 0.3*cos(c) + 1.1*cos(d) - 0.8*cos(e) - 0.9
+    ring_y: "{unit}*(0.3*sin(c) + 1.1*sin(d) - 0.8*sin(e))"
+inputs: {{shoulder: {{acts_on: {{a: 2}}}}, elbow: {{acts_on: {{b: 1, a: -1}}}}}}
+"""
+
+
+@pytest.mark.parametrize("unit", ["1", "1e6", "1e-6", "1e9"])
+def test_states_are_found_where_all_driven_joints_are_held(unit: str) -> None:
+    model = load_text(SHELF.format(unit=unit), "shelf.yaml")
+    reference = Reference(model)
+    assert (reference.ranks.constraints, reference.ranks.actuation) == (4, 0)
+    samples = sample_states(reference, ("inverse_dynamics", "multipliers"), 16)
+    assert len(samples) == 16
+    shelf = {tuple(round(x, 9) for x in sample.state.q[:2]) for sample in samples}
+    assert len(shelf) <= 2  # elbow up and down
+
+
+def test_sums_over_subsets_of_rows_say_when_they_have_no_digits_left() -> None:
+    """Two rows that are one, and two of size 1e60."""
+    rows = [[1, 2, 0, 0, 3], [2, 4, 0, 0, 6], [0, 10**60, 10**60, 0, 0], [0, 0, 3 * 10**60, 10**60, 1]]
+    with precision(64), pytest.raises(ZeroDivisionError):
+        right_pseudoinverse(arb_mat(rows), 3)
+    with precision(1024):
+        matrix = arb_mat(rows)
+        product = matrix * right_pseudoinverse(matrix, 3) * matrix
+        difference = [float(x - y) for x, y in zip(product.entries(), matrix.entries(), strict=True)]
+    assert max(map(abs, difference)) < 1e-60
+
+
+def test_rows_that_span_all_of_them() -> None:
+    with precision(128):
+        assert independent_rows(arb_mat([[1, 0, 2], [2, 0, 4], [0, 1, 0]])) == [1, 2]
+        assert independent_rows(arb_mat([[0, 0], [1, 5]])) == [1]
+        assert independent_rows(arb_mat([[1, 1], [1, 1 + 2**-80]])) is not None
