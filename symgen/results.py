@@ -20,7 +20,7 @@ Part: TypeAlias = Literal["c", "python", "report", "package", "proof"]
 PARTS: tuple[Part, ...] = ("c", "python", "report", "package", "proof")
 DEFAULT_STATES = 64
 AUTO = "auto"
-_MOTIONS = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt", "articulated")
+_MOTIONS = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt", "articulated", "articulated_refined")
 # By quantity, the forms that may be asked for.
 FORMS: Mapping[str, tuple[str, ...]] = {
     "inverse_dynamics": ("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"),

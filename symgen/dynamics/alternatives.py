@@ -9,7 +9,7 @@ from collections import defaultdict
 
 from symgen.dynamics.catalogue import BY_NAME, Derived, derive, scalars
 from symgen.dynamics.compared import MOTIONS, quantities_by
-from symgen.dynamics.forms.motions import BY_FRAMES
+from symgen.dynamics.forms.motions import BY_BODIES, BY_FRAMES
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.inverse import AUTOMATIC, FormChoice, InverseDynamics, Offer, derived_on, moved
 from symgen.dynamics.mechanics import Mechanics
@@ -24,9 +24,10 @@ from symgen.records import dataclass
 
 # Those of a tier come before any of the next.  The second ones square the condition of B, or are long.
 INPUTS = (AUTOMATIC, ("printed", "weighted", "kkt"))
-MOTION = (("minor", "schur_qr", "nullspace", BY_FRAMES), ("schur_ldl", "shifted", "kkt"))
+MOTION = (("minor", "schur_qr", "nullspace", BY_FRAMES, BY_BODIES), ("schur_ldl", "shifted", "kkt"))
 OTHERS = (("minors", "householder", "blocks"), ())
-WEIGHTED = (("minors", "householder", "blocks", "schur_qr"), ())
+WEIGHTED = (("minors", "householder", "blocks", "schur_qr", BY_FRAMES), ())
+ELIMINATIONS = ("schur_qr", BY_FRAMES)
 TIERS = 2
 
 
@@ -86,7 +87,7 @@ class Alternatives:
             return self._of_inputs(name)
         if quantity in MOTIONS:
             return self._of_motion(quantity, name)
-        return self._by_elimination(quantity) if name == "schur_qr" else self._along(quantity, name)
+        return self._by_elimination(quantity, name) if name in ELIMINATIONS else self._along(quantity, name)
 
     def _of_inputs(self, name: str) -> Alternative | None:
         """A form of u that is nowhere singular."""
@@ -127,19 +128,21 @@ class Alternatives:
         return Alternative(Choice(quantity, name, costs), mechanics, finished(mechanics, self._generic, derived))
 
 
-    def _by_elimination(self, quantity: str) -> Alternative | None:
+    def _by_elimination(self, quantity: str, name: str) -> Alternative | None:
         """A weighted projection as accelerations."""
-        from symgen.dynamics.forms.weighted_projection import weighted_projection  # few models need it
+        # few models need it
+        from symgen.dynamics.forms.weighted_projection import projection_of_bodies, weighted_projection
 
+        by = weighted_projection if name == "schur_qr" else projection_of_bodies
         mechanics = Mechanics(self._model)
         space = reflected(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, self._generic.rank)
-        found = weighted_projection(mechanics, self._generic, quantity, space.guards)
+        found = by(mechanics, self._generic, quantity, space.guards)
         if found is None:
             return None
         matrix, guards = found
         derived = Derived(quantity, (len(matrix), len(matrix[0])), flatten(matrix), guards)
-        costs = (("schur_qr", cost(scalars(derived)).weight),)
-        return Alternative(Choice(quantity, "schur_qr", costs), mechanics, finished(mechanics, self._generic, derived))
+        costs = ((name, cost(scalars(derived)).weight),)
+        return Alternative(Choice(quantity, name, costs), mechanics, finished(mechanics, self._generic, derived))
 
 
 def _tiers(quantity: str) -> tuple[tuple[str, ...], ...]:

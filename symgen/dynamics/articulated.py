@@ -106,10 +106,11 @@ class ArticulatedFactor:
             for one in self._yielding[name]:
                 given = y[one.coordinate]
                 rest = y[one.coordinate] = given + self._dot(one.direction, load)
+                along = _unit(one.direction)
                 # along the joint itself the given force alone is passed on, without a difference
                 load = tuple(
-                    x if s.is_zero else -given if s.is_one else x - s * rest
-                    for x, s in zip(load, one.share, strict=True)
+                    x if s.is_zero else -given if s.is_one and i == along else x - s * rest
+                    for i, (x, s) in enumerate(zip(load, one.share, strict=True))
                 )
             parent = self._parents[name]
             if parent != WORLD:
@@ -195,9 +196,7 @@ class ArticulatedFactor:
 
     def freed(self, inertia: Matrix, direction: Six, met: Six, share: Six, rotor: Scalar) -> Matrix:
         """inertia - met share^T; along a unit direction only what a rotor keeps is left, without a difference."""
-        units = [i for i, d in enumerate(direction) if not d.is_zero]
-        along = units[0] if len(units) == 1 and direction[units[0]].is_one else None
-        zero = self.graph.zero
+        along, zero = _unit(direction), self.graph.zero
 
         def entry(i: int, j: int) -> Scalar:
             if along is not None and along in (i, j):
@@ -285,6 +284,12 @@ class ArticulatedFactor:
 
     def _dot(self, one: Sequence[Scalar], other: Sequence[Scalar]) -> Scalar:
         return dot(self.graph, one, other)
+
+
+def _unit(direction: Six) -> int | None:
+    """The axis of a unit direction."""
+    units = [i for i, d in enumerate(direction) if not d.is_zero]
+    return units[0] if len(units) == 1 and direction[units[0]].is_one else None
 
 
 def _symmetric(entry: Callable[[int, int], Scalar]) -> Matrix:

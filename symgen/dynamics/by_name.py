@@ -12,7 +12,7 @@ from symgen.dynamics.admission.verdict import DECIMALS, Singular, Verdict
 from symgen.dynamics.catalogue import Derived, scalars
 from symgen.dynamics.compared import MOTIONS, quantities_by, why_missing
 from symgen.dynamics.forms.definiteness import Indefinite, indefinite
-from symgen.dynamics.forms.motions import BY_FRAMES, MOTION_NAMES
+from symgen.dynamics.forms.motions import BY_BODIES, BY_FRAMES, MOTION_NAMES
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.inverse import FormChoice
 from symgen.dynamics.mechanics import Mechanics
@@ -31,6 +31,7 @@ THEOREMS = {
     "shifted": "its matrix is positive definite where G is so along the constraints" + SQUARED,
     "kkt": "its pivots are those of the whole system",
     BY_FRAMES: "its pivots are inertias met along the joints, positive where G is definite, and those of B",
+    BY_BODIES: "its pivots are inertias met along the joints, positive where G is definite, and those of B",
 }
 PROJECTOR = {
     "minor": "its denominator is the sum of the squared minors of B",

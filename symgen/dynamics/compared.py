@@ -7,7 +7,7 @@ from symgen.dynamics.derivation import Derivation
 from symgen.dynamics.forms.articulated import articulated
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
 from symgen.dynamics.forms.motion import Motion
-from symgen.dynamics.forms.motions import BY_FRAMES, MOTION_NAMES, MotionName, candidates, motion
+from symgen.dynamics.forms.motions import BY_BODIES, BY_FRAMES, MOTION_NAMES, MotionName, candidates, motion
 from symgen.dynamics.genericity import Genericity, genericity
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
@@ -32,8 +32,8 @@ def motions_of(model: Model) -> dict[str, tuple[Mechanics, tuple[Derived, ...]]]
 
 def quantities_by(model: Model, generic: Genericity, name: str) -> tuple[Mechanics, tuple[Derived, ...]]:
     """One form: the mechanics it was derived on, and those of q_ddot, lambda and N_B that it has."""
-    if name == BY_FRAMES:
-        found = articulated(model, generic)
+    if name in (BY_FRAMES, BY_BODIES):
+        found = articulated(model, generic, by_bodies=name == BY_BODIES)
         return (Mechanics(model), ()) if found is None else (found[0], _of_motion(generic, found[1]))
     mechanics = Mechanics(model)
     space = _space(mechanics, generic, name)
@@ -43,8 +43,8 @@ def quantities_by(model: Model, generic: Genericity, name: str) -> tuple[Mechani
 def why_missing(generic: Genericity, quantity: str, name: str) -> str:
     """The reason for which a system lacks a form of a quantity."""
     by_minors = name == "minor"
-    if name == BY_FRAMES:
-        return "it is for bodies alone with one frame for each coordinate, definite G and independent rows"
+    if name in (BY_FRAMES, BY_BODIES):
+        return "it is for bodies alone with one frame for each coordinate and definite G"
     if not generic.r and not (by_minors and quantity in MOTIONS):
         return "there are no constraints"
     if by_minors and generic.minors > MINOR_LIMIT:

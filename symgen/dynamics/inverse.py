@@ -311,11 +311,11 @@ def derived_on(graph: Graph, offer: Offer) -> Derived:
 
 def moved(graph: Graph, derived: Derived) -> Derived:
     """A quantity on another graph."""
-    there = _Moved(graph)
+    there = Moved(graph)
     return replace(derived, outputs=there.scalars(derived.outputs), guards=there.guards(derived.guards))
 
 
-class _Moved:
+class Moved:
     """Guards and scalars on another graph; equal guards stay equal."""
 
     def __init__(self, graph: Graph) -> None:

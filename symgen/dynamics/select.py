@@ -129,8 +129,11 @@ def absolute_way(model: Model, generic: Genericity) -> Derivation | None:
 
 
 def articulated_motion(model: Model, generic: Genericity) -> dict[str, Derived]:
-    """q_ddot and lambda by articulated inertias, on a graph of their own; none where the system lacks that form."""
-    if not model.mechanism.has_mass:
+    """q_ddot and lambda by articulated inertias, on a graph of their own; none where the system lacks that form.
+
+    Where rows depend on each other, choosing among them is most of the work by any form: left for when others fail.
+    """
+    if not model.mechanism.has_mass or generic.rank < generic.r:
         return {}
     from symgen.dynamics.forms.articulated import articulated  # models given by energies start without it
 

@@ -8,15 +8,16 @@ were rounded one by one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 from symgen.dynamics.articulated import ArticulatedFactor, Six
-from symgen.dynamics.forms.held_lengths import along_factor_with_lengths, held_lengths
+from symgen.dynamics.bodies import Vector3
+from symgen.dynamics.forms.held_lengths import HeldLengths, LengthsApart, held_lengths
 from symgen.dynamics.forms.local_inertias import definite_along_motion, definite_by_frames
 from symgen.dynamics.forms.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.dynamics.forms.motion import Motion, Problem
+from symgen.dynamics.forms.refinement import Solution, refined
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.mechanics import Mechanics
@@ -24,7 +25,7 @@ from symgen.dynamics.newton_euler import frame_motions, inertial_wrenches
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.spaces import LONGEST_PRODUCT
 from symgen.graph.calculus import gradient
-from symgen.graph.matrix import Vector
+from symgen.graph.matrix import Vector, dot
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.translate import translate
 from symgen.graph.traverse import substitute
@@ -63,12 +64,17 @@ class _Loops(Problem):
 
     @cached_property
     def bias(self) -> Vector:
+        return self.bias_at((self.graph.zero,) * self.n)
+
+    def bias_at(self, q_ddot: Vector) -> Vector:
+        """B q_ddot + a."""
         mechanics = self._mechanics
-        rest = (self.graph.zero,) * self.n
-        motions = frame_motions(mechanics.bodies, mechanics.qd, rest, mechanics.bodies.gravity) if self._loops else {}
+        weight = mechanics.bodies.gravity
+        motions = frame_motions(mechanics.bodies, mechanics.qd, q_ddot, weight) if self._loops else {}
         held = [i for loop, _ in self._loops if motions.keys() >= set(loop.frames) for i in loop.rows.values()]
         if len(held) < self.r:
-            return self._turned(super().bias, inward=True)
+            given = zip(self.rows, super().bias, strict=True)
+            return self._turned(tuple(a + dot(self.graph, row, q_ddot) for row, a in given), inward=True)
         # nothing else is worked out: the first way to a function is the one that stands in the graph
         found = dict[int, Scalar]()
         for loop, axes in self._loops:
@@ -91,42 +97,123 @@ class _Loops(Problem):
         return tuple(found)
 
 
-def articulated(model: Model, generic: Genericity) -> tuple[Mechanics, Motion] | None:
-    """The motion and the system it was derived on, a graph of its own.
+class BodyEquations:
+    """G q_ddot + B^T lambda = f, B q_ddot = -a of bodies, solved from body to body.
 
-    None where T is not that of bodies alone, a coordinate moves several frames or none, rows depend on each other, or
-    G is not definite.
+    With `turned` the rows of loops are taken along the axes that leave most entries out; `guards` are the denominators.
     """
+
+    def __init__(
+        self, mechanics: Mechanics, factor: ArticulatedFactor, held: HeldLengths, rank: int, turned: bool
+    ) -> None:
+        self._mechanics, self._factor, graph = mechanics, factor, mechanics.graph
+        rows = mechanics.constraint_jacobian
+        others = held.others(len(rows))
+        tested = [rows[i] for i in others] if held.apart(rows) else rows
+        few = 0 < len(others) <= LONGEST_PRODUCT and rank == len(rows)
+        guards = reflected(graph, tuple(tested), mechanics.n, len(tested)).guards if few else ()
+        self._forces = _forces(mechanics)
+        columns = [factor.lowered(direct, loads) for direct, loads in self._forces]
+        loops = list[tuple[LoopPoint, str]]()
+        for loop in loop_points(mechanics) if turned else ():
+            places = list(loop.rows.values())
+            frame, own = _along_best_axes(mechanics, factor, loop, [columns[i] for i in places])
+            loads = wrenches(mechanics, loop, frame) if frame != WORLD else [self._forces[i][1] for i in places]
+            for i, column, load in zip(places, own, loads, strict=True):
+                columns[i], self._forces[i] = column, (self._forces[i][0], load)
+            loops.append((loop, frame))
+        self._problem = _Loops(mechanics, guards, loops)
+        self._apart = LengthsApart(self._problem, factor, columns, held, rank)
+        self.guards = self._apart.guards
+
+    def motion(self, by_bodies: bool = False) -> Motion:
+        """q_ddot and lambda; `by_bodies` they are refined by Newton and Euler's equations of the bodies."""
+        mechanics, problem = self._mechanics, self._problem
+        none = (mechanics.graph.zero,) * mechanics.n
+        loads = self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity)
+        force = self._factor.lowered(mechanics.given_force, loads)
+        if not by_bodies:
+            found = self._apart.solve(force, problem.bias)
+        else:
+
+            def left_over(q_ddot: Vector, multipliers: Vector) -> Solution:
+                loads = self._inertial_forces(mechanics.qd, q_ddot, mechanics.bodies.gravity)
+                return self._less(mechanics.given_force, loads, q_ddot, multipliers), problem.bias_at(q_ddot)
+
+            found = self._refined(force, problem.bias, left_over)
+        return Motion(found[0], problem.of_the_model(found[1]), self.guards)
+
+    def answered(self, asked: Vector) -> Vector:
+        """x with G x + B^T lambda = 0, B x = `asked`, of rows that are not `turned`."""
+        graph = self._mechanics.graph
+        still: Vector3 = (graph.zero,) * 3
+        none = (graph.zero,) * self._mechanics.n
+        bias = tuple(-x for x in asked)
+
+        def left_over(x: Vector, multipliers: Vector) -> Solution:
+            lacking = (a + dot(graph, row, x) for a, row in zip(bias, self._problem.rows, strict=True))
+            return self._less(none, self._inertial_forces(none, x, still), x, multipliers), tuple(lacking)
+
+        return self._refined(none, bias, left_over)[0]
+
+    def _refined(self, force: Vector, bias: Vector, left_over: Callable[[Vector, Vector], Solution]) -> Solution:
+        def solved(force: Vector, bias: Vector) -> Solution:
+            return self._apart.solve(force, bias, refining=False)
+
+        return refined(self._mechanics.graph, solved(force, bias), left_over, solved)
+
+    def _less(self, given: Vector, loads: dict[str, Six], q_ddot: Vector, multipliers: Vector) -> Vector:
+        """L^-1 of given forces and loads less those of rotors and rows.
+
+        Summed body by body each rounding is that of a mass, a length or a turn.
+        """
+        rotors = self._factor.rotors
+        direct = [f - rotors[j] * q_ddot[j] if j in rotors else f for j, f in enumerate(given)]
+        for factor, (own, load) in zip(multipliers, self._forces, strict=True):
+            direct = [x - factor * y for x, y in zip(direct, own, strict=True)]
+            for name, wrench in load.items():
+                before = loads.get(name, (self._mechanics.graph.zero,) * 6)
+                loads[name] = tuple(x - factor * y for x, y in zip(before, wrench, strict=True))
+        return self._factor.lowered(direct, loads)
+
+    def _inertial_forces(self, qd: Vector, q_ddot: Vector, gravity: Vector3) -> dict[str, Six]:
+        """Weights and what bodies put on their frames for these rates and accelerations.
+
+        As a force of the coordinates each would hold what all frames further out need, which is taken off again on the
+        way inwards: in chains the difference of two numbers a hundred times larger than the torques.
+        """
+        found = inertial_wrenches(self._mechanics.bodies, qd, q_ddot, gravity)
+        return {name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in found.items()}
+
+
+def articulated(model: Model, generic: Genericity, by_bodies: bool = False) -> tuple[Mechanics, Motion] | None:
+    """The motion and the system it was derived on, a graph of its own; `by_bodies` it is refined by their equations.
+
+    None where T is not that of bodies alone, a coordinate moves several frames or none, or G is not definite.
+    """
+    found = body_equations(model, generic, turned=generic.rank == generic.r)
+    return None if found is None else (found[0], found[1].motion(by_bodies))
+
+
+def body_equations(model: Model, generic: Genericity, turned: bool) -> tuple[Mechanics, BodyEquations] | None:
+    """The equations of a system of bodies on a graph of their own; None where it lacks that form."""
     energy = model.kinetic_energy
-    if not model.mechanism.has_mass or not isinstance(energy, Number) or energy.value != 0 or generic.rank < generic.r:
+    if not model.mechanism.has_mass or not isinstance(energy, Number) or energy.value != 0:
         return None
     mechanics = Mechanics(model)
     try:
         factor = ArticulatedFactor(mechanics.bodies)
     except ValueError:
         return None
-    rows, graph = mechanics.constraint_jacobian, mechanics.graph
-    held = held_lengths(factor.quaternions, rows, graph)
-    if held is None:
+    rows = mechanics.constraint_jacobian
+    held = held_lengths(factor.quaternions, rows, mechanics.graph)
+    if held is None or (generic.rank < generic.r and not held.apart(rows)):
         return None
-    others = held.others(len(rows))
     # where no row may hold what has no mass, pivots vanish only where the motion is not determined
-    if not (definite_by_frames(mechanics, factor) if others else definite_along_motion(mechanics, factor)):
+    definite = definite_by_frames if held.others(len(rows)) else definite_along_motion
+    if not definite(mechanics, factor):
         return None
-    tested = [rows[i] for i in others] if held.apart(rows) else rows
-    few = 0 < len(others) <= LONGEST_PRODUCT
-    guards = reflected(graph, tuple(tested), mechanics.n, len(tested)).guards if few else ()
-    columns = [factor.lowered(direct, loads) for direct, loads in _forces(mechanics)]
-    loops = list[tuple[LoopPoint, str]]()
-    for loop in loop_points(mechanics):
-        frame, own = _along_best_axes(mechanics, factor, loop, [columns[i] for i in loop.rows.values()])
-        for i, column in zip(loop.rows.values(), own, strict=True):
-            columns[i] = column
-        loops.append((loop, frame))
-    problem = _Loops(mechanics, guards, loops)
-    force = factor.lowered(mechanics.given_force, _weights_and_inertial_forces(mechanics))
-    motion = along_factor_with_lengths(problem, factor, columns, force, held)
-    return mechanics, replace(motion, multipliers=problem.of_the_model(motion.multipliers))
+    return mechanics, BodyEquations(mechanics, factor, held, generic.rank, turned)
 
 
 def lacking(model: Model, generic: Genericity) -> str:
@@ -153,17 +240,6 @@ def _along_best_axes(
         for frame in loop.frames:
             found[frame] = [factor.lowered(none, loads) for loads in wrenches(mechanics, loop, frame)]
     return min(found.items(), key=lambda one: sum(not entry.is_zero for column in one[1] for entry in column))
-
-
-def _weights_and_inertial_forces(mechanics: Mechanics) -> dict[str, Six]:
-    """What bodies put on their frames while no rate changes.
-
-    As a force of the coordinates each would hold what all frames further out need, which is taken off again on the way
-    inwards: in chains the difference of two numbers a hundred times larger than the torques.
-    """
-    rest = (mechanics.graph.zero,) * mechanics.n
-    wrenches = inertial_wrenches(mechanics.bodies, mechanics.qd, rest, mechanics.bodies.gravity)
-    return {name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in wrenches.items()}
 
 
 def _forces(mechanics: Mechanics) -> list[tuple[Vector, Mapping[str, Six]]]:

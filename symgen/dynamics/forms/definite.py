@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import reduce
-from math import inf
+from math import inf, isqrt
 from typing import TypeAlias
 
 from symgen.dynamics.mechanics import Mechanics
@@ -17,6 +17,7 @@ from symgen.records import dataclass
 
 # floats are infinities only
 Bound: TypeAlias = Fraction | float
+DIGITS = 10**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +85,8 @@ class Definite:
                 return self._product(node, given[0], given[1])
             case "div" if given[1].nonzero and not given[1].low < 0 < given[1].high:
                 return _product(given[0], _inverse(given[1]))
+            case "sqrt" if given[0].low >= 0:
+                return _root(given[0])
             case _:
                 return None
 
@@ -149,6 +152,12 @@ def _product(a: Interval, b: Interval) -> Interval:
     # 0 times infinity is 0 here: infinity only says that there is no bound
     ends: list[Bound] = [x * y if x and y else Fraction(0) for x in (a.low, a.high) for y in (b.low, b.high)]
     return Interval(min(ends), max(ends), a.nonzero and b.nonzero)
+
+
+def _root(a: Interval) -> Interval:
+    """Of what is not negative, to 20 digits: axes are divided by their lengths."""
+    ends = [x if x == inf else Fraction(isqrt(int(x * DIGITS**2)), DIGITS) for x in (a.low, a.high)]
+    return Interval(ends[0], ends[1] if ends[1] == inf else ends[1] + Fraction(1, DIGITS), a.nonzero)
 
 
 def _inverse(a: Interval) -> Interval:

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symgen.dynamics.forms.motion import Motion, Problem
-from symgen.dynamics.forms.schur import Factor, along_factor
+from symgen.dynamics.forms.motion import Problem
+from symgen.dynamics.forms.refinement import Solution
+from symgen.dynamics.forms.schur import Elimination, Factor
 from symgen.dynamics.guards import Guard
 from symgen.dynamics.quaternion_joints import QuaternionJoint
 from symgen.graph.matrix import Matrix, Vector, dot
-from symgen.graph.scalar import Graph, Scalar
+from symgen.graph.scalar import Graph
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
 
@@ -56,55 +57,52 @@ def held_lengths(joints: Sequence[QuaternionJoint], rows: Matrix, graph: Graph) 
 
 
 class _Rest(Problem):
-    """The rows that are left, where the rates of lengths are known."""
+    """The rows that are left."""
 
-    def __init__(self, problem: Problem, chosen: Sequence[int], bias: Vector) -> None:
+    def __init__(self, problem: Problem, chosen: Sequence[int]) -> None:
         self.graph, self.guards, self.n, self.r = problem.graph, problem.guards, problem.n, len(chosen)
         self._rows = tuple(problem.rows[i] for i in chosen)
-        self.bias = bias
 
     @property
     def rows(self) -> Matrix:
         return self._rows
 
 
-class _Known:
-    """A factor whose accelerations take in the known ones."""
+class LengthsApart:
+    """Equations of motion along a factor in which a quaternion's length stands in the place of its scalar part.
 
-    def __init__(self, factor: Factor, known: dict[int, Scalar]) -> None:
-        self._factor, self._known = factor, known
-        self.pivots, self.guards = factor.pivots, factor.guards
+    `columns` are those of A, with what rows do to lengths in these places; `rank` is that of all rows.
+    """
 
-    def lowered(self, b: Sequence[Scalar]) -> Vector:
-        return self._factor.lowered(b)
+    def __init__(
+        self, problem: Problem, factor: Factor, columns: Sequence[Vector], held: HeldLengths, rank: int
+    ) -> None:
+        self._graph, self._factor, self._held, self._count = problem.graph, factor, held, problem.r
+        self._others = held.others(problem.r)
+        self._places = [joint.length for joint in held.joints]
+        self._felt = {i: [columns[i][j] for j in self._places] for i in self._others}
+        along = [self._without_lengths(columns[i]) for i in self._others]
+        self._rest = Elimination(_Rest(problem, self._others), factor, along, rank - len(held.rows))
 
-    def raised(self, b: Sequence[Scalar]) -> Vector:
-        return self._factor.raised([self._known.get(j, x) for j, x in enumerate(b)])
+    @property
+    def guards(self) -> tuple[Guard, ...]:
+        """The denominators."""
+        return tuple(dict.fromkeys((*self._rest.guards, *self._held.guards)))
 
+    def solve(self, force: Vector, bias: Vector, refining: bool = True) -> Solution:
+        """q_ddot and lambda for L^-1 f and a."""
+        graph, held = self._graph, self._held
+        # the rates of the lengths are known
+        rates = [-bias[i] / slope for i, slope in zip(held.rows, held.slopes, strict=True)]
+        rest = tuple(bias[i] + dot(graph, self._felt[i], rates) for i in self._others)
+        x, multipliers = self._rest.by_columns(self._without_lengths(force), rest, refining)
+        known = dict(zip(self._places, rates, strict=True))
+        weighted = [known.get(j, entry * w) for j, (entry, w) in enumerate(zip(x, self._rest.weights, strict=True))]
+        found = dict(zip(self._others, multipliers, strict=True))
+        for k, (i, j, slope) in enumerate(zip(held.rows, self._places, held.slopes, strict=True)):
+            taken = dot(graph, [self._felt[other][k] for other in self._others], multipliers)
+            found[i] = (force[j] - taken) / slope
+        return self._factor.raised(weighted), tuple(found[i] for i in range(self._count))
 
-def along_factor_with_lengths(
-    problem: Problem, factor: Factor, columns: Sequence[Vector], force: Vector, held: HeldLengths
-) -> Motion:
-    """`along_factor` for a factor in which a quaternion's length stands in the place of its scalar part."""
-    graph, others = problem.graph, held.others(problem.r)
-    places = [joint.length for joint in held.joints]
-    # |e| e' . e' and the like: what the rates of the lengths are known to be
-    rates = [-problem.bias[i] / slope for i, slope in zip(held.rows, held.slopes, strict=True)]
-    felt = {i: [columns[i][j] for j in places] for i in others}
-    bias = tuple(problem.bias[i] + dot(graph, felt[i], rates) for i in others)
-    rest = _Rest(problem, others, bias)
-    along = [_without(graph, columns[i], places) for i in others]
-    known = _Known(factor, dict(zip(places, rates, strict=True)))
-    motion = along_factor(rest, known, along, _without(graph, force, places))
-    multipliers = dict(zip(others, motion.multipliers, strict=True))
-    own: dict[int, Scalar] = {}
-    for k, (i, j, slope) in enumerate(zip(held.rows, places, held.slopes, strict=True)):
-        taken = dot(graph, [felt[other][k] for other in others], motion.multipliers)
-        own[i] = (force[j] - taken) / slope
-    values = multipliers | own
-    guards = tuple(dict.fromkeys((*motion.guards, *held.guards)))
-    return Motion(motion.accelerations, tuple(values[i] for i in range(problem.r)), guards)
-
-
-def _without(graph: Graph, column: Vector, places: Sequence[int]) -> Vector:
-    return tuple(graph.zero if j in places else x for j, x in enumerate(column))
+    def _without_lengths(self, column: Vector) -> Vector:
+        return tuple(self._graph.zero if j in self._places else x for j, x in enumerate(column))

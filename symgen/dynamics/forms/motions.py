@@ -31,6 +31,7 @@ MOST_MINORS = 70
 # units up, as norms and reflections do (float32 q_ddot of a robot on wheels: 2 units of error in place of 24).
 MINOR_WORTH = Fraction(1, 4)
 BY_FRAMES = "articulated"  # of bodies only, without a null space: forms/articulated.py
+BY_BODIES = "articulated_refined"  # the same, refined by Newton and Euler's equations
 
 
 def candidates(generic: Genericity, space: NullSpace) -> tuple[MotionName, ...]:

@@ -47,7 +47,7 @@ class SchurQR:
         self._graph = problem.graph
         self._factor = OrderedCholesky(problem.graph, problem.mass_matrix)
         columns = [self._factor.lowered(row) for row in problem.rows]
-        self._elimination = _Elimination(problem, self._factor, columns, rank)
+        self._elimination = Elimination(problem, self._factor, columns, rank)
 
     def motion(self, force: Vector, bias: Vector) -> Motion:
         """The solution of G q_ddot + B^T lambda = f, B q_ddot = -a."""
@@ -68,22 +68,17 @@ def schur_qr(problem: Problem, rank: int) -> Motion:
     return SchurQR(problem, rank).motion(problem.force, problem.bias)
 
 
-def along_factor(problem: Problem, factor: Factor, columns: Sequence[Vector], force: Vector) -> Motion:
-    """The same for any factor of G; `columns` are those of A, `force` is L^-1 f."""
-    elimination = _Elimination(problem, factor, columns, problem.r)
-    asked = elimination.asked(problem.bias)
-    return elimination.motion(
-        force, asked, of_columns(problem.graph, columns, elimination.weights, force, asked)
-    )
+class Elimination:
+    """x + A lambda = L^-1 f, A^T D^-1 x = -a, refined once; `columns` are those of A.
 
-
-class _Elimination:
-    """x + A lambda = L^-1 f, A^T D^-1 x = -a, refined once."""
+    `guards` are the denominators.
+    """
 
     def __init__(self, problem: Problem, factor: Factor, columns: Sequence[Vector], rank: int) -> None:
         graph, r = problem.graph, problem.r
         self._graph, self._r, self._factor = graph, r, factor
         self.weights: Vector = tuple(1 / pivot for pivot in factor.pivots)
+        self._columns = columns
         self._orthogonal = (
             WeightedGramSchmidt(graph, columns, self.weights)
             if rank == r
@@ -93,11 +88,11 @@ class _Elimination:
         self.rows = self._orthogonal.chosen(problem.rows)
         if r > min(rank, LONGEST_PRODUCT):
             # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
-            self._guards: tuple[Guard, ...] = (self._orthogonal.regularity(Status.CONSTRAINT_RANK), *factor.guards)
+            self.guards: tuple[Guard, ...] = (self._orthogonal.regularity(Status.CONSTRAINT_RANK), *factor.guards)
         else:
             # light bodies may leave nothing of the difference of two rows, which are far from parallel by themselves
             metric = (self._orthogonal.regularity(Status.MASS_RANK),) if r > 1 else ()
-            self._guards = (*problem.guards, *factor.guards, *metric)
+            self.guards = (*problem.guards, *factor.guards, *metric)
 
     def asked(self, bias: Vector) -> Vector:
         """What the rows that are solved with ask for."""
@@ -109,13 +104,25 @@ class _Elimination:
 
     def motion(self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution]) -> Motion:
         """q_ddot and lambda for L^-1 f; `left_over` is what a solution leaves of the right-hand sides."""
+        x, multipliers = self._solution(force, asked, left_over)
+        return Motion(self.accelerations(x), multipliers, self.guards)
+
+    def by_columns(self, force: Vector, bias: Vector, refining: bool = True) -> Solution:
+        """x and lambda for L^-1 f and a, refined by the columns of A."""
+        asked, columns = self.asked(bias), self._orthogonal.chosen(self._columns)
+        left_over = of_columns(self._graph, columns, self.weights, force, asked)
+        return self._solution(force, asked, left_over if refining else None)
+
+    def _solution(
+        self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution] | None
+    ) -> Solution:
         solution = self._orthogonal.solve(force, asked)
-        if self._r:
+        if self._r and left_over is not None:
             solution = refined(self._graph, solution, left_over, self._orthogonal.solve)
         x, multipliers = solution
         if isinstance(self._orthogonal, PivotedGramSchmidt):
             multipliers = self._orthogonal.of_all(self._all_rows, multipliers)
-        return Motion(self.accelerations(x), multipliers, self._guards)
+        return x, multipliers
 
 
 class OrderedCholesky:

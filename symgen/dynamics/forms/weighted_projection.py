@@ -12,6 +12,7 @@ from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.schur import SchurQR
 from symgen.dynamics.genericity import Genericity
 from symgen.dynamics.guards import Guard
+from symgen.dynamics.inverse import Moved
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.matrix import Matrix, identity, matvec, transpose
 from symgen.graph.scalar import Scalar
@@ -34,6 +35,32 @@ def weighted_projection(
     found = [motion_brought_back(mechanics.graph, changed, motion) for motion in _motions(there, solver, quantity)]
     guards = tuple(dict.fromkeys((*before, *(guard for motion in found for guard in motion.guards))))
     return transpose(tuple(motion.accelerations for motion in found), mechanics.n), guards
+
+
+def projection_of_bodies(
+    mechanics: Mechanics, generic: Genericity, quantity: str, before: tuple[Guard, ...]
+) -> tuple[Matrix, tuple[Guard, ...]] | None:
+    """The same from body to body, refined by their equations; None for a system without articulated inertias.
+
+    A column of N_{B,G} is e_j less what B e_j asks for.
+    """
+    from symgen.dynamics.forms.articulated import body_equations  # models given by energies have none
+
+    found = body_equations(mechanics.model, generic, turned=False) if mechanics.r else None
+    if found is None:
+        return None
+    there, equations = found
+    n, r = there.n, there.r
+    if quantity == PSEUDOINVERSE:
+        columns = [equations.answered(unit) for unit in identity(there.graph, r)]
+    else:
+        rows = transpose(there.constraint_jacobian, n)
+        parts = [equations.answered(tuple(-x for x in column)) for column in rows]
+        units = identity(there.graph, n)
+        columns = [tuple(x + y for x, y in zip(*pair, strict=True)) for pair in zip(units, parts, strict=True)]
+    moved = Moved(mechanics.graph)
+    guards = tuple(dict.fromkeys((*before, *moved.guards(equations.guards))))
+    return transpose(tuple(map(moved.scalars, columns)), n), guards
 
 
 def _motions(mechanics: Mechanics, solver: SchurQR, quantity: str) -> list[Motion]:
