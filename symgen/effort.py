@@ -51,3 +51,8 @@ def at_most(steps: float) -> Iterator[None]:
 def worth_trying(operations: int) -> int:
     """What deriving another way may take where one of so many operations is at hand."""
     return SCALAR * (FREE_SCALARS + SCALARS_AN_OPERATION * operations)
+
+
+def done() -> int:
+    """All work that was counted so far."""
+    return _counter.done

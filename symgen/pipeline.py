@@ -20,6 +20,7 @@ from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.draft import CARRIED, Draft
 from symgen.dynamics.catalogue import BY_NAME
+from symgen.dynamics.everything import OF_ALL
 from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.inverse import FormChoice
 from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities, short_of_inputs
@@ -391,6 +392,8 @@ def _notices(draft: Draft, options: Options, certificate: Certificate | None) ->
     left_out = {one.quantity for one in draft.left_out}
     known = [(n, why) for n, why in draft.derivations.absent if n in asked and n not in left_out]
     absent = [Notice(f"{n} is not generated: {why}") for n, why in known]
+    of_all = ((n, why) for n, why in draft.derivations.absent if why.startswith(OF_ALL))
+    absent += [Notice(f"{n}: {why}") for n, why in of_all]
     kernels = {kernel.name for kernel in draft.program.kernels}
     idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
     unverified = () if certificate is None else certificate.notes

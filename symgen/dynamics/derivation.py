@@ -7,6 +7,7 @@ by quantity name; `select` compares the derivations along different null spaces 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 
@@ -33,6 +34,7 @@ from symgen.dynamics.spaces import (
     Restriction,
     residual,
 )
+from symgen.effort import TooLongError, at_most, worth_trying
 from symgen.graph.calculus import derivative_along
 from symgen.graph.matrix import (
     Matrix,
@@ -118,7 +120,14 @@ class Derivation:
             if self.generic.rank == self.r and few_minors(self.generic):
                 # where the constraints carry a load, what is left of it along a motion cancels in the minors only
                 names = ("minor", *names)
-        motions = {name: self.motion(name) for name in names}
+        motions: dict[MotionName, Motion] = {}
+        for name in names:
+            if name != "minor" or len(names) == 1:
+                motions[name] = self.motion(name)
+                continue
+            # sums of minors may double with each row; another form is at hand
+            with suppress(TooLongError), at_most(worth_trying(0)):
+                motions[name] = self.motion(name)
         if self.generic.rank:
             return motions
         # rows that hold nothing press on nothing

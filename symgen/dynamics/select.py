@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from types import MappingProxyType
 
 from symgen.activity import each, working
@@ -25,6 +24,7 @@ from symgen.dynamics.catalogue import (
     scalars,
 )
 from symgen.dynamics.derivation import Derivation
+from symgen.dynamics.everything import Everything, too_long
 from symgen.dynamics.excess import with_test_of_excess
 from symgen.dynamics.forms.absolute import brought_back, in_absolute_angles
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA
@@ -36,7 +36,6 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.row_units import in_ordinary_units, in_units_of_the_file
 from symgen.dynamics.spaces import MINOR_LIMIT, MinorSpace
-from symgen.effort import TooLongError, at_most, worth_trying
 from symgen.graph.traverse import cost, reached
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
@@ -186,6 +185,7 @@ def derive_quantities(
     chosen_form: FormChoice | None = None
     inverse: InverseDynamics | None = None
     named: list[tuple[str, FormChoice]] = []
+    everything = Everything(outputs, forms)
     for name in each("ways to", present, str):
         if name == "inverse_dynamics":
             inverse = InverseDynamics(model, generic)
@@ -208,16 +208,17 @@ def derive_quantities(
         elif name in MOTIONS and absolute is not None:
             candidates = {ABSOLUTE: brought_back(mechanics.graph, absolute.mechanics, derive(entry, absolute))}
         else:
+            found_along = {way: partial(derive, entry, derivation) for way, derivation in derivations.items()}
+            if blocks is not None and by_blocks(entry):
+                found_along["blocks"] = partial(derive, entry, blocks)
             # a tree has articulated inertias; what goes without them may take as long as they are worth, and no longer
-            most = worth_trying(cost(scalars(by_frames[name])).weight) if name in by_frames else math.inf
-            candidates = {}
-            for way, derivation in derivations.items():
-                with suppress(TooLongError), at_most(most):
-                    candidates[way] = derive(entry, derivation)
-        if blocks is not None and by_blocks(entry):
-            candidates["blocks"] = derive(entry, blocks)
+            least = cost(scalars(by_frames[name])).weight if name in by_frames else None
+            candidates = everything.derived(name, found_along, least)
         if name in by_frames and not many:
             candidates[ARTICULATED] = moved(mechanics.graph, by_frames[name])
+        if not candidates:
+            absent.append((name, too_long()))
+            continue
         costs = {way: cost(scalars(derived)).weight for way, derived in candidates.items()}
         formed = {way: _form_along(along.get(way), name) for way in costs}
         weights = {way: count * cost_factor(formed[way], mechanics) for way, count in costs.items()}
@@ -239,6 +240,11 @@ def derive_quantities(
         quantities.append(candidates[best])
         form = BY_FRAMES if best == ARTICULATED else _form_along(along.get(best), name)
         choices.append(Choice(name, best, tuple(costs.items()), form))
+    costs = {choice.quantity: dict(choice.costs)[choice.way] for choice in choices}
+    if surplus := everything.surplus(costs):
+        absent += [(name, too_long(costs[name])) for name in surplus]
+        quantities = [one for one in quantities if one.name not in surplus]
+        choices = [one for one in choices if one.quantity not in surplus]
     lengths = [len(reached(scalars(derived))) for derived in quantities]
     named_so = each("shortening", quantities, lambda derived: derived.name, lengths)
     grouped = tuple(finished(mechanics, generic, derived) for derived in named_so)
