@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 from symgen.diagnostics import Mistake, Notice, Span
@@ -9,9 +10,11 @@ from symgen.model.assembly import Assembly, Place
 from symgen.model.body_checks import inertia_span
 from symgen.model.branches import Open
 from symgen.model.dense import Rows, is_positive, null_space, rank
+from symgen.model.expression import Binary, Expression, Power
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Coordinate
 from symgen.model.names import counted, shown_names
+from symgen.model.walk import evaluate
 
 # Configurations at which masses are looked at.
 SAMPLES = 5
@@ -87,7 +90,21 @@ def _no_configuration(mechanics: Mechanics, found: Open | None, span: Span | Non
     if found is None:
         return Mistake(message, remedy, span)
     row = mechanics.geometric[found.row]
-    return Mistake(f"{message}; `{row.name}` stays at {found.value:.3g} in the nearest one", remedy, row.span or span)
+    gap = f"`{row.name}` stays at {found.value:.3g}{_as_a_length(mechanics, row.expression, found.value)}"
+    return Mistake(f"{message}; {gap} in the nearest one", remedy, row.span or span)
+
+
+def _as_a_length(mechanics: Mechanics, row: Expression, value: float) -> str:
+    """What is left of a row `square - length**2`, said of the length."""
+    match row:
+        case Binary(operator="-", right=Power(base=length, exponent=exponent)) if exponent == 2:
+            try:
+                due = evaluate(length, mechanics.defaults)
+            except (KeyError, ArithmeticError, ValueError):
+                return ""
+            square = value + due**2
+            return f", a length of {math.sqrt(square):.3g} in place of {due:.3g}," if square >= 0 else ""
+    return ""
 
 
 def _far_start(

@@ -56,6 +56,22 @@ def test_a_loop_that_cannot_close_is_told_with_its_gap() -> None:
         latch("1.75")
 
 
+def test_a_rod_that_is_too_short_is_told_with_the_length_it_would_need() -> None:
+    text = """\
+model: short_rod
+joints:
+  crank: {type: revolute, axis: z, coordinate: a}
+  lever: {type: revolute, at: [2, 0, 0], axis: z, coordinate: b}
+bodies: {crank: {mass: 1, inertia: {zz: 0.1}}, lever: {mass: 1, inertia: {zz: 0.1}}}
+parameters: {l: 0.2}
+gravity: [0, -9.81, 0]
+points: {p: {frame: crank, at: [0.5, 0, 0]}, q: {frame: lever, at: [0.4, 0, 0]}}
+loops: {rod: {type: distance, between: [p, q], length: 2*l}}
+"""
+    with pytest.raises(ModelError, match=r"`rod_length` stays at 1.05, a length of 1.1 in place of 0.4,"):
+        load_text(text, "rod.yaml")
+
+
 def test_a_ring_far_away_in_other_units_has_as_many_states_as_are_asked_for() -> None:
     """Where a thousandth of the coordinates is more than the ring is wide."""
     text = """\
