@@ -121,9 +121,13 @@ def admissible(
 def _units(jacobian: Any) -> Any:
     """Diagonal of factors for rows."""
     sizes = [max((abs(float(entry)) for entry in row), default=0.0) for row in jacobian.tolist()]
-    count = len(sizes)
-    units = [2.0 ** -frexp(size)[1] if 0 < size < inf else 1.0 for size in sizes]
-    return arb_mat(count, count, [units[i] if i == j else 0 for i in range(count) for j in range(count)])
+    return _powers([-frexp(size)[1] if 0 < size < inf else 0 for size in sizes])
+
+
+def _powers(exponents: Sequence[int]) -> Any:
+    """Powers of 2 on a diagonal."""
+    count = len(exponents)
+    return arb_mat(count, count, [2.0 ** exponents[i] if i == j else 0 for i in range(count) for j in range(count)])
 
 
 def generic_ranks(system: System) -> Ranks | None:
@@ -191,12 +195,15 @@ def _ranks_at(
     """Ranks at one point of V; the degree of actuation is rank [B; M'] minus rank B."""
     noise, signal = (ROUNDED_NOISE, ROUNDED_SIGNAL) if rounded else (RANK_NOISE, RANK_SIGNAL)
     at = system.configuration(q, parameters, literals)
-    rows = independent_rows(at.constraints, noise, signal)
-    geometric = numerical_rank(rows_of(at.constraints, range(system.r_geometric)), noise, signal)
+    # beside rows in units of their own others would count as what rounding leaves of none
+    known = system.model.assembly
+    constraints = at.constraints if known is None else _powers(known.units) * at.constraints
+    rows = independent_rows(constraints, noise, signal)
+    geometric = numerical_rank(rows_of(constraints, range(system.r_geometric)), noise, signal)
     if rows is None or geometric is None:
         return None
     # on V they span all rows: the sums over all subsets of rows in other units lose far more digits
-    basis = rows_of(at.constraints, rows)
+    basis = rows_of(constraints, rows)
     try:
         projected = at.control - right_pseudoinverse(basis, len(rows)) * (basis * at.control)
     except ZeroDivisionError:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from flint import arb_mat
 
 from symgen.model.load import load_text
 from symgen.verify.reference import Reference
 from symgen.verify.reference_linear import independent_rows, right_pseudoinverse
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference_manifold import exceeds
+from symgen.verify.reference_tape import ball, precision
 from symgen.verify.states import sample_states
 
 # the shelf holds the tip of an arm, so that its joints stand still; the crank turns beside it
@@ -22,21 +25,34 @@ constraints:
     tip_x: 0.7*cos(a) + 0.5*cos(b) - 0.9
     tip_y: 0.7*sin(a) + 0.5*sin(b) - 0.4
     both: 0.7*cos(a) + 0.5*cos(b) - 0.9 + 2*(0.7*sin(a) + 0.5*sin(b) - 0.4)
-    ring_x: 0.3*cos(c) + 1.1*cos(d) - 0.8*cos(e) - 0.9
+    ring_x: "{other}*(0.3*cos(c) + 1.1*cos(d) - 0.8*cos(e) - 0.9)"
     ring_y: "{unit}*(0.3*sin(c) + 1.1*sin(d) - 0.8*sin(e))"
 inputs: {{shoulder: {{acts_on: {{a: 2}}}}, elbow: {{acts_on: {{b: 1, a: -1}}}}}}
 """
 
 
-@pytest.mark.parametrize("unit", ["1", "1e6", "1e-6", "1e9"])
-def test_states_are_found_where_all_driven_joints_are_held(unit: str) -> None:
-    model = load_text(SHELF.format(unit=unit), "shelf.yaml")
+@pytest.mark.parametrize(("unit", "other"), [("1", "1"), ("1e6", "1"), ("1e-6", "1"), ("1e9", "1"), ("1e7", "1e-7")])
+def test_states_are_found_where_all_driven_joints_are_held(unit: str, other: str) -> None:
+    model = load_text(SHELF.format(unit=unit, other=other), "shelf.yaml")
     reference = Reference(model)
     assert (reference.ranks.constraints, reference.ranks.actuation) == (4, 0)
     samples = sample_states(reference, ("inverse_dynamics", "multipliers"), 16)
     assert len(samples) == 16
     shelf = {tuple(round(x, 9) for x in sample.state.q[:2]) for sample in samples}
     assert len(shelf) <= 2  # elbow up and down
+
+
+@pytest.mark.parametrize("other", ["1", "1e-7"])
+def test_a_row_counts_in_any_unit_beside_others(other: str) -> None:
+    """Points of V have a greater rank than one less than the rank of V."""
+    reference = Reference(load_text(SHELF.format(unit="1e7", other=other), "shelf.yaml"))
+    assert reference.model.assembly is not None
+    system, ranks = reference.system, reference.ranks
+    with precision(128):
+        q = [ball(x) for x in reference.model.assembly.places[0].q]
+        lower = replace(ranks, constraints=3, geometric=3)
+        assert not exceeds(system, ranks, q, [], reference.literals())
+        assert exceeds(system, lower, q, [], reference.literals())
 
 
 def test_sums_over_subsets_of_rows_say_when_they_have_no_digits_left() -> None:
