@@ -107,17 +107,17 @@ def distance(one: str, other: str) -> Expression:
     return Call("sqrt", (squared_distance(one, other),))
 
 
-def squared_distance(one: str, other: str) -> Expression:
-    """Its square."""
+def squared_distance(one: str, other: str, axes: str = WORLD) -> Expression:
+    """Its square, by components in some frame's axes."""
     total: Expression = ZERO
     for place in PLACES:
-        total = plus(total, Power(difference(one, other, place), ONE.value * 2))
+        total = plus(total, Power(difference(one, other, place, axes), ONE.value * 2))
     return total
 
 
-def difference(one: str, other: str, what: str) -> Expression:
+def difference(one: str, other: str, what: str, axes: str = WORLD) -> Expression:
     """The component of `other` minus that of `one`."""
-    return Binary("-", Name(f"{other}.{what}"), Name(f"{one}.{what}"))
+    return Binary("-", Name(Component(other, what, axes).name), Name(Component(one, what, axes).name))
 
 
 def chosen_action(scope: Scope, key: ScalarNode, node: Node, actions: Sequence[str]) -> str | None:

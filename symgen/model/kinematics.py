@@ -93,13 +93,13 @@ class Kinematics(Generic[P, V]):
 
     def axes(self, frame: str, seen_from: str = WORLD) -> Rows[P]:
         """The matrix that turns components in the frame's axes into components in those of another frame."""
-        meeting = self._meeting(frame, seen_from)
+        meeting = self.meeting(frame, seen_from)
         down = self._below(meeting, frame)[0]
         return down if meeting == seen_from else product(transposed(self._below(meeting, seen_from)[0]), down)
 
     def place(self, frame: str, at: Triple[P], seen_from: str = WORLD) -> Triple[P]:
         """A place given in the frame, from the origin and in the axes of another."""
-        meeting = self._meeting(frame, seen_from)
+        meeting = self.meeting(frame, seen_from)
         still = self._last_fixed_turn(meeting, frame)
         if still not in (None, frame):
             # what is added up beyond a fixed turn is turned once
@@ -128,10 +128,9 @@ class Kinematics(Generic[P, V]):
     # points -----------------------------------------------------------------------------------------------------------
 
     def position(self, owner: str, axes: str = WORLD) -> Triple[P]:
-        """Place of a point or of a frame's origin from the world's origin, in some frame's axes."""
+        """Place of a point or of a frame's origin, from the origin and in the axes of some frame."""
         frame, at, _ = self._located(owner)
-        found = self.place(frame, at)
-        return found if axes == WORLD else applied(transposed(self.axes(axes)), found)
+        return self.place(frame, at, axes)
 
     def velocity(self, owner: str, axes: str = WORLD) -> Rates[V]:
         """Velocity of the material point, in some frame's axes."""
@@ -148,14 +147,13 @@ class Kinematics(Generic[P, V]):
         """Time derivative of the components of a position, wherever the material point may go."""
         space = self.space
         frame, at, _ = self._located(owner)
+        if axes != WORLD:
+            return self._rate_seen_from(axes, owner)
         twist = self.twist(frame)
         here = space.summed(twist.linear, space.crossed(twist.angular, at))
         if owner in self.points:
             here = space.summed(here, space.rates(self.points[owner].at))
-        rates = space.turned(self.axes(frame, axes), here)
-        if axes == WORLD:
-            return rates
-        return space.reduced(rates, space.crossed(self.twist(axes).angular, self.position(owner, axes)))
+        return space.turned(self.axes(frame), here)
 
     def angular_velocity(self, frame: str, axes: str = WORLD) -> Rates[V]:
         """Angular velocity of a frame in the axes of another."""
@@ -187,7 +185,35 @@ class Kinematics(Generic[P, V]):
 
     # the parts --------------------------------------------------------------------------------------------------------
 
-    def _meeting(self, one: str, other: str) -> str:
+    def _rate_seen_from(self, axes: str, owner: str) -> Rates[V]:
+        """As `position_rate`, from the joints in between alone: what carries both does not enter."""
+        space, meeting = self.space, self.meeting(self._located(owner)[0], axes)
+        rates, _ = self._motion_below(meeting, owner)
+        if meeting == axes:
+            return rates
+        carried, turning = self._motion_below(meeting, axes)
+        apart = minus(self.position(owner, meeting), self.position(axes, meeting))
+        rates = space.reduced(space.reduced(rates, carried), space.crossed(turning, apart))
+        return space.turned(transposed(self.axes(axes, meeting)), rates)
+
+    def _motion_below(self, ancestor: str, owner: str) -> tuple[Rates[V], Rates[V]]:
+        """Velocity and turning rate against an ancestor, in its axes: each joint turns what hangs on it."""
+        space = self.space
+        frame, at, _ = self._located(owner)
+        position, turning = self.place(frame, at, ancestor), space.still
+        total = space.still
+        if owner in self.points:
+            total = space.turned(self.axes(frame, ancestor), space.rates(self.points[owner].at))
+        line = self.lineage(frame)
+        for name in line[: line.index(ancestor)]:
+            joint, matrix = self.joint(name), self._below(ancestor, self.frames[name].parent)[0]
+            own = space.turned(matrix, joint.turning_before)
+            arm = minus(position, self._below(ancestor, name)[1])
+            total = space.summed(total, space.summed(space.turned(matrix, joint.place_rate), space.crossed(own, arm)))
+            turning = space.summed(turning, own)
+        return total, turning
+
+    def meeting(self, one: str, other: str) -> str:
         """The nearest frame that both descend from."""
         if other == WORLD:
             return WORLD

@@ -14,7 +14,7 @@ from symgen.model.frames import NEED_FRAME, frame_name
 from symgen.model.inputs import point_name, squared_distance
 from symgen.model.kinematics import Kinematics
 from symgen.model.lengths import check_length
-from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, component, is_component
+from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, Quaternion, component, is_component
 from symgen.model.model import ConstraintRow, Coordinate, Definition
 from symgen.model.reading import entries, items, member, text_of
 from symgen.model.scope import PARAMETERS, Scope
@@ -109,13 +109,13 @@ class Rows:
             remedy = "write its size; points that meet are joined with `type: point`"
             check_length(self._scope, member(node, "length"), length, self._defaults, f"the length of {what}", remedy)
             if length is not None:
-                yield "length", minus(squared_distance(one, other), Power(length, TWO))
+                yield "length", minus(squared_distance(one, other, self._carrier(one, other)), Power(length, TWO))
             return
         axis = _main_axis(text_of(member(node, "axis")), 2)
         across = [index for index in range(3) if index != axis]
         along, beside, tilted, turned = JOINED.get(kind, (True, True, False, False))
-        # a joint that holds every offset holds them in any axes: those of the world are the cheapest
-        axes = WORLD if along and beside else other
+        # a joint that holds every offset holds them in any axes
+        axes = self._carrier(one, other) if along and beside else other
         for index in range(3):
             if beside if index in across else along:
                 here, there = (Name(Component(owner, PLACES[index], axes).name) for owner in (one, other))
@@ -125,6 +125,28 @@ class Rows:
             yield f"tilt_{AXES[row]}", Name(Component(one, f"r{row + 1}{axis + 1}", other).name)
         if turned:
             yield "turn", Name(Component(one, f"r{across[0] + 1}{across[1] + 1}", other).name)
+
+    def _carrier(self, one: str, other: str) -> str:
+        """The moving frame that carries both sides of a loop where they move in a plane of it, else the world.
+
+        In its axes the rows know nothing of how it moves itself, and those across the plane always hold.
+        """
+        kinematics = self._kinematics
+        points = kinematics.points
+        sides = [points[owner].frame if owner in points else owner for owner in (one, other)]
+        carrier = kinematics.meeting(*sides)
+        turned: set[int] = set()
+        for side in sides:
+            line = kinematics.lineage(side)
+            for name in line[: line.index(carrier)]:
+                turns = kinematics.frames[name].rotation
+                if isinstance(turns, Quaternion):
+                    return WORLD
+                for turn in turns:
+                    if exact_value(turn.angle) != 0:
+                        turned |= {index for index, entry in enumerate(turn.axis) if exact_value(entry) != 0}
+        twist = kinematics.twist(carrier)
+        return carrier if len(turned) < 2 and any((*twist.linear, *twist.angular)) else WORLD
 
     def _rolling(self, frame: str, radius: Expression, axle: int) -> Iterator[tuple[str, Expression]]:
         """No slip where the wheel touches the plane, and the height of its centre where that can change.

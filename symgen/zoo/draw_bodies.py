@@ -9,7 +9,7 @@ from symgen.zoo.describe import Description
 from symgen.zoo.dice import Dice
 from symgen.zoo.draw_closures import closed_at, planar_loop, spatial_loop, surplus
 from symgen.zoo.draw_elements import elements, inputs
-from symgen.zoo.draw_parts import MAIN_AXES, Style, grown, norms, weighted
+from symgen.zoo.draw_parts import MAIN_AXES, Style, carried_along, grown, norms, weighted
 from symgen.zoo.endings import finish
 from symgen.zoo.sketch import Sketch
 
@@ -56,6 +56,8 @@ def planar_bodies(dice: Dice) -> Description:
     weighted(sketch, style, parts, closed_at(sketch, parts))
     if rows and dice.chance(0.15):
         surplus(sketch)
+    carriage = carried_along(sketch) if rows else None
+    parts += [] if carriage is None else [carriage]
     elements(sketch, parts, plane)
     inputs(sketch, parts, len(sketch.start) - rows)
     return finish(sketch)

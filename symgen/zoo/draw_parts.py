@@ -77,6 +77,27 @@ def weighted(sketch: Sketch, style: Style, parts: list[Part], held: set[int]) ->
             sketch.block("bodies")[part.frame] = _body(sketch, style, k + 1, part.tip)
 
 
+def carried_along(sketch: Sketch) -> Part | None:
+    """Now and then, all that is drawn stands on a frame that moves itself, as the arm of an excavator does.
+
+    The other draws stay what they were: what this needs is thrown with dice of its own.
+    """
+    dice = Dice("carried along", *sketch.start.items())
+    if not dice.chance(0.2) or len(sketch.start) > 11:
+        return None
+    kind = dice.choice(("revolute", "revolute", "prismatic"))
+    joint, coordinate = sketch.name("carriage"), sketch.name("turn" if kind == "revolute" else "way")
+    for entry in sketch.block("joints").values():
+        entry.setdefault("parent", joint)
+    for entry in sketch.block("points").values():
+        entry.setdefault("frame", joint)
+    sketch.block("joints")[joint] = {"type": kind, "axis": dice.choice(MAIN_AXES), "coordinate": coordinate}
+    sketch.start[coordinate] = round(dice.uniform(0.2, 0.8), 2)
+    sketch.block("bodies")[joint] = {"mass": "12", "inertia": dict.fromkeys(("xx", "yy", "zz"), "0.8")}
+    sketch.mark("loop on a frame that moves")
+    return Part(joint, kind, (coordinate,), -1, ("0", "0", "0"))
+
+
 def _part(sketch: Sketch, style: Style, parts: list[Part], parent: int, kind: str) -> Part:
     dice = sketch.dice
     k = len(parts) + 1

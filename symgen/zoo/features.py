@@ -40,6 +40,7 @@ ALL = (
     "energies", "bodies", "energies and bodies", "URDF",
     *(f"{n} coordinate{'s' if n > 1 else ''}" for n in range(1, 13)),
     "tree", *(f"{count} {where}" for where in ("in the plane", "in space") for count in WORDS.values()),
+    "loop on a frame that moves",
     "parallelogram with several cranks", "Bennett linkage", "Bricard linkage", "Sarrus linkage",
     "double four-bar on one crank", "cranks on a common pin", "platform on legs",
     *JOINTS.values(), "quaternion", "rolling", "rows of rates", "coupling", "cable",

@@ -132,6 +132,10 @@ class System:
             return self.frames.place(entry.get("frame", "world"), self._at(entry))
         return self.frames.pose(owner).origin
 
+    def _frame(self, owner: str) -> str:
+        """The frame that a point stands in; a frame itself."""
+        return self._points[owner].get("frame", "world") if owner in self._points else owner
+
     def _at(self, entry: Mapping[str, Any]) -> Vector:
         return read_vector(self.tape, entry.get("at"), self.read)
 
@@ -176,17 +180,18 @@ class System:
 
     @cached_property
     def rows(self) -> tuple[Row, ...]:
-        """All constraints: those of the file, joints, loops and wheels; rows that vanish identically stand for none."""
+        """All constraints: those of the file, joints, loops, wheels; of loops and wheels none that always hold."""
         given = self.blocks.get("constraints") or {}
         found = [Row(name, True, self.read(text)) for name, text in (given.get("geometric") or {}).items()]
         for name, entry in (self.blocks.get("loops") or {}).items():
-            found += self._loop(name, entry)
+            found += [row for row in self._loop(name, entry) if row.value.number != 0]
         found += self._norms()
         wheels = [row for name, entry in (self.blocks.get("rolling") or {}).items() for row in self._wheel(name, entry)]
+        wheels = [row for row in wheels if row.value.number != 0]
         found += [row for row in wheels if row.geometric]
         found += [Row(name, False, self.read(text)) for name, text in (given.get("nonholonomic") or {}).items()]
         found += [row for row in wheels if not row.geometric]
-        return tuple(row for row in found if row.value.number != 0)
+        return tuple(found)
 
     def _norms(self) -> list[Row]:
         found = []
@@ -204,8 +209,10 @@ class System:
         if kind == "distance":
             length = self.read(entry["length"])
             return [Row(f"{name}_length", True, dot(apart, apart) - length * length)]
+        plane = transposed(self.frames.pose(self.frames.plane_of(self._frame(one), self._frame(other))).axes)
         if kind in ("point", "spherical"):
-            return [Row(f"{name}_{axis}", True, apart[index]) for axis, index in PLACES.items()]
+            in_plane = turned(plane, apart)
+            return [Row(f"{name}_{axis}", True, in_plane[index]) for axis, index in PLACES.items()]
         axis = PLACES[entry.get("axis", "z")]
         across = [index for index in range(3) if index != axis]
         here, there = transposed(self.frames.pose(one).axes), transposed(self.frames.pose(other).axes)
@@ -216,7 +223,7 @@ class System:
             "planar": (True, False, True, False),
             "fixed": (True, True, True, True),
         }[kind]
-        held = apart if along and beside else turned(there, apart)
+        held = turned(plane if along and beside else there, apart)
         rows = [
             Row(f"{name}_{letter}", True, held[index])
             for letter, index in PLACES.items()
