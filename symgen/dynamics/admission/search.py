@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cached_property
@@ -54,6 +54,7 @@ class Search:
         self._box: dict[str, tuple[Decimal, Decimal]] = {}
         self._angles: set[str] = set()
         turn = 2 * PI
+        self._coordinates = frozenset(c.name for c in model.coordinates)
         for c in model.coordinates:
             lower, upper = (Fraction(0), turn) if c.is_angle else c.range
             self._box[c.name] = (_decimal(lower), _decimal(upper))
@@ -68,22 +69,41 @@ class Search:
         self._rows = DecimalEvaluator([*flatten(mechanics.constraint_jacobian), *inputs])
 
     def zero_of(self, scalar: Scalar) -> Found | None:
-        """A regular state at which the scalar vanishes, or None if no start led to one."""
+        """A regular state at which the scalar vanishes, or None if no start led to one.
+
+        Of loops that share no coordinate with the scalar, nor with others that do, none is closed before there is a
+        zero without them.
+        """
+        own = self._connected(scalar)
+        if len(own) < len(self._residuals) and self._zero_of(scalar, own) is None:
+            return None
+        return self._zero_of(scalar, self._residuals)
+
+    def _connected(self, scalar: Scalar) -> list[Scalar]:
+        """The residuals that hold coordinates of the scalar, or of another one that does."""
+        held = [symbols([residual]) & self._coordinates for residual in self._residuals]
+        reached, left = symbols([scalar]) & self._coordinates, [*range(len(held))]
+        while near := [k for k in left if held[k] & reached]:
+            reached = reached.union(*(held[k] for k in near))
+            left = [k for k in left if k not in near]
+        return [residual for k, residual in enumerate(self._residuals) if k not in left]
+
+    def _zero_of(self, scalar: Scalar, residuals: Sequence[Scalar]) -> Found | None:
         with localcontext() as context:
             context.prec = DIGITS
             terms = squares(scalar)
             if len(terms) > MOST_TERMS:
                 terms = [scalar]
-            reached = {str(n.payload) for n in topological([scalar, *self._residuals]) if n.op == "symbol"}
+            reached = symbols([scalar, *residuals])
             names = [name for name in self._box if name in reached]
-            evaluator = DecimalEvaluator([*self._residuals, *terms])
-            floats = FloatGradients([*self._residuals, *terms], names)
+            evaluator = DecimalEvaluator([*residuals, *terms])
+            floats = FloatGradients([*residuals, *terms], names)
             source = random.Random(SEED)
             sizes: list[float] = []
             for start in range(STARTS):
                 point = self._start(source, inner=start < STARTS // 2)
-                near = self._approach(floats, point, names, sizes)
-                found = None if near is None else self._descend(evaluator, *near, names)
+                near = self._approach(floats, point, names, sizes, len(residuals))
+                found = None if near is None else self._descend(evaluator, *near, names, len(residuals))
                 if found is not None and self._regular(found):
                     shown = [*self._angles, *names]
                     return Found(tuple((name, found[name]) for name in self._box if name in shown))
@@ -99,14 +119,14 @@ class Search:
         return point
 
     def _approach(
-        self, evaluate: FloatGradients, point: Point, names: Sequence[str], sizes: list[float]
+        self, evaluate: FloatGradients, point: Point, names: Sequence[str], sizes: list[float], rows: int
     ) -> tuple[Point, Decimal] | None:
         """Where the way from a start ends close to a zero, and the scalar's usual size."""
         at = {name: float(value) for name, value in point.items()}
         state = evaluate(at)
         if state is None:
             return None
-        rows, (values, slopes) = len(self._residuals), state
+        values, slopes = state
         sizes.append(max(map(abs, values[rows:])))
         usual = sorted(sizes)[len(sizes) // 2] or 1.0
         weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
@@ -144,11 +164,10 @@ class Search:
         return ({name: Decimal(value) for name, value in at.items()}, Decimal(usual)) if size <= NEAR else None
 
     def _descend(
-        self, evaluator: DecimalEvaluator, point: Point, usual: Decimal, names: Sequence[str]
+        self, evaluator: DecimalEvaluator, point: Point, usual: Decimal, names: Sequence[str], rows: int
     ) -> Point | None:
         """The zero beside a point, if there is one."""
         damping = Decimal("1e-12")
-        rows = len(self._residuals)
         try:
             values, slopes = evaluator.gradients(point, names)
         except UndefinedError:
@@ -248,6 +267,11 @@ class Search:
         return values
 
 
+def symbols(scalars: Sequence[Scalar]) -> frozenset[str]:
+    """The names of the symbols that scalars hold."""
+    return frozenset(str(node.payload) for node in topological(scalars) if node.op == "symbol")
+
+
 def squares(scalar: Scalar) -> list[Scalar]:
     """What is squared in a sum of squares; the scalar itself if it is none."""
     match scalar.op:
@@ -284,17 +308,29 @@ def _solve(a: list[list[Decimal]], b: Sequence[Decimal]) -> list[Decimal]:
 
 
 def _smallest_pivot(rows: Sequence[Sequence[Decimal]], rank: int) -> Decimal:
-    """The pivot number `rank` of elimination with complete pivoting."""
-    work = [list(row) for row in rows]
+    """The pivot number `rank` of elimination with complete pivoting; rows of large mechanisms hold few coordinates."""
+    work = [{j: x for j, x in enumerate(row) if x} for row in rows]
+    # of each row its largest entry, the first of equal ones
+    largest = [_largest(row) for row in work]
     size = ONE
     for k in range(rank):
-        pivots = [(abs(work[i][j]), -i, -j) for i in range(k, len(work)) for j in range(len(work[i]))]
-        size, i, j = max(pivots, default=(ZERO, 0, 0))
+        size, i, j = max(((largest[i][0], -i, largest[i][1]) for i in range(k, len(work))), default=(ZERO, 0, 0))
         if not size:
             return ZERO
         i, j = -i, -j
-        work[k], work[i] = work[i], work[k]
+        work[k], work[i], largest[k], largest[i] = work[i], work[k], largest[i], largest[k]
         for other in range(k + 1, len(work)):
-            factor = work[other][j] / work[k][j]
-            work[other] = [x - factor * y for x, y in zip(work[other], work[k], strict=True)]
+            row = work[other]
+            if j not in row:
+                continue
+            factor = row[j] / work[k][j]
+            for column, y in work[k].items():
+                row[column] = row.get(column, ZERO) - factor * y
+            del row[j]
+            largest[other] = _largest(row)
     return size
+
+
+def _largest(row: Mapping[int, Decimal]) -> tuple[Decimal, int]:
+    """The size of the largest entry of a row, and its column with a minus sign."""
+    return max(((abs(x), -j) for j, x in row.items()), default=(ZERO, 0))

@@ -8,10 +8,11 @@ rank: that determinant is one of the form's pivots.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations, islice, product
 
+from symgen.dynamics.blocks import components
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, small_family
 from symgen.dynamics.forms.form import Form, form
 from symgen.dynamics.forms.rates import Rates, reduced_rates
@@ -57,17 +58,34 @@ def nullspace_form(system: System, allowed: Callable[[Scalar], bool]) -> Form | 
         return f"more than {LARGEST_REST} constraint rows are left that no safe step solves"
     basis = next((choice for choice in choices if all(map(allowed, choice.pivots))), choices[0])
     w = transpose(basis.columns, generic.delta)
-    free = RowForms(graph, (), generic.delta, 0)
     inputs = transpose(matmul(graph, w, mechanics.control_matrix, generic.m), generic.m)
-    if not small_family([[0]], inputs, generic.alpha):
-        return "the determinants of the inputs are too many"
-    forms = ActuationForms(free, inputs, generic.alpha)
     force = tuple(row[0] for row in matmul(graph, w, tuple((f,) for f in mechanics.balance), 1))
     regular = tuple(guard for part in basis.parts for guard in MinorSpace(graph, part, len(part[0]), len(part)).guards)
-    guard = Guard(Status.ACTUATION_RANK, forms.denominator(), 1 if forms.single else 2, regular)
-    made = form("nullspace", "inverse_dynamics", forms.solve(force), (guard,), system.given)
+    u = [graph.zero] * generic.m
+    guards: list[Guard] = []
+    for directions, acting in _decoupled(inputs, system):
+        columns = tuple(tuple(inputs[k][i] for i in directions) for k in acting)
+        degree = len(directions) if generic.full_actuation else generic.alpha
+        if not small_family([[0]], columns, degree):
+            return "the determinants of the inputs are too many"
+        forms = ActuationForms(RowForms(graph, (), len(directions), 0), columns, degree)
+        guards.append(Guard(Status.ACTUATION_RANK, forms.denominator(), 1 if forms.single else 2, regular))
+        for k, value in zip(acting, forms.solve(tuple(force[i] for i in directions)), strict=True):
+            u[k] = value
+    made = form("nullspace", "inverse_dynamics", tuple(u), tuple(guards), system.given)
     pivots = tuple(pivot for pivot in basis.pivots if pivot not in made.divisors and pivot.constant is None)
     return replace(made, divisors=(*made.divisors, *pivots))
+
+
+def _decoupled(inputs: Matrix, system: System) -> list[tuple[Sequence[int], Sequence[int]]]:
+    """Directions and the inputs that act on them, in parts that have no input in common.
+
+    Of many independent parts the product of all determinants is small, however far each of them is from 0.
+    """
+    generic = system.generic
+    if not generic.full_actuation:
+        return [(range(generic.delta), range(generic.m))]
+    return [(part.columns, part.rows) for part in components(inputs) if part.columns]
 
 
 def _bases(system: System) -> Iterator[_Basis]:

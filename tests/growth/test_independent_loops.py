@@ -1,0 +1,81 @@
+"""Loops that share no coordinate: what is asked of one is asked of one, and tests of one do not hold the others."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from itertools import pairwise
+
+from counted import calls
+
+from symgen.dynamics.admission.search import Search, symbols
+from symgen.dynamics.genericity import genericity
+from symgen.dynamics.inverse import InverseDynamics, Offer
+from symgen.dynamics.mechanics import Mechanics
+from symgen.model.load import load_text
+from symgen.model.model import Model
+
+
+def sliders(count: int) -> Model:
+    """Cranks on a common axle, each with a rod and a slider of its own; rods slide on pins that hold them."""
+    coordinates, energy, rows, inputs = [], [], [], []
+    for k in range(count):
+        a, s, x = f"a{k}", f"s{k}", f"x{k}"
+        coordinates += [f"  {a}: {{unit: rad, range: [0.3, 1.2]}}", f"  {s}: {{unit: rad}}", f"  {x}: {{unit: m}}"]
+        energy.append(f"J*{a}_dot**2/2 + m*l**2*{s}_dot**2/6 + m*(1 + {k}/10)*{x}_dot**2/2")
+        rows += [f"    along{k}: r*cos({a}) + l*cos({s}) - {x}", f"    across{k}: r*sin({a}) - l*sin({s})"]
+        inputs.append(f"  u{k}: {{acts_on: {{{x}: 1}}}}")
+    text = "\n".join(
+        [
+            "model: sliders",
+            "coordinates:",
+            *coordinates,
+            "parameters: {r: {value: 0.2, unit: m}, l: {value: 0.7, unit: m}, m: {value: 2, unit: kg}, J: 0.3}",
+            "kinetic_energy: " + " + ".join(energy),
+            "constraints:",
+            "  geometric:",
+            *rows,
+            "inputs:",
+            *inputs,
+            "configuration: {" + ", ".join(f"a{k}: 0.8, s{k}: 0.2, x{k}: 0.8" for k in range(count)) + "}",
+            "",
+        ]
+    )
+    return load_text(text, "sliders.yaml")
+
+
+def test_each_loop_has_a_test_of_its_own() -> None:
+    model = sliders(3)
+    offer = InverseDynamics(model, genericity(Mechanics(model))).offer("nullspace")
+    assert isinstance(offer, Offer)
+    held = [symbols([guard.denominator]) for guard in offer.form.guards]
+    assert len(held) == 3
+    moving = [{name for name in names if name[0] in "asx"} for names in held]
+    assert all(moving)
+    assert all(not one & other for one, other in pairwise(moving))
+    # and so have the inputs
+    for k, output in enumerate(offer.form.outputs):
+        assert {name[-1] for name in moving[k]} == {str(k)}
+        assert not any(name in symbols([output]) for other in moving[:k] + moving[k + 1 :] for name in other)
+
+
+def test_zeros_are_looked_for_where_the_scalar_is() -> None:
+    model = sliders(4)
+    mechanics = Mechanics(model)
+    graph, search = mechanics.graph, Search(mechanics, genericity(mechanics))
+    assert search.zero_of(graph.symbol("x2") + 5) is None
+    found = search.zero_of(graph.trig("sin", graph.symbol("s1")) - graph.const(1) / 10)
+    assert found is not None
+    point = dict(found.point)
+    # a zero is told with all loops closed
+    assert all(abs(point[f"x{k}"]) > Decimal("0.2") for k in range(4))
+
+
+def test_twice_the_loops_are_a_few_times_the_work() -> None:
+    def looked_for(count: int) -> None:
+        mechanics = Mechanics(model := sliders(count))
+        search = Search(mechanics, genericity(Mechanics(model)))
+        for k in range(count):
+            assert search.zero_of(mechanics.graph.symbol(f"x{k}") + 5) is None
+
+    few, many = (calls(lambda n=n: looked_for(n), 20_000_000) for n in (3, 6))  # type: ignore[misc]
+    assert many <= 3 * few
