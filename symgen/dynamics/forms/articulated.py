@@ -130,15 +130,15 @@ class BodyEquations:
         """q_ddot and lambda; `by_bodies` they are refined by Newton and Euler's equations of the bodies."""
         mechanics, problem = self._mechanics, self._problem
         none = (mechanics.graph.zero,) * mechanics.n
-        loads = self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity)
-        force = self._factor.lowered(mechanics.given_force, loads)
+        given = mechanics.given_force
+        force = self._factor.lowered(given, self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity))
         if not by_bodies:
             found = self._apart.solve(force, problem.bias)
         else:
 
             def left_over(q_ddot: Vector, multipliers: Vector) -> Solution:
                 loads = self._inertial_forces(mechanics.qd, q_ddot, mechanics.bodies.gravity)
-                return self._less(mechanics.given_force, loads, q_ddot, multipliers), problem.bias_at(q_ddot)
+                return self._less(given, loads, q_ddot, multipliers), problem.bias_at(q_ddot)
 
             found = self._refined(force, problem.bias, left_over)
         return Motion(found[0], problem.of_the_model(found[1]), self.guards)
