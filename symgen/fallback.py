@@ -9,7 +9,7 @@ what rounding takes of them.  Where no way passes in float32, float64 stays.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, TypeAlias
@@ -31,6 +31,7 @@ from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import measured
 from symgen.verify.rounding import losing
+from symgen.verify.searched import Search
 from symgen.verify.tolerance import FACTOR
 
 REJECTED = "verification rejects it"
@@ -62,6 +63,8 @@ class Fallback:
         self._options = options
         self._progress = progress
         self._alternatives: Alternatives | None = None
+        self._search: Search | None = None
+        self._searched: dict[str, Kernels] = {}
         self._left: dict[tuple[str, int], Iterator[Alternative]] = {}
         self._passing: defaultdict[str, list[_Candidate]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
@@ -76,8 +79,9 @@ class Fallback:
             let_go_and_keep()
             derivations = draft.derivations
             self._alternatives = Alternatives(draft.model, derivations.generic, derivations.inverse)
+            self._search = Search(expected)
         made = draft
-        for quantity, faults in certificate.rejected.items():
+        for quantity, faults in (certificate.rejected | self._worst(draft, certificate, expected)).items():
             made = self._replaced(made, quantity, faults, expected)
             let_go()
         if not certificate.faults:
@@ -87,6 +91,27 @@ class Fallback:
                     made = self._with_margin(made, record, expected)
                     let_go()
         return None if made is draft else made
+
+    def _worst(self, draft: Draft, certificate: Certificate, expected: Expected) -> dict[str, tuple[Fault, ...]]:
+        """What is wrong with quantities that nothing speaks against, at states where they are worst."""
+        found = {}
+        for quantity in (kernel.name for kernel in draft.program.kernels):
+            kernels = draft.kernels(quantity)
+            if quantity not in certificate.rejected and self._searched.get(quantity) != kernels:
+                self._progress(f"verifying: where {quantity} is worst")
+                self._searched[quantity] = kernels
+                judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
+                if judged and (faults := self._at_worst(draft, judged, kernels["float64"])):
+                    found[quantity] = tuple(faults)
+        return found
+
+    def _at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel, carried: Collection[str] = ()) -> list[Fault]:
+        """What is wrong with kernels where they are worst, those with errors of `carried` targets of the plain one."""
+        assert self._search is not None
+        self._search.look(plain, carried)
+        sincos = {scalar: draft.programs[scalar].sincos for scalar in kernels}
+        faults = (self._search.fault(kernel, sincos[scalar], scalar) for scalar, kernel in kernels.items())
+        return [fault for fault in faults if fault is not None]
 
     def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:
         """The draft with a rejected quantity along its next way that passes, or without it."""
@@ -168,11 +193,11 @@ class Fallback:
 
     def _carrying(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
         """The ways that lose digits, with the rounding errors of the statements where they do; the shortest first."""
-        if quantity in self._carried or self._options.forms.get(quantity, AUTO) != AUTO:
+        if quantity in self._carried or self._options.forms.get(quantity, AUTO) != AUTO or self._search is None:
             return
         self._carried.add(quantity)
         sincos = {scalar: program.sincos for scalar, program in draft.programs.items()}
-        found: list[tuple[int, Alternative, Kernels]] = []
+        found: list[tuple[int, Alternative, Kernels, Kernel, frozenset[str]]] = []
         for way in self._inaccurate[quantity][:CARRYING]:
             self._progress(f"where {quantity} loses digits, {way.choice.way}")
             plain = draft.kernels_along(way, tuple(draft.kernels(quantity)))
@@ -182,38 +207,58 @@ class Fallback:
                 # shares are those of eps: but for thresholds, both types lose digits in the same statements
                 same = tuple((statement.targets, statement.operation) for statement in kernel.statements)
                 if same not in lost and scalar in expected.scalars:
-                    lost[same] = losing(kernel, sincos[scalar], scalar, expected)
-                if targets := lost.get(same):
-                    marks.append((scalar, mark(kernel, targets)))
+                    doubtful = self._search.losing(kernel)
+                    searched = self._search.expectations(quantity, scalar)
+                    lost[same] = doubtful | losing(kernel, sincos[scalar], scalar, expected, searched)
+                if chosen := lost.get(same):
+                    marks.append((scalar, mark(kernel, chosen)))
             way = replace(way, choice=replace(way.choice, compensated=tuple(marks)))
             carrying = draft.kernels_along(way, tuple(plain))
             length = max(len(kernel.statements) for kernel in carrying.values())
             if marks and length <= LONGEST:
-                found.append((length, way, carrying))
-        for _, way, kernels in sorted(found, key=lambda one: one[0]):
-            yield self._measured(draft, way, kernels, expected)
+                targets = frozenset().union(*lost.values())
+                found.append((length, way, carrying, plain["float64"], targets))
+        for _, way, kernels, kernel, carried in sorted(found, key=lambda one: one[0]):
+            yield self._measured(draft, way, kernels, expected, kernel, carried)
 
-    def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
-        """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
-        passed: list[Scalar] = []
+    def _measured(
+        self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected,
+        plain: Kernel | None = None, carried: Collection[str] = (),
+    ) -> _Candidate:  # fmt: skip
+        """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted.
+
+        Kernels that carry errors are those of `carried` targets of a plain one.
+        """
+        passed: dict[Scalar, Kernel] = {}
         worst = 0.0
         for scalar, kernel in kernels.items():
-            if scalar not in expected.scalars:
-                passed.append(scalar)
-                continue
-            record, fault = measured(kernel, draft.programs[scalar].sincos, scalar, expected)
-            if fault is None:
-                passed.append(scalar)
+            if scalar in expected.scalars:
+                record, fault = measured(kernel, draft.programs[scalar].sincos, scalar, expected)
+                if fault is not None:
+                    name = way.choice.way + CARRIED * bool(way.choice.compensated)
+                    _check_algebra(kernels["float64"], name, expected, record.worst_state)
+                    self._note(way, fault, inaccurate=not record.refused)
+                    if scalar == "float64":
+                        break  # float32 alone is of no use: the other type is what Python and the report are made of
+                    continue
                 worst = max(worst, record.largest)
-                continue
-            name = way.choice.way + CARRIED * bool(way.choice.compensated)
-            _check_algebra(kernels["float64"], name, expected, record.worst_state)
-            self._tried[way.choice.quantity].append((name, f"{fault.what} ({fault.target})"))
-            if not record.refused and way not in self._inaccurate[way.choice.quantity]:
-                self._inaccurate[way.choice.quantity].append(way)
-            if scalar == "float64":
-                break  # float32 alone is of no use: the other type is what Python and the report are made of
-        return _Candidate(worst, tuple(passed), way, kernels)
+            passed[scalar] = kernel
+        judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
+        if judged:
+            for fault in self._at_worst(draft, judged, plain or kernels["float64"], carried):
+                self._note(way, fault, inaccurate=True)
+                passed.pop(fault.scalar)
+        scalars = tuple(passed) if "float64" in passed else ()
+        if scalars:
+            self._searched[way.choice.quantity] = kernels
+        return _Candidate(worst, scalars, way, kernels)
+
+    def _note(self, way: Alternative, fault: Fault, inaccurate: bool) -> None:
+        """What speaks against a way; one that is inaccurate may carry its errors."""
+        name = way.choice.way + CARRIED * bool(way.choice.compensated)
+        self._tried[fault.quantity].append((name, f"{fault.what} ({fault.target})"))
+        if inaccurate and way not in self._inaccurate[fault.quantity]:
+            self._inaccurate[fault.quantity].append(way)
 
     def _remedy(self, quantity: str, without: Sequence[Scalar]) -> str:
         asked = self._options.forms.get(quantity, AUTO)

@@ -20,12 +20,13 @@ def measured(
     """The errors of a kernel at the states of a verification in units of d + eps |y*|, and what is wrong."""
     interpreter = Interpreter(sincos, scalar)
     samples, values = expected.samples(scalar), expected.values(scalar)
-    outcomes = [_outcome(interpreter, kernel, sample.state) for sample in each(f"trying it in {scalar}", samples)]
+    outcomes = [outcome(interpreter, kernel, sample.state) for sample in each(f"trying it in {scalar}", samples)]
     record = compare(kernel.name, scalar, [value[kernel.name] for value in values], outcomes)
     return record, next(faults_of(record, outcomes, samples), None)
 
 
-def _outcome(interpreter: Interpreter, kernel: Kernel, state: State) -> Outcome:
+def outcome(interpreter: Interpreter, kernel: Kernel, state: State) -> Outcome:
+    """What a kernel gives at a state of its scalar type: NaN where it refuses."""
     arguments = {part: tuple(map(float, getattr(state, part))) for part in ("q", "qd", "qdd", "u")}
     status, entries = interpreter.run(kernel, arguments, tuple(map(float, state.parameters)))
     return Outcome(int(status), tuple(entries) or (math.nan,) * max(1, math.prod(kernel.shape)))

@@ -44,13 +44,13 @@ class ParameterValues:
 
     def __init__(self, model: Model, names: Collection[str]) -> None:
         self.model = model
-        self._names = [parameter.name for parameter in model.parameters if parameter.name in names]
+        self.names = tuple(parameter.name for parameter in model.parameters if parameter.name in names)
         tape = Tape()
         known: dict[str, Polynomial] = {}
         translation = Translation(Taylor(tape, 0, 0), known, {}, {})
         for parameter in model.parameters:
             if parameter.name in names:
-                known[parameter.name] = {CONSTANT: tape.input(self._names.index(parameter.name))}
+                known[parameter.name] = {CONSTANT: tape.input(self.names.index(parameter.name))}
             else:
                 known[parameter.name] = translation.polynomial(parameter.value)
         registers = [known[parameter.name].get(CONSTANT, tape.zero) for parameter in model.parameters]
@@ -58,7 +58,7 @@ class ParameterValues:
 
     def __call__(self, chosen: Mapping[str, Any]) -> list[Any]:
         """Balls, the `chosen` values among them."""
-        return list(self._replay.run([ball(chosen[name]) for name in self._names]))
+        return list(self._replay.run([ball(chosen[name]) for name in self.names]))
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,8 @@ class System:
         count = len(model.mechanism.bodies)
         self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (6 * count, n), (10 * count, 1))
         self._configuration = replay_of(self._tape, [x for block in blocks for x in block])
-        self._geometry = replay_of(self._tape, [*blocks[2], *blocks[1][: self.r_geometric * n]])
-        self._matrices = replay_of(self._tape, [*blocks[1], *blocks[3]])
+        self.geometry_replay = replay_of(self._tape, [*blocks[2], *blocks[1][: self.r_geometric * n]])
+        self.matrices_replay = replay_of(self._tape, [*blocks[1], *blocks[3]])
 
     def configuration(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> Configuration:
         """Evaluate at q."""
@@ -127,7 +127,7 @@ class System:
 
     def matrices(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
         """B (r x n) and M (n x m) at q."""
-        values = self._matrices.run([*q, *([None] * self.n), *parameters, *literals])
+        values = self.matrices_replay.run([*q, *([None] * self.n), *parameters, *literals])
         size = self.r * self.n
         return arb_mat(self.r, self.n, values[:size]), arb_mat(self.n, self.m, values[size:])
 
@@ -145,7 +145,7 @@ class System:
 
     def geometry(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
         """g (r_g x 1) and dg/dq (r_g x n) at q."""
-        values = self._geometry.run([*q, *([None] * self.n), *parameters, *literals])
+        values = self.geometry_replay.run([*q, *([None] * self.n), *parameters, *literals])
         r = self.r_geometric
         return arb_mat(r, 1, values[:r]), arb_mat(r, self.n, values[r:])
 

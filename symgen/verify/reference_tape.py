@@ -8,7 +8,7 @@ Taylor arithmetic itself) are folded: literals of the model stay inputs, so that
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -81,6 +81,10 @@ class Constants:
             self._balls[ctx.prec] = [ball(value) for value in self._values]
         return self._balls[ctx.prec]
 
+    def floats(self) -> list[float]:
+        """The numbers rounded."""
+        return list(map(float, self._values))
+
 
 class Tape:
     """Records operations on registers; equal operations share one register."""
@@ -146,14 +150,18 @@ class Replay:
 
     constants: Constants
     inputs: Callable[[Sequence[Any]], tuple[Any, ...]]
-    groups: tuple[tuple[Callable[..., Any], Callable[[Sequence[Any]], Any], Callable[[Sequence[Any]], Any] | None], ...]
+    groups: tuple[tuple[str, Callable[[Sequence[Any]], Any], Callable[[Sequence[Any]], Any] | None], ...]
     outputs: Callable[[Sequence[Any]], tuple[Any, ...]]
 
-    def run(self, inputs: Sequence[Any]) -> tuple[Any, ...]:
-        """The outputs, in balls of the working precision; `inputs` are balls."""
-        registers = list(self.constants.balls())
+    def run(self, inputs: Sequence[Any], functions: Mapping[str, Callable[..., Any]] | None = None) -> tuple[Any, ...]:
+        """The outputs, in balls of the working precision; `inputs` are balls.
+
+        Other numbers go through the `functions` of their own; constants are floats then.
+        """
+        registers: list[Any] = list(self.constants.balls() if functions is None else self.constants.floats())
         registers.extend(self.inputs(inputs))
-        for function, left, right in self.groups:
+        for operation, left, right in self.groups:
+            function = (functions or FUNCTIONS)[operation]
             if right is None:
                 registers.extend(map(function, left(registers)))
             else:
@@ -188,7 +196,7 @@ def replay_of(tape: Tape, outputs: Iterable[Register]) -> Replay:
         lefts = picker([place[tape.records[r][1]] for r in members])
         two = tape.records[members[0]][2] is not None
         rights = picker([place[tape.records[r][2]] for r in members]) if two else None
-        groups.append((FUNCTIONS[operation], lefts, rights))
+        groups.append((operation, lefts, rights))
         for register in members:
             place[register] = len(place)
     return Replay(

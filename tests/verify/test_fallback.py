@@ -94,8 +94,13 @@ def cancelling(motion: Motion) -> Motion:
 
 
 def narrow(motion: Motion) -> Motion:
-    """λ that takes a good half of what is allowed."""
-    return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 4)) for value in motion.multipliers))
+    """λ that takes a good half of what is allowed, where the crank turns little."""
+    return replace(motion, multipliers=tuple(lossy(value, Fraction(8)) for value in motion.multipliers))
+
+
+def edgy(motion: Motion) -> Motion:
+    """λ that loses digits where the crank is nearly turned around, and little elsewhere."""
+    return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 6)) for value in motion.multipliers))
 
 
 def losing_digits(motion: Motion) -> Motion:
@@ -202,6 +207,7 @@ def test_wrong_algebra_is_an_internal_error_that_names_the_form(yoke: Path, monk
 
 
 def test_what_passes_narrowly_takes_a_way_with_half_of_its_error(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    yoke.write_text(YOKE + "ranges: {a: [0.7, 1]}\n", encoding="utf-8")
     spoil_choice(monkeypatch, narrow)
     result = made(yoke)
     (rejected,) = derived(result)["rejected"]
@@ -217,6 +223,23 @@ def test_what_passes_narrowly_takes_a_way_with_half_of_its_error(yoke: Path, mon
     assert result.certificate is not None
     assert result.certificate["passed"]
     assert max(e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers") > 8
+
+
+def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spoil_choice(monkeypatch, edgy)
+    result = made(yoke)
+    (rejected,) = derived(result)["rejected"]
+    assert re.fullmatch(r"error \S+ times d \+ eps \|y\*\| at a state searched for, .*", rejected["why"])
+    assert result.left_out == ()
+    # no form is better: each is tried with its errors, and none is taken that is wrong where it was looked
+    spoil_named(monkeypatch, edgy)
+    result = made(yoke)
+    assert all("searched for" in one["why"] for one in derived(result)["rejected"])
+    carried = derived(result)["kernels"].get("multipliers", {}).get("rounding_errors_carried")
+    assert carried or [one.quantity for one in result.left_out] == ["multipliers"]
+    assert made(yoke).files["derivation.json"] == result.files["derivation.json"]
 
 
 def test_the_way_taken_is_the_one_that_counts_least_of_those_that_pass(

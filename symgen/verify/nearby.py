@@ -1,0 +1,194 @@
+"""Hundreds of states beside those of a verification, in float64: where to look for the worst, not what is right there.
+
+A state is what a sample of the verification becomes by a step along V; its parameters are that sample's.  Rates and
+accelerations satisfy the constraints in every other one, as there.  The dice do not depend on what was looked at
+before.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from symgen.verify.lanes import Lanes
+from symgen.verify.reference import Reference, State
+from symgen.verify.reference_tape import Replay
+from symgen.verify.regular import REGULAR
+from symgen.verify.states import Sample
+
+# Shares of the ranges of coordinates: how far states are drawn from samples, and moved from where they are.
+REACH = 0.2
+FURTHER = 0.05
+NEWTON_STEPS = 12
+CLOSED = 1e-11
+# Of the largest singular value: rows depend on each other.
+DEPENDENT = 1e-8
+# A step of differences along the rates, in radians and metres a unit of time.
+DIFFERENCE = 1e-5
+
+_FUNCTIONS: dict[str, Callable[..., Lanes]] = {
+    "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "neg": np.negative, "pow": np.power,
+    "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
+    "atan2": np.arctan2, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sinh": np.sinh, "cosh": np.cosh,
+    "tanh": np.tanh,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Nearby:
+    """States with a row each: arguments and parameters by name, whether rates satisfy the constraints, and the places
+    of the samples that they come from."""
+
+    parts: Mapping[str, Lanes]
+    admissible: Lanes
+    origins: Lanes
+
+    def __len__(self) -> int:
+        return len(self.origins)
+
+    def only(self, which: Lanes) -> Nearby:
+        """Those that a mask or places name."""
+        parts = {name: values[which] for name, values in self.parts.items()}
+        return Nearby(parts, self.admissible[which], self.origins[which])
+
+    def state(self, place: int) -> State:
+        """One of them, in seven digits: what is found does not depend on the last bits of NumPy's functions."""
+        single = {name: values[place].astype(np.float32) for name, values in self.parts.items()}
+        q, qd, qdd, u = (tuple(map(float, single[name])) for name in ("q", "qd", "qdd", "u"))
+        return State(q, qd, qdd, u, tuple(map(float, self.parts["p"][place])))
+
+
+def joined(first: Nearby, second: Nearby) -> Nearby:
+    """All states of both."""
+    parts = {name: np.concatenate((values, second.parts[name])) for name, values in first.parts.items()}
+    admissible = np.concatenate((first.admissible, second.admissible))
+    return Nearby(parts, admissible, np.concatenate((first.origins, second.origins)))
+
+
+class Surroundings:
+    """What lies near the samples of a verification."""
+
+    def __init__(self, reference: Reference, samples: Sequence[Sample]) -> None:
+        self._system, self._ranks = reference.system, reference.ranks
+        self._literals = [float(x) for x in reference.literals()]
+        states = [sample.state for sample in samples]
+        parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u")}
+        parts["p"] = _rows([state.parameters for state in states])
+        admissible = np.array([sample.admissible for sample in samples])
+        self.samples = Nearby(parts, admissible, np.arange(len(samples)))
+        coordinates = reference.model.coordinates
+        self._low, self._high = (np.array([float(c.range[side]) for c in coordinates]) for side in (0, 1))
+        self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
+        self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
+        self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
+
+    def drawn(self, count: int) -> Nearby:
+        """About so many: a step off each sample in turn, with other rates, accelerations and inputs."""
+        start = self.samples.only(np.arange(count) % len(self.samples))
+        return self._stepped(start, REACH, 1.0, random.Random("nearby"), afresh=True)
+
+    def moved(self, states: Nearby, seed: str) -> Nearby:
+        """States a step further, of which some are left out: those that are not regular or out of range."""
+        return self._stepped(states, FURTHER, 2 * FURTHER, random.Random(f"nearby {seed}"), afresh=False)
+
+    def _stepped(self, start: Nearby, reach: float, share: float, dice: random.Random, afresh: bool) -> Nearby:
+        count, kept = len(start), 0.0 if afresh else 1.0
+        parts = dict(start.parts)
+        q = parts["q"] + reach * _shifts(dice, parts["q"]) * (self._high - self._low)
+        parts["q"] = np.clip(q, self._low, self._high)
+        widths = {"qd": self._rates, "qdd": self._accelerations, "u": self._inputs[start.origins]}
+        for name, width in widths.items():
+            parts[name] = kept * parts[name] + share * _shifts(dice, parts[name]) * width
+        admissible = np.arange(count) // len(self.samples) % 2 == 0 if afresh else start.admissible
+        with np.errstate(all="ignore"):
+            return self._settled(Nearby(parts, admissible, start.origins))
+
+    def _settled(self, states: Nearby) -> Nearby:
+        """Brought onto V, rates and accelerations too where they are to be."""
+        parts, p = dict(states.parts), states.parts["p"]
+        q, good = self._onto_manifold(parts["q"], p)
+        slack = 0.01 * (self._high - self._low)
+        good &= ((q >= self._low - slack) & (q <= self._high + slack)).all(axis=1)
+        rows, control = self._matrices(q, p)
+        good &= np.isfinite(rows).all(axis=(1, 2)) & np.isfinite(control).all(axis=(1, 2))
+        rows[~good], control[~good] = 0.0, 0.0
+        good &= self._is_regular(rows, control)
+        parts["q"] = q
+        if self._system.r:
+            on = states.admissible[:, None]
+            lengths = _lengths(rows)
+            unit = rows / lengths
+            inverse = np.linalg.pinv(unit, rcond=DEPENDENT)
+            qd = parts["qd"] - _times(inverse, _times(unit, parts["qd"]))
+            ahead, behind = (self._matrices(q + side * DIFFERENCE * qd, p)[0] for side in (1, -1))
+            drift = np.nan_to_num(_times((ahead - behind) / (2 * DIFFERENCE) / lengths, qd))
+            qdd = parts["qdd"] - _times(inverse, _times(unit, parts["qdd"]) + drift)
+            parts["qd"], parts["qdd"] = np.where(on, qd, parts["qd"]), np.where(on, qdd, parts["qdd"])
+        return Nearby(parts, states.admissible, states.origins).only(good)
+
+    def _onto_manifold(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
+        """The places where Newton's method ends, and whether that is on V."""
+        r = self._system.r_geometric
+        good = np.ones(len(q), dtype=bool)
+        for _ in range(NEWTON_STEPS if r else 0):
+            values = self._run(self._system.geometry_replay, q, p)
+            good &= np.isfinite(values).all(axis=1)
+            values[~good] = 0.0
+            rows = values[:, r:].reshape(len(q), r, -1)
+            lengths = _lengths(rows)
+            gaps = values[:, :r] / lengths[:, :, 0]
+            closed = np.abs(gaps).max(axis=1) <= CLOSED
+            if closed.all():
+                break
+            q = q - _times(np.linalg.pinv(rows / lengths, rcond=DEPENDENT), gaps)
+        return q, good & closed if r else good
+
+    def _is_regular(self, rows: Lanes, control: Lanes) -> Lanes:
+        """Whether rows, and inputs along what the rows leave free, are as far from dependent as regular states are."""
+        rank, reached = self._ranks.constraints, self._ranks.actuation
+        count, r, n = rows.shape
+        good, free = np.ones(count, dtype=bool), np.broadcast_to(np.eye(n), (count, n, n))
+        if r:
+            sizes, directions = np.linalg.svd(rows / _lengths(rows))[1:]
+            good &= sizes[:, rank - 1] >= REGULAR * sizes[:, 0] if rank else True
+            free = directions[:, rank:]
+        if reached:
+            columns = np.swapaxes(control, 1, 2)
+            moved = free @ np.swapaxes(columns / _lengths(columns), 1, 2)
+            good &= np.linalg.svd(moved, compute_uv=False)[:, reached - 1] >= REGULAR
+        return good
+
+    def _matrices(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
+        """B and M."""
+        n, m, r = self._system.n, self._system.m, self._system.r
+        values = self._run(self._system.matrices_replay, q, p)
+        return values[:, : r * n].reshape(len(q), r, n), values[:, r * n :].reshape(len(q), n, m)
+
+    def _run(self, replay: Replay, q: Lanes, p: Lanes) -> Lanes:
+        """The outputs of a replay in columns; none of those that are run here reads rates."""
+        made = replay.run([*q.T, *([None] * self._system.n), *p.T, *self._literals], _FUNCTIONS)
+        return np.stack([np.broadcast_to(x, len(q)) for x in made], axis=1) if made else np.empty((len(q), 0))
+
+
+def _rows(values: Sequence[Sequence[Any]]) -> Lanes:
+    return np.array([[float(x) for x in row] for row in values]).reshape(len(values), -1)
+
+
+def _shifts(dice: random.Random, like: Lanes) -> Lanes:
+    """Numbers between -1 and 1."""
+    return np.array([2 * dice.random() - 1 for _ in range(prod(like.shape))]).reshape(like.shape)
+
+
+def _lengths(rows: Lanes) -> Lanes:
+    """Of every row, 1 for one that vanishes."""
+    lengths = np.linalg.norm(rows, axis=2, keepdims=True)
+    return np.where(lengths > 0, lengths, 1.0)
+
+
+def _times(matrices: Lanes, vectors: Lanes) -> Lanes:
+    return np.einsum("kij,kj->ki", matrices, vectors)

@@ -1,0 +1,128 @@
+"""States at which a kernel is worst, searched for: a few dozen drawn ones do not meet them.
+
+Rounding errors are estimated at hundreds of states near those of the verification, then a step further from the worst
+of these.  Only where the estimate leaves a doubt are states judged, in units of d + eps |y*| by the reference, as at
+any state of the verification.  A status there is an answer.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterator
+from functools import cached_property
+
+import numpy as np
+
+from symgen.activity import working
+from symgen.ir.interpret import Interpreter
+from symgen.ir.kernel import Function, Kernel, Scalar
+from symgen.verify.certificate import Fault
+from symgen.verify.comparison import INACCURATE
+from symgen.verify.expected import Expected
+from symgen.verify.interpreted import outcome
+from symgen.verify.lanes import Lanes, estimates, losing
+from symgen.verify.nearby import Nearby, Surroundings, joined
+from symgen.verify.reference import ReferenceValueError
+from symgen.verify.settling import Settling
+from symgen.verify.states import Sample, rounded
+from symgen.verify.tolerance import FACTOR, Expectation, expectations
+
+# States drawn; fewer of long kernels, so that no more numbers are held at a time.
+DRAWN = 512
+NUMBERS = 4_000_000
+# Of the worst of them, how many go further, and in how many directions.
+KEPT, DIRECTIONS = 32, 8
+# Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
+DOUBTFUL = FACTOR / 2
+JUDGED = 8
+
+
+class Search:
+    """The worst states of the quantities of a model, those of every way that was looked at."""
+
+    def __init__(self, expected: Expected) -> None:
+        self._expected = expected
+        self._found: defaultdict[str, list[Sample]] = defaultdict(list)
+        self._values: dict[tuple[str, int, Scalar], Expectation | None] = {}
+
+    def look(self, kernel: Kernel, without: Collection[str] = ()) -> None:
+        """Adds the worst states of a kernel, in which the errors of the targets `without` are carried along."""
+        with working(f"where {kernel.name} is worst"):
+            self._add(kernel.name, *self._estimated(kernel, without))
+
+    def losing(self, kernel: Kernel) -> frozenset[str]:
+        """Targets of a kernel whose errors leave a doubt at its worst states, which are added, too."""
+        with working(f"where {kernel.name} is worst"):
+            states, units = self._estimated(kernel, ())
+            self._add(kernel.name, states, units)
+            return losing(kernel, states.only(_worst(units, KEPT)).parts, DOUBTFUL)
+
+    def _add(self, quantity: str, states: Nearby, units: Lanes) -> None:
+        for place in (place for place in _worst(units, JUDGED) if units[place] > DOUBTFUL):
+            admissible = bool(states.admissible[place])
+            sample = self._settling.sample(states.state(place), admissible, quantity)
+            if sample is not None and sample not in self._found[quantity]:
+                self._found[quantity].append(sample)
+
+    def fault(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> Fault | None:
+        """A wrong number with status 0 at the states that were found for its quantity, whatever way it takes."""
+        interpreter = Interpreter(sincos, scalar)
+        worst = 0.0
+        for place, sample in enumerate(self._found[kernel.name]):
+            made = outcome(interpreter, kernel, rounded(sample, scalar).state)
+            if not made.valid:
+                continue
+            expected = self._expectation(kernel.name, place, scalar)
+            if expected is not None:
+                worst = max(worst, expected.in_units(expected.distance(made.entries)))
+        if worst <= FACTOR:
+            return None
+        what = f"{INACCURATE} {worst:.3g} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
+        return Fault(what, kernel.name, scalar)
+
+    def expectations(self, quantity: str, scalar: Scalar) -> Iterator[tuple[Sample, Expectation]]:
+        """The states of a quantity, rounded, and what is expected there."""
+        for place, sample in enumerate(self._found[quantity]):
+            if (expected := self._expectation(quantity, place, scalar)) is not None:
+                yield rounded(sample, scalar), expected
+
+    def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
+        """None where there is no value once the state is rounded."""
+        key = quantity, place, scalar
+        if key not in self._values:
+            state = rounded(self._found[quantity][place], scalar).state
+            try:
+                made = expectations(self._expected.reference, state, [quantity], scalar, f"{scalar} searched {place}")
+                self._values[key] = made[quantity]
+            except ReferenceValueError:
+                self._values[key] = None
+        return self._values[key]
+
+    def _estimated(self, kernel: Kernel, without: Collection[str]) -> tuple[Nearby, Lanes]:
+        """States, and the rounding errors that are estimated there."""
+        count = min(DRAWN, NUMBERS // (len(kernel.statements) + 1))
+        states = self._drawn.only(slice(max(len(self._surroundings.samples), count)))
+        units = estimates(kernel, states.parts, without)
+        if units.max() > DOUBTFUL:
+            worst = states.only(_worst(units, KEPT))
+            further = self._surroundings.moved(worst.only(np.arange(len(worst)).repeat(DIRECTIONS)), kernel.name)
+            if len(further):
+                states, units = joined(states, further), np.append(units, estimates(kernel, further.parts, without))
+        return states, units
+
+    @cached_property
+    def _surroundings(self) -> Surroundings:
+        return Surroundings(self._expected.reference, self._expected.samples("float64"))
+
+    @cached_property
+    def _drawn(self) -> Nearby:
+        return joined(self._surroundings.samples, self._surroundings.drawn(DRAWN))
+
+    @cached_property
+    def _settling(self) -> Settling:
+        return Settling(self._expected.reference, self._expected.samples("float64"))
+
+
+def _worst(units: Lanes, count: int) -> Lanes:
+    """The places of the largest."""
+    return np.argsort(-units, kind="stable")[:count]

@@ -1,0 +1,96 @@
+"""States at which kernels are worst: estimated, looked for near those of a verification, judged like these."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Statement
+from symgen.model.load import load_model
+from symgen.verify.lanes import estimates, losing
+from symgen.verify.nearby import Surroundings
+from symgen.verify.reference import Reference
+from symgen.verify.states import sample_states
+
+# A ladder whose feet slide on a floor and along a wall, and a disc that is geared to its turning.
+LADDER = """
+model: ladder
+coordinates:
+  x: {unit: m}
+  y: {unit: m}
+  a: {unit: rad, range: [0.3, 1.2]}
+  c: {unit: rad}
+parameters:
+  l: {value: 1.5, unit: m, range: [1, 2]}
+  m: {value: 4, unit: kg}
+  J: {value: 0.3, unit: kg*m**2}
+kinetic_energy: m/2*(x_dot**2 + y_dot**2) + J/2*(a_dot**2 + c_dot**2)
+potential_energy: 9.81*m*y/2
+constraints:
+  geometric: {floor: x - l*cos(a), wall: y - l*sin(a)}
+  nonholonomic: {gear: c_dot - (2 + sin(a))*a_dot}
+inputs:
+  push: {unit: N, acts_on: {x: 1}}
+configuration: {x: 1.2, y: 0.9, a: 0.6435, c: 0}
+outputs: [inverse_dynamics, forward_dynamics]
+"""
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Reference:
+    path = tmp_path_factory.mktemp("ladder") / "ladder.yaml"
+    path.write_text(LADDER, encoding="utf-8")
+    return Reference(load_model(path))
+
+
+def straight(*statements: Statement) -> Kernel:
+    """A kernel of the coordinates x, a whose result is its last statement's."""
+    loads = (Load("x", "q", 0), Load("a", "q", 1))
+    return Kernel("made_up", (), loads, (Block(statements, ()),), (Local(statements[-1].targets[0]),), (1,))
+
+
+X, A, BIG = Local("x"), Local("a"), Literal(Fraction(10**6))
+# x + a that is worked out by way of x + 10^6 a
+DETOUR = straight(
+    Statement(("far",), "mul", (BIG, A)),
+    Statement(("near",), "add", (X, Local("far"))),
+    Statement(("less",), "mul", (Literal(Fraction(10**6 - 1)), A)),
+    Statement(("sum",), "sub", (Local("near"), Local("less"))),
+)
+
+
+def test_estimates_are_shares_of_roundings_in_units_of_what_inputs_do() -> None:
+    x, a = 0.5, 0.25
+    rounded = [1e6 * a, x + 1e6 * a, (1e6 - 1) * a, x + a]
+    unit = (x + a) + 1.5 * (x**2 + a**2) ** 0.5
+    state = {"q": np.array([[x, a], [2 * x, 2 * a]])}
+    assert estimates(DETOUR, state) == pytest.approx([np.linalg.norm(rounded) / unit] * 2)
+    far = [1e6 * a, (1e6 - 1) * a]
+    assert estimates(DETOUR, state, {"near", "sum"}) == pytest.approx([np.linalg.norm(far) / unit] * 2)
+    assert losing(DETOUR, state, 8.0) == {"far", "near", "less"}
+    assert losing(DETOUR, state, 1e9) == frozenset()
+
+
+def test_states_nearby_satisfy_the_constraints_as_samples_do(reference: Reference) -> None:
+    surroundings = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 16))
+    drawn = surroundings.drawn(64)
+    further = surroundings.moved(drawn, "ladder")
+    for states in (drawn, further):
+        assert 32 < len(states) <= 64
+        assert {bool(x) for x in states.admissible} == {False, True}
+        q, p = states.parts["q"], states.parts["p"]
+        assert np.abs(q[:, 0] - p[:, 0] * np.cos(q[:, 2])).max() < 1e-9
+        assert np.abs(q[:, 1] - p[:, 0] * np.sin(q[:, 2])).max() < 1e-9
+        assert (q[:, 2] > 0.29).all()
+        assert (q[:, 2] < 1.21).all()
+        on = states.only(states.admissible)
+        q, qd, qdd, p = (on.parts[name] for name in ("q", "qd", "qdd", "p"))
+        a, rate = q[:, 2], qd[:, 2]
+        assert np.abs(qd[:, 0] + p[:, 0] * np.sin(a) * rate).max() < 1e-9
+        assert np.abs(qd[:, 3] - (2 + np.sin(a)) * rate).max() < 1e-9
+        expected = (2 + np.sin(a)) * qdd[:, 2] + np.cos(a) * rate**2
+        assert qdd[:, 3] == pytest.approx(expected, abs=1e-4)
+    again = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 16)).drawn(64)
+    assert all((again.parts[name] == values).all() for name, values in drawn.parts.items())
