@@ -44,7 +44,7 @@ class Everything:
             found = self._within(ways, min(first, self._left))
             self._left -= done() - before
             return found
-        for most in (first, GROWTH * first):
+        for most in (first, GROWTH * first) if len(ways) > 1 else ():
             if found := self._within(ways, most):
                 return found
         return {name: way() for name, way in ways.items()}
