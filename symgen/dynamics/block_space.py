@@ -16,7 +16,6 @@ from symgen.dynamics.guards import Guard
 from symgen.dynamics.spaces import HouseholderSpace, InputEquations, MinorSpace, NullSpace, Restriction
 from symgen.graph.matrix import Matrix, Vector, identity, transpose
 from symgen.graph.scalar import Graph, Scalar
-from symgen.ir.kernel import Status
 
 # A block with more minors than this is reflected.
 BLOCK_MINOR_LIMIT = 60
@@ -46,11 +45,8 @@ class BlockSpace:
 
     @cached_property
     def guards(self) -> tuple[Guard, ...]:
-        """One for all blocks: det(B B^T) is the product of theirs, and blocks that are poor together count."""
-        guards = [guard for part in self._parts for guard in part.space.guards]
-        denominator = self.graph.product(guard.denominator for guard in guards)
-        scale = self.graph.product(guard.scale or self.graph.one for guard in guards)
-        return (Guard(Status.CONSTRAINT_RANK, denominator, 2, scale=scale),)
+        """Those of all blocks."""
+        return tuple(guard for part in self._parts for guard in part.space.guards)
 
     @property
     def size(self) -> Scalar:

@@ -246,7 +246,7 @@ class Derivation:
     def _moved(self, guard: Guard, replacements: Mapping[Scalar, Scalar]) -> Guard:
         scale = magnitude(self.graph, [guard.denominator])[0] if guard.scale is None else guard.scale
         denominator, scale = substitute(self.graph, [guard.denominator, scale], replacements)
-        return Guard(guard.status, denominator, guard.degree, scale=scale)
+        return replace(guard, denominator=denominator, scale=scale)
 
     # projected equations (30) ----------------------------------------------------------------------------------------
 

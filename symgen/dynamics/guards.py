@@ -1,17 +1,28 @@
 """Denominators a result depends on, and how small is too small.
 
 A kernel decides on its own denominators: the status is not OK where |D| <= threshold * D_max, with D_max the sum of
-the absolute terms of D when every sine and cosine is 1 (interface, section 4).
+the absolute terms of D when every sine and cosine is 1, or what D would be if nothing were lost.
+
+A status says that one direction is all but lost.  A determinant is what is left of several directions multiplied, and
+where each of them is a little poor it is small without any of them being lost.  So pivots are compared one by one, each
+with what it is left of, and the threshold of a determinant falls with the number of its directions, down to what
+rounding leaves of one that is 0.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import reached, substitute, topological
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
+
+# By what a determinant may be shorter for each direction but the one that is lost.
+POORER = 6
+# In units of eps: what rounding leaves of a determinant that is 0, angles rounded to the type included.
+LEFT = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +31,7 @@ class Guard:
 
     `degree` is 2 for a sum of squares (the threshold is squared), else 1.  `first` holds guards that are looked at
     only on failure, to name the cause.  `scale` takes the place of D_max where another factor of the denominator
-    has a guard of its own.
+    has a guard of its own.  `directions` is how many the denominator is a determinant of, in this scale.
     """
 
     status: Status
@@ -28,6 +39,19 @@ class Guard:
     degree: int
     first: tuple[Guard, ...] = ()
     scale: Scalar | None = None
+    directions: int = 1
+
+    def threshold(self, n: int, unit_roundoff: Fraction) -> Fraction:
+        """8 n eps for one direction, squared for sums of squares."""
+        share = Fraction(1, max(1, min(n, POORER ** (self.directions - 1))))
+        return (LEFT * n * share * unit_roundoff) ** self.degree
+
+
+def beside_lengths(status: Status, pivots: Sequence[Scalar], lengths: Sequence[Scalar]) -> tuple[Guard, ...]:
+    """One guard for each squared pivot: what is left of a vector beside the vectors before, and its squared length."""
+    pairs = list(zip(pivots, lengths, strict=True))
+    moving = [pair for pair in pairs if pair[0] is not pair[1] or pair[0].constant is None]
+    return tuple(Guard(status, pivot, 2, scale=length) for pivot, length in moving)
 
 
 def where_negligible(graph: Graph, total: Scalar, values: Sequence[Scalar]) -> list[Scalar]:

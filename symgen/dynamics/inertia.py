@@ -6,6 +6,7 @@ K f is the acceleration that the force f causes along the constraints.  Only G p
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Protocol
 
 from symgen.dynamics.exterior import wedge
@@ -14,6 +15,9 @@ from symgen.dynamics.spaces import HouseholderSpace, MinorSpace
 from symgen.graph.matrix import Matrix, Vector, dot, identity, matmul, matvec, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
+
+# Of its bound, what an inertia is taken for at least: 1e-3 of a radius of gyration.
+REST = Fraction(1, 2**20)
 
 
 class ConstrainedInertia(Protocol):
@@ -34,12 +38,13 @@ def _diagonal(a: Matrix) -> list[Scalar]:
 class Cholesky:
     """L D L^T without pivoting: safe for a symmetric positive definite matrix (Golub and Van Loan, 4.1).
 
-    `scales` are the sizes of what the diagonal entries are summed from, the measure for negligible pivots.
+    `scales` are the sizes of what the diagonal entries are summed from, the measure for negligible pivots; the entries
+    themselves where they are not given.
     """
 
-    def __init__(self, graph: Graph, a: Matrix, scales: Sequence[Scalar]) -> None:
+    def __init__(self, graph: Graph, a: Matrix, scales: Sequence[Scalar] | None = None) -> None:
         self.graph = graph
-        self.scales = scales
+        self.scales = _diagonal(a) if scales is None else scales
         self.size = len(a)
         self.lower: list[list[Scalar]] = []
         self.pivots: list[Scalar] = []
@@ -78,8 +83,14 @@ class Cholesky:
 
 
 def diagonal_sizes(graph: Graph, mass_matrix: Matrix) -> list[Scalar]:
-    """Bounds g_i of the diagonal entries G_ii; |G_ij|^2 <= g_i g_j because G is positive semidefinite."""
-    return magnitude(graph, _diagonal(mass_matrix))
+    """The diagonal entries G_ii, positive; |G_ij|^2 <= G_ii G_jj because G is positive semidefinite.
+
+    What bounds the way of a body behind many turns is many times that way, so that nothing is measured by the bound of
+    an entry, but that an entry which is a rest of its terms is none.
+    """
+    entries = _diagonal(mass_matrix)
+    bounds = magnitude(graph, entries)
+    return [g if g is bound else g + bound * REST for g, bound in zip(entries, bounds, strict=True)]
 
 
 class FreeInertia:
@@ -129,7 +140,8 @@ class MinorInertia:
             for form in space.forms.forms
             for mask, value in form.items()
         )
-        self.guards = (*space.guards, Guard(Status.MASS_RANK, self._denominator, 1, scale=scale))
+        guard = Guard(Status.MASS_RANK, self._denominator, 1, scale=scale, directions=space.delta)
+        self.guards = (*space.guards, guard)
 
     def solve(self, force: Vector) -> Vector:
         inverse = 1 / self._denominator

@@ -16,11 +16,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from symgen.dynamics.guards import Guard
-from symgen.dynamics.spaces import LONGEST_PRODUCT, HouseholderSpace, Reflections
+from symgen.dynamics.spaces import HouseholderSpace, Reflections
 from symgen.graph.matrix import Matrix, Vector, dot, identity, transpose
 from symgen.graph.scalar import Graph, Scalar
-from symgen.ir.kernel import Status
 
 
 class PivotedReflections(Reflections):
@@ -89,17 +87,9 @@ class PivotedSpace(HouseholderSpace):
         self.reflections = self._pivoted
 
     @cached_property
-    def guards(self) -> tuple[Guard, ...]:
-        """det(B_I B_I^T) of the chosen rows, in units of the product of their squared lengths."""
-        graph, pivots, lengths = self.graph, self.reflections.pivots, self._pivoted.lengths
-        if self.rank > LONGEST_PRODUCT:
-            quotients = [pivot / length for pivot, length in zip(pivots, lengths, strict=True)]
-            return (Guard(Status.CONSTRAINT_RANK, graph.product(quotients), 2, scale=graph.one),)
-        return (Guard(Status.CONSTRAINT_RANK, graph.product(pivots), 2, scale=self.size),)
-
-    @cached_property
-    def size(self) -> Scalar:
-        return self.graph.product(self._pivoted.lengths)
+    def lengths(self) -> list[Scalar]:
+        """The squared lengths of the rows that were chosen."""
+        return self._pivoted.lengths
 
     @cached_property
     def _inner(self) -> Reflections:

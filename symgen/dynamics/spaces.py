@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Protocol
 
 from symgen.dynamics.exterior import ActuationForms, RowForms, small_family
-from symgen.dynamics.guards import Guard
+from symgen.dynamics.guards import Guard, beside_lengths
 from symgen.graph.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
@@ -117,8 +117,8 @@ class MinorSpace:
             return ()
         if self.rank < len(self.rows):
             measure, bound = self.forms.at_one_length(self.lengths), self.graph.product(self.lengths)
-            return (Guard(Status.CONSTRAINT_RANK, measure, 2, scale=bound),)
-        return (Guard(Status.CONSTRAINT_RANK, self.forms.square, 2, scale=self.size),)
+            return (Guard(Status.CONSTRAINT_RANK, measure, 2, scale=bound, directions=self.rank),)
+        return (Guard(Status.CONSTRAINT_RANK, self.forms.square, 2, scale=self.size, directions=self.rank),)
 
     @cached_property
     def squares(self) -> list[Scalar]:
@@ -221,18 +221,28 @@ class HouseholderSpace:
 
     @cached_property
     def guards(self) -> tuple[Guard, ...]:
-        # the product of the pivots is det(B B^T)
-        graph, pivots = self.graph, self.reflections.pivots
+        """What the rows before leave of each row, beside its length."""
+        return beside_lengths(Status.CONSTRAINT_RANK, self.reflections.pivots, self.lengths)
+
+    @cached_property
+    def volume(self) -> Guard:
+        """The same as one denominator, det(B B^T), for what multiplies it by others or tells causes by it."""
         if self.rank > LONGEST_PRODUCT:
             # quotients stay in the range of a float32 however many rows there are
-            lengths = [dot(graph, row, row) for row in self.rows]
-            quotients = [pivot / length for pivot, length in zip(pivots, lengths, strict=True)]
-            return (Guard(Status.CONSTRAINT_RANK, graph.product(quotients), 2, scale=graph.one),)
-        return (Guard(Status.CONSTRAINT_RANK, graph.product(pivots), 2, scale=self.size),)
+            quotients = [pivot / length for pivot, length in zip(self.reflections.pivots, self.lengths, strict=True)]
+            measure, size = self.graph.product(quotients), self.graph.one
+        else:
+            measure, size = self.graph.product(self.reflections.pivots), self.size
+        return Guard(Status.CONSTRAINT_RANK, measure, 2, scale=size, directions=self.rank)
+
+    @cached_property
+    def lengths(self) -> list[Scalar]:
+        """The squared lengths of the rows."""
+        return [dot(self.graph, row, row) for row in self.rows]
 
     @cached_property
     def size(self) -> Scalar:
-        return self.graph.product(dot(self.graph, row, row) for row in self.rows)
+        return self.graph.product(self.lengths)
 
     @property
     def square(self) -> Scalar:

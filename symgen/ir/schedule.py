@@ -97,7 +97,7 @@ class _Limits:
             if all(cause.status is guard.status and not cause.first for cause in first):
                 first = ()  # nothing to tell apart
             # a denominator that is its own scale, such as a length, is negligible only where it is 0
-            limit = graph.zero if scale is size else self._limit(guard, scale)
+            limit = graph.zero if scale in (size, guard.denominator) else self._limit(guard, scale)
             # a model's own tolerance may be far above rounding
             vanishes = guard.degree == 2 and _own_tolerance(self._mechanics, guard) is None
             self._known[guard] = Test(guard.status, size, limit, first, vanishes)
@@ -110,7 +110,7 @@ class _Limits:
         constant = scale.constant if number is None else number
         factor = Fraction(1) if constant is None else constant
         # statuses of equal tolerance share a threshold, and with it what is computed from it
-        name = f"threshold {_own_tolerance(self._mechanics, guard)} {guard.degree} {factor}"
+        name = f"threshold {_own_tolerance(self._mechanics, guard)} {guard.degree} {guard.directions} {factor}"
         self._thresholds[name] = guard, factor
         threshold = self._mechanics.graph.symbol(name)
         return threshold if scale.constant is not None else threshold * scale
@@ -122,8 +122,8 @@ def _place(guard: Guard) -> int:
 
 
 def _threshold(mechanics: Mechanics, guard: Guard, scalar: Scalar) -> Fraction:
-    """8 n eps, squared for sums of squares; the model's own tolerance where it is larger."""
-    value = (8 * mechanics.n * UNIT_ROUNDOFF[scalar]) ** guard.degree
+    """What rounding leaves of it; the model's own tolerance where it is larger."""
+    value = guard.threshold(mechanics.n, UNIT_ROUNDOFF[scalar])
     own = _own_tolerance(mechanics, guard)
     return max(value, own) if own is not None else value
 

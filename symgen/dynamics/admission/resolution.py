@@ -12,10 +12,10 @@ from symgen.dynamics.guards import Guard, magnitude
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Graph
 from symgen.graph.transplant import transplanted
+from symgen.ir.kernel import UNIT_ROUNDOFF
 
-# of float32, with a factor that keeps ordinary states away from the threshold
-UNIT = 2.0**-24
-MARGIN = 8 * 10
+# keeps ordinary states away from the threshold
+MARGIN = 10
 
 
 def stands_out(guards: Sequence[Guard], n: int, points: Sequence[Mapping[str, float]]) -> bool:
@@ -35,5 +35,5 @@ def stands_out(guards: Sequence[Guard], n: int, points: Sequence[Mapping[str, fl
         values = evaluate(point)
         pairs = zip(values[: len(guards)], values[len(guards) :], strict=True)
         largest = [max(most, abs(d) / size if size else 1.0) for most, (d, size) in zip(largest, pairs, strict=True)]
-    least = MARGIN * n * UNIT
-    return all(most > least**guard.degree for most, guard in zip(largest, guards, strict=True))
+    least = [float(MARGIN**guard.degree * guard.threshold(n, UNIT_ROUNDOFF["float32"])) for guard in guards]
+    return all(most > low for most, low in zip(largest, least, strict=True))

@@ -1,10 +1,10 @@
 """Whether the mass matrix is positive definite everywhere, not only along the constraints.
 
-The smallest pivot of G = L D L^T in units of its diagonal entry, and the smallest diagonal entry in units of its terms,
-are minimised over configurations and parameters within their ranges, from many seeded starts, by moving one number at a
-time (Hooke and Jeeves' pattern search).  A coordinate without mass, or a quaternion's, shows as a pivot that vanishes
-somewhere.  Steps are taken in double precision, with sines and cosines that are the same on every machine; what decides
-is the pivot at their end, in 40 digits.
+The smallest pivot of G = L D L^T in units of its diagonal entry, and the smallest diagonal entry in units of what it is
+elsewhere, are minimised over configurations and parameters within their ranges, from many seeded starts, by moving one
+number at a time (Hooke and Jeeves' pattern search).  A coordinate without mass, or a quaternion's, shows as a pivot
+that vanishes somewhere.  Steps are taken in double precision, with sines and cosines that are the same on every
+machine; what decides is the pivot at their end, in 40 digits.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ import math
 import random
 from collections.abc import Sequence
 from decimal import Decimal
+from fractions import Fraction
 from functools import lru_cache
 
 from symgen.dynamics.admission.decimals import DecimalEvaluator, UndefinedError
 from symgen.dynamics.genericity import parameter_values
-from symgen.dynamics.inertia import Cholesky, diagonal_sizes
+from symgen.dynamics.inertia import Cholesky
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Scalar
@@ -26,6 +27,8 @@ from symgen.records import dataclass
 
 SEED = 15
 STARTS = 4
+# Configurations that tell how large an entry gets.
+LOOKED_AT = 32
 HALVINGS = 11
 # Between what inertias of one machine differ by and what is left of a pivot that vanishes after the last halving.
 SMALLEST = 1e-4
@@ -59,15 +62,14 @@ def indefinite(mechanics: Mechanics) -> Indefinite | None:
         if row[i].is_zero:
             return Indefinite(i, row[i], ())
     pivots: list[Scalar] = []
-    factor = Cholesky(graph, mechanics.mass_matrix, diagonal_sizes(graph, mechanics.mass_matrix))
+    factor = Cholesky(graph, mechanics.mass_matrix)
     for i, pivot in enumerate(factor.pivots):
         if pivot.is_zero:
             return Indefinite(i, pivot, ())
         pivots.append(pivot / mechanics.mass_matrix[i][i])
     if mechanics.r:
         # without constraints the motion is not determined where a diagonal entry vanishes, and no form is to blame
-        rows = zip(mechanics.mass_matrix, factor.scales, strict=True)
-        pivots += [row[i] / size for i, (row, size) in enumerate(rows)]
+        pivots += _beside_the_largest(mechanics, factor.scales)
     if all(pivot.constant is not None for pivot in pivots):
         negative = (i % factor.size for i, pivot in enumerate(pivots) if not (pivot.constant or 0) > 0)
         return next((Indefinite(i, factor.pivots[i], ()) for i in negative), None)
@@ -80,16 +82,30 @@ def indefinite(mechanics: Mechanics) -> Indefinite | None:
     return Indefinite(i, factor.pivots[i], state)
 
 
-def smallest(mechanics: Mechanics, pivots: Sequence[Scalar]) -> tuple[float, dict[str, float], int]:
-    """The smallest of pivots found in the ranges, where it was found, and whose it is."""
-    evaluate = Evaluator(pivots)
-    known = parameter_values(mechanics)
-    reached = {str(node.payload) for node in topological(pivots) if node.op == "symbol"}
+def _beside_the_largest(mechanics: Mechanics, entries: Sequence[Scalar]) -> list[Scalar]:
+    """Entries in units of the largest values found of them; bounds may be far above what turns leave of them."""
+    evaluate, source = Evaluator(entries), random.Random(SEED)
+    known, ranges = parameter_values(mechanics), _ranges(mechanics, entries)
+    points = ({name: source.uniform(*limits) for name, limits in ranges.items()} for _ in range(LOOKED_AT))
+    found = zip(*(evaluate(known | point) for point in points), strict=True)
+    largest = (max((abs(x) for x in values if math.isfinite(x)), default=0.0) for values in found)
+    return [entry / Fraction(size) if size else entry for entry, size in zip(entries, largest, strict=True)]
+
+
+def _ranges(mechanics: Mechanics, values: Sequence[Scalar]) -> dict[str, tuple[float, float]]:
+    """What values depend on and may be chosen, by name."""
+    reached = {str(node.payload) for node in topological(values) if node.op == "symbol"}
     ranges = {c.name: (float(c.range[0]), float(c.range[1])) for c in mechanics.model.coordinates if c.name in reached}
     for parameter in mechanics.model.parameters:
         if parameter.name in reached and parameter.range is not None:
             ranges[parameter.name] = float(parameter.range[0]), float(parameter.range[1])
+    return ranges
 
+
+def smallest(mechanics: Mechanics, pivots: Sequence[Scalar]) -> tuple[float, dict[str, float], int]:
+    """The smallest of pivots found in the ranges, where it was found, and whose it is."""
+    evaluate = Evaluator(pivots)
+    known, ranges = parameter_values(mechanics), _ranges(mechanics, pivots)
     exact = DecimalEvaluator(pivots)
 
     def measure(point: dict[str, float]) -> tuple[float, int]:

@@ -51,7 +51,8 @@ class MinorMotion:
         """The rank of B, and D in units of the minors of B, whose own size has the first guard."""
         graph = self._graph
         scale = graph.sum(value * value * self._largest(mask) for mask, value in self._omega.items())
-        guard = Guard(Status.MASS_RANK, self._denominator, 1, scale=scale)
+        delta = self._n - self._problem.r
+        guard = Guard(Status.MASS_RANK, self._denominator, 1, scale=scale, directions=delta)
         return (*self._problem.guards, guard)
 
     def _largest(self, mask: int) -> Scalar:

@@ -69,7 +69,8 @@ def nullspace_form(system: System, allowed: Callable[[Scalar], bool]) -> Form | 
         if not small_family([[0]], columns, degree):
             return "the determinants of the inputs are too many"
         forms = ActuationForms(RowForms(graph, (), len(directions), 0), columns, degree)
-        guards.append(Guard(Status.ACTUATION_RANK, forms.denominator(), 1 if forms.single else 2, regular))
+        power = 1 if forms.single else 2
+        guards.append(Guard(Status.ACTUATION_RANK, forms.denominator(), power, regular, directions=degree))
         for k, value in zip(acting, forms.solve(tuple(force[i] for i in directions)), strict=True):
             u[k] = value
     made = form("nullspace", "inverse_dynamics", tuple(u), tuple(guards), system.given)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symgen.dynamics.guards import Guard
+from symgen.dynamics.guards import Guard, beside_lengths
 from symgen.dynamics.pivoted import longest
 from symgen.graph.matrix import Matrix, Vector, dot, transpose
 from symgen.graph.scalar import Graph, Scalar
@@ -51,12 +51,10 @@ class WeightedGramSchmidt:
         """The right-hand sides of these."""
         return c
 
-    def regularity(self, status: Status) -> Guard:
-        """det(A^T W A) over the squared lengths of the columns: 0 exactly where columns depend on each other."""
-        graph = self._graph
-        lengths = (_squared(graph, column, self._metric) for column in self._columns)
-        quotients = [square / length for square, length in zip(self._squares, lengths, strict=True)]
-        return Guard(status, graph.product(quotients), 2, scale=graph.one)
+    def regularity(self, status: Status) -> tuple[Guard, ...]:
+        """What is left of each column beside its length: 0 exactly where columns depend on each other."""
+        lengths = [_squared(self._graph, column, self._metric) for column in self._columns]
+        return beside_lengths(status, self._squares, lengths)
 
     def solve(self, b: Vector, c: Vector) -> tuple[Vector, Vector]:
         """y and l of y + A l = b, A^T W y = c.
@@ -185,9 +183,9 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
         base = WeightedGramSchmidt(graph, self.chosen(rows), (graph.one,) * len(rows[0]))
         return base, transpose(tuple(map(base.shares, rows)), len(self._choices))
 
-    def regularity(self, status: Status) -> Guard:
-        """The product of what is left of each chosen column, in units of its length."""
-        return Guard(status, self._graph.product(self._measures), 2, scale=self._graph.one)
+    def regularity(self, status: Status) -> tuple[Guard, ...]:
+        """What is left of each chosen column, in units of its length."""
+        return beside_lengths(status, self._measures, [self._graph.one] * len(self._measures))
 
 
 def _combined(graph: Graph, shares: Sequence[Scalar], vectors: Sequence[Vector]) -> Vector:

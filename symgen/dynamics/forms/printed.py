@@ -8,6 +8,7 @@ everywhere: the formula as it stands in the paper, singular where its columns be
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
 from typing import TypeAlias
@@ -50,7 +51,7 @@ def printed_form(system: System, fixed: Sequence[int] | None = None) -> Form | s
         for place, k in enumerate(order):
             u[k] = u[k] + weight * values[place]
     scale = graph.sum(graph.product(squares[k] for k in J) for J in choices)
-    rank = (Guard(Status.ACTUATION_RANK, largest, 2, guards, scale),) if m > delta else ()
+    rank = (Guard(Status.ACTUATION_RANK, largest, 2, guards, scale, delta),) if m > delta else ()
     kept = (*guards, *rank, *own)
     return form("printed", "inverse_dynamics", u, kept, system.given)
 
@@ -67,7 +68,7 @@ def _projection(graph: Graph, b: Matrix) -> tuple[Projection, tuple[Guard, ...]]
         weights = factor.solve(matvec(graph, b, x))
         return tuple(value - dot(graph, [row[i] for row in b], weights) for i, value in enumerate(x))
 
-    guards = tuple(Guard(Status.CONSTRAINT_RANK, g.denominator, g.degree, scale=g.scale) for g in factor.guards)
+    guards = tuple(replace(guard, status=Status.CONSTRAINT_RANK) for guard in factor.guards)
     return project, guards
 
 
@@ -104,7 +105,7 @@ def _inverse(
         return normal.solve([dot(graph, column, x) for column in first])
 
     part = pseudoinverse(force)
-    guards = tuple(Guard(Status.ACTUATION_RANK, g.denominator, g.degree, scale=g.scale) for g in normal.guards)
+    guards = tuple(replace(guard, status=Status.ACTUATION_RANK) for guard in normal.guards)
     if not second:
         return part, guards
     r = [pseudoinverse(column) for column in second]

@@ -11,6 +11,7 @@ because a force of B^T alone would then be in balance.  The form is valid at eve
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from symgen.dynamics.coordinates import AbsoluteAngles
 from symgen.dynamics.exterior import ActuationForms, RowForms, cross_product, unit, wedge_all
@@ -18,7 +19,7 @@ from symgen.dynamics.forms.definite import Definite
 from symgen.dynamics.forms.elimination import Elimination
 from symgen.dynamics.forms.form import Form, form
 from symgen.dynamics.genericity import Genericity
-from symgen.dynamics.guards import Guard, magnitude
+from symgen.dynamics.guards import Guard, beside_lengths, magnitude
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.spaces import LONGEST_PRODUCT, HouseholderSpace
 from symgen.dynamics.square import by_rows
@@ -79,7 +80,7 @@ class _Core:
             null = [tuple(self._graph.one if i == j else self._graph.zero for j in self._names) for i in self._names]
             measure = self._graph.one
             if not self._elimination.lengths().is_one:
-                guards.append(self._tested(measure, measure, 1))
+                guards.append(self._tested(measure, measure, 1, 1))
         elif self._size <= MOST_MINORS and internal <= 1:
             particular, null, guard, measure = self._by_minors(internal)
             guards.append(guard)
@@ -90,13 +91,13 @@ class _Core:
             guards.append(guard)
         u = self._inputs_of(particular, homogeneous=False)
         z = [self._inputs_of(vector, homogeneous=True) for vector in null]
+        # at an input singularity the internal forces vanish with the core's minors: the core stands first
         if internal == 1:
-            u, guard = self._without_direction(u, z[0], measure)
+            u, more = self._without_direction(u, z[0], measure)
+            guards += more
         elif internal > 1:
-            u, guard = self._without_directions(u, tuple(z))
-        if internal:
-            # at an input singularity the internal forces vanish with the core's minors: the core stands first
-            guards.append(guard)
+            u, more = self._without_directions(u, tuple(z))
+            guards += more
         return u, tuple(guards)
 
     def _inputs_of(self, values: Vector, homogeneous: bool) -> Vector:
@@ -136,15 +137,15 @@ class _Core:
     def _guarded(self, denominator: Scalar, degree: int) -> tuple[Guard, Scalar]:
         """The guard of the core's minors, and what they are of their bound."""
         scale = self._scale(denominator)
-        return self._tested(denominator, scale, degree), denominator / scale
+        return self._tested(denominator, scale, degree, self._size), denominator / scale
 
-    def _tested(self, denominator: Scalar, scale: Scalar, degree: int) -> Guard:
+    def _tested(self, denominator: Scalar, scale: Scalar, degree: int, directions: int) -> Guard:
         """The guard of the core, to which pivots belong, and with twists for rates the coordinates' own determinant."""
         turns = self._mechanics.twist_determinant * self._elimination.lengths()
         bound = magnitude(self._graph, [turns])[0]
         for _ in range(degree):
             denominator, scale = denominator * turns, scale * bound
-        return Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale)
+        return Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale, directions)
 
     def _scale(self, minors: Scalar) -> Scalar:
         """The sum of absolute terms, in which terms of minors that cancel in sign are equal, with factors taken out."""
@@ -161,15 +162,16 @@ class _Core:
         graph = self._graph
         # off the constraints legs that are bodies may well be parallel inside the ranges of their coordinates
         solution = by_rows(graph, self._core, self._right, everywhere=not self._elimination.lengths().is_one)
-        measured = self._tested(graph.product(solution.squares), graph.product(solution.lengths), 2)
+        square, size = graph.product(solution.squares), graph.product(solution.lengths)
+        measured = self._tested(square, size, 2, directions=self._size)
         return solution.values, [], measured
 
     def _by_reflections(self) -> tuple[Vector, list[Vector], Guard]:
         """The solution of least norm, an orthonormal null-space basis, and the product of the pivots."""
         space = HouseholderSpace(self._graph, self._core, len(self._names))
-        (measure,) = space.guards
+        measure = space.volume
         assert measure.scale is not None
-        guard = self._tested(measure.denominator, measure.scale, 2)
+        guard = self._tested(measure.denominator, measure.scale, 2, measure.directions)
         count = len(self._names) - self._size
         return space.lift(self._right), list(transpose(space.basis, count)) if count else [], guard
 
@@ -189,21 +191,21 @@ class _Core:
         # what was solved by tested pivots is no column of the core any more
         if not self._elimination.lengths().is_one or self._mechanics.twist_determinant.constant is None:
             rows = self._elimination.multipliers_alone or self._mechanics.coordinate_rows
-            (guard,) = HouseholderSpace(graph, rows, len(rows[0])).guards
-            return guard
+            return HouseholderSpace(graph, rows, len(rows[0])).volume
         whole = [
             (*column, *effect)
             for column, effect in zip(transpose(self._core, len(self._names)), self._unit_columns(), strict=True)
         ]
         if len(whole) > MOST_MINORS:
-            (guard,) = HouseholderSpace(graph, tuple(whole), len(whole[0])).guards
-            return guard
+            return HouseholderSpace(graph, tuple(whole), len(whole[0])).volume
         minors = wedge_all(unit(graph), whole)
         denominator = graph.sum(value * value for value in minors.values())
         lengths = [graph.sum(x * x for x in magnitude(graph, column)) for column in whole]
-        return Guard(Status.CONSTRAINT_RANK, denominator, 2, scale=graph.product(lengths))
+        return Guard(Status.CONSTRAINT_RANK, denominator, 2, scale=graph.product(lengths), directions=len(whole))
 
-    def _without_direction(self, u: Vector, z: Vector, measure: Scalar | None) -> tuple[Vector, Guard]:
+    def _without_direction(
+        self, u: Vector, z: Vector, measure: Scalar | None
+    ) -> tuple[Vector, tuple[Guard, ...]]:
         """u - z (z . u) / (z . z); |z|^2 is measured by its terms, which are small where the core's minors are.
 
         Without a `measure` z is what a null vector of length 1 does: at most what all unknowns together do.
@@ -218,16 +220,14 @@ class _Core:
         length = graph.sum(x * x for x in z)
         share = dot(graph, z, u) / length
         u = tuple(a - b * share for a, b in zip(u, z, strict=True))
-        return u, Guard(Status.CONSTRAINT_RANK, length, 2, scale=scale)
+        return u, (Guard(Status.CONSTRAINT_RANK, length, 2, scale=scale, directions=self._size + 1),)
 
-    def _without_directions(self, u: Vector, z: Matrix) -> tuple[Vector, Guard]:
+    def _without_directions(self, u: Vector, z: Matrix) -> tuple[Vector, tuple[Guard, ...]]:
         """u less its components along several internal forces."""
         graph = self._graph
         space = HouseholderSpace(graph, z, len(u))
-        (measure,) = space.guards
         lengths = graph.sum(x * x for column in self._unit_columns() for x in column)
-        scale = graph.product([lengths] * len(z))
-        return space.project(u), Guard(Status.CONSTRAINT_RANK, measure.denominator, 2, scale=scale)
+        return space.project(u), beside_lengths(Status.CONSTRAINT_RANK, space.reflections.pivots, [lengths] * len(z))
 
 
 def _null_vector_cost(rows: Matrix) -> int:
@@ -270,4 +270,4 @@ def _moved(graph: Graph, guard: Guard, back: dict[Scalar, Scalar]) -> Guard:
     assert guard.scale is not None
     denominator, scale = substitute(graph, [guard.denominator, guard.scale], back)
     first = tuple(_moved(graph, cause, back) for cause in guard.first)
-    return Guard(guard.status, denominator, guard.degree, first, scale)
+    return replace(guard, denominator=denominator, first=first, scale=scale)

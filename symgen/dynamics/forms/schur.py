@@ -88,10 +88,10 @@ class Elimination:
         self.rows = self._orthogonal.chosen(problem.rows)
         if r > min(rank, LONGEST_PRODUCT):
             # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
-            self.guards: tuple[Guard, ...] = (self._orthogonal.regularity(Status.CONSTRAINT_RANK), *factor.guards)
+            self.guards: tuple[Guard, ...] = (*self._orthogonal.regularity(Status.CONSTRAINT_RANK), *factor.guards)
         else:
             # light bodies may leave nothing of the difference of two rows, which are far from parallel by themselves
-            metric = (self._orthogonal.regularity(Status.MASS_RANK),) if r > 1 else ()
+            metric = self._orthogonal.regularity(Status.MASS_RANK) if r > 1 else ()
             self.guards = (*problem.guards, *factor.guards, *metric)
 
     def asked(self, bias: Vector) -> Vector:

@@ -5,6 +5,8 @@ Both work on matrices of the whole size and square the condition of B; they are 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from symgen.dynamics.exterior import ActuationForms, RowForms
 from symgen.dynamics.forms.form import Form, form
 from symgen.dynamics.forms.system import System
@@ -37,7 +39,8 @@ def weighted_form(system: System) -> Form | str:
     ]
     scale = graph.sum(graph.product(squares[k] for k in subset) for subset in forms.subsets)
     denominator = forms.denominator()
-    rank = Guard(Status.ACTUATION_RANK, denominator * denominator if forms.single else denominator, 2, scale=scale)
+    square = denominator * denominator if forms.single else denominator
+    rank = Guard(Status.ACTUATION_RANK, square, 2, scale=scale, directions=generic.alpha)
     return form("weighted", "inverse_dynamics", u, (*whole.guards, *schur.guards, rank), system.given)
 
 
@@ -92,4 +95,4 @@ class _Schur:
 
 
 def _as(status: Status, guards: tuple[Guard, ...]) -> tuple[Guard, ...]:
-    return tuple(Guard(status, g.denominator, g.degree, g.first, g.scale) for g in guards)
+    return tuple(replace(guard, status=status) for guard in guards)
