@@ -19,9 +19,9 @@ from symgen.graph.traverse import reached, substitute, topological
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
 
-# By what a determinant may be shorter for each direction but the one that is lost.
+# What a direction may be shorter by, in lengths or in squares, without being lost.
 POORER = 6
-# In units of eps: what rounding leaves of a determinant that is 0, angles rounded to the type included.
+# In units of eps: what rounding may leave of a determinant that is 0, rounded angles included.
 LEFT = 8
 
 
@@ -42,9 +42,9 @@ class Guard:
     directions: int = 1
 
     def threshold(self, n: int, unit_roundoff: Fraction) -> Fraction:
-        """8 n eps for one direction, squared for sums of squares."""
-        share = Fraction(1, max(1, min(n, POORER ** (self.directions - 1))))
-        return (LEFT * n * share * unit_roundoff) ** self.degree
+        """8 n eps for one direction, n eps for determinants of three or more; squared for sums of squares."""
+        loss = LEFT if self.directions > 2 else POORER if self.directions == 2 else 1
+        return (max(Fraction(LEFT * n, loss), Fraction(LEFT)) * unit_roundoff) ** self.degree
 
 
 def beside_lengths(status: Status, pivots: Sequence[Scalar], lengths: Sequence[Scalar]) -> tuple[Guard, ...]:
@@ -52,6 +52,20 @@ def beside_lengths(status: Status, pivots: Sequence[Scalar], lengths: Sequence[S
     pairs = list(zip(pivots, lengths, strict=True))
     moving = [pair for pair in pairs if pair[0] is not pair[1] or pair[0].constant is None]
     return tuple(Guard(status, pivot, 2, scale=length) for pivot, length in moving)
+
+
+def multiplied(status: Status, pivots: Sequence[Scalar], lengths: Sequence[Scalar]) -> tuple[Guard, ...]:
+    """The guard of squared pivots where a step loses again what the steps before have lost.
+
+    What one direction of several loses ordinarily does not count: else many of them would be taken for a lost one.
+    """
+    guards = beside_lengths(status, pivots, lengths)
+    if len(guards) < 2:
+        return guards
+    graph = pivots[0].graph
+    shares = (graph.function("ratio_or_zero", (guard.denominator, guard.scale or graph.one)) for guard in guards)
+    kept = [graph.function("min", (graph.one, POORER * share)) for share in shares if not share.is_one]
+    return (Guard(status, graph.product(kept), 2, scale=graph.one),)
 
 
 def where_negligible(graph: Graph, total: Scalar, values: Sequence[Scalar]) -> list[Scalar]:

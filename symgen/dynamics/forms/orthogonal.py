@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symgen.dynamics.guards import Guard, beside_lengths
+from symgen.dynamics.guards import Guard, multiplied
 from symgen.dynamics.pivoted import longest
 from symgen.graph.matrix import Matrix, Vector, dot, transpose
 from symgen.graph.scalar import Graph, Scalar
@@ -54,7 +54,7 @@ class WeightedGramSchmidt:
     def regularity(self, status: Status) -> tuple[Guard, ...]:
         """What is left of each column beside its length: 0 exactly where columns depend on each other."""
         lengths = [_squared(self._graph, column, self._metric) for column in self._columns]
-        return beside_lengths(status, self._squares, lengths)
+        return multiplied(status, self._squares, lengths)
 
     def solve(self, b: Vector, c: Vector) -> tuple[Vector, Vector]:
         """y and l of y + A l = b, A^T W y = c.
@@ -185,7 +185,7 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
 
     def regularity(self, status: Status) -> tuple[Guard, ...]:
         """What is left of each chosen column, in units of its length."""
-        return beside_lengths(status, self._measures, [self._graph.one] * len(self._measures))
+        return multiplied(status, self._measures, [self._graph.one] * len(self._measures))
 
 
 def _combined(graph: Graph, shares: Sequence[Scalar], vectors: Sequence[Vector]) -> Vector:

@@ -80,7 +80,7 @@ class _Core:
             null = [tuple(self._graph.one if i == j else self._graph.zero for j in self._names) for i in self._names]
             measure = self._graph.one
             if not self._elimination.lengths().is_one:
-                guards.append(self._tested(measure, measure, 1, 1))
+                guards.append(self._tested(measure, measure, 1))
         elif self._size <= MOST_MINORS and internal <= 1:
             particular, null, guard, measure = self._by_minors(internal)
             guards.append(guard)
@@ -137,15 +137,15 @@ class _Core:
     def _guarded(self, denominator: Scalar, degree: int) -> tuple[Guard, Scalar]:
         """The guard of the core's minors, and what they are of their bound."""
         scale = self._scale(denominator)
-        return self._tested(denominator, scale, degree, self._size), denominator / scale
+        return self._tested(denominator, scale, degree), denominator / scale
 
-    def _tested(self, denominator: Scalar, scale: Scalar, degree: int, directions: int) -> Guard:
+    def _tested(self, denominator: Scalar, scale: Scalar, degree: int) -> Guard:
         """The guard of the core, to which pivots belong, and with twists for rates the coordinates' own determinant."""
         turns = self._mechanics.twist_determinant * self._elimination.lengths()
         bound = magnitude(self._graph, [turns])[0]
         for _ in range(degree):
             denominator, scale = denominator * turns, scale * bound
-        return Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale, directions)
+        return Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale)
 
     def _scale(self, minors: Scalar) -> Scalar:
         """The sum of absolute terms, in which terms of minors that cancel in sign are equal, with factors taken out."""
@@ -162,8 +162,7 @@ class _Core:
         graph = self._graph
         # off the constraints legs that are bodies may well be parallel inside the ranges of their coordinates
         solution = by_rows(graph, self._core, self._right, everywhere=not self._elimination.lengths().is_one)
-        square, size = graph.product(solution.squares), graph.product(solution.lengths)
-        measured = self._tested(square, size, 2, directions=self._size)
+        measured = self._tested(graph.product(solution.squares), graph.product(solution.lengths), 2)
         return solution.values, [], measured
 
     def _by_reflections(self) -> tuple[Vector, list[Vector], Guard]:
@@ -171,7 +170,7 @@ class _Core:
         space = HouseholderSpace(self._graph, self._core, len(self._names))
         measure = space.volume
         assert measure.scale is not None
-        guard = self._tested(measure.denominator, measure.scale, 2, measure.directions)
+        guard = self._tested(measure.denominator, measure.scale, 2)
         count = len(self._names) - self._size
         return space.lift(self._right), list(transpose(space.basis, count)) if count else [], guard
 
@@ -201,7 +200,7 @@ class _Core:
         minors = wedge_all(unit(graph), whole)
         denominator = graph.sum(value * value for value in minors.values())
         lengths = [graph.sum(x * x for x in magnitude(graph, column)) for column in whole]
-        return Guard(Status.CONSTRAINT_RANK, denominator, 2, scale=graph.product(lengths), directions=len(whole))
+        return Guard(Status.CONSTRAINT_RANK, denominator, 2, scale=graph.product(lengths))
 
     def _without_direction(
         self, u: Vector, z: Vector, measure: Scalar | None
@@ -220,7 +219,7 @@ class _Core:
         length = graph.sum(x * x for x in z)
         share = dot(graph, z, u) / length
         u = tuple(a - b * share for a, b in zip(u, z, strict=True))
-        return u, (Guard(Status.CONSTRAINT_RANK, length, 2, scale=scale, directions=self._size + 1),)
+        return u, (Guard(Status.CONSTRAINT_RANK, length, 2, scale=scale),)
 
     def _without_directions(self, u: Vector, z: Matrix) -> tuple[Vector, tuple[Guard, ...]]:
         """u less its components along several internal forces."""
