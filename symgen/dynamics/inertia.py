@@ -16,8 +16,8 @@ from symgen.graph.matrix import Matrix, Vector, dot, identity, matmul, matvec, t
 from symgen.graph.scalar import Graph, Scalar
 from symgen.ir.kernel import Status
 
-# Of its bound, what an inertia is taken for at least: 1e-3 of a radius of gyration.
-REST = Fraction(1, 2**20)
+# Of its bound, what an inertia is taken for at least: tested in float32, about the square of what rounding leaves.
+REST = Fraction(1, 2**28)
 
 
 class ConstrainedInertia(Protocol):
