@@ -63,7 +63,7 @@ def multiplied(status: Status, pivots: Sequence[Scalar], lengths: Sequence[Scala
     if len(guards) < 2:
         return guards
     graph = pivots[0].graph
-    shares = (graph.function("ratio_or_zero", (guard.denominator, guard.scale or graph.one)) for guard in guards)
+    shares = (pivot / length for pivot, length in zip(pivots, lengths, strict=True))
     kept = [graph.function("min", (graph.one, POORER * share)) for share in shares if not share.is_one]
     return (Guard(status, graph.product(kept), 2, scale=graph.one),)
 
