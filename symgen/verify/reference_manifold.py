@@ -62,14 +62,14 @@ def onto_manifold(
 
     Steps are numbers, not bounds: only where they end is |g| looked at.  Rows may depend on each other: the damping
     falls with |g|, so that the step has least norm and convergence stays superlinear where dg/dq keeps its rank on V.
-    Where loops are `rounded`, what rounding leaves of |g| is near enough.  Rows count in powers of 2 of what their
-    entries are at the start, so that a row in other units is the same row.
+    Where loops are `rounded`, what rounding leaves of |g| is near enough.  Rows count in powers of 2 of their usual
+    size, so that a row in other units is the same row.
     """
     q = column(start)
     if system.r_geometric == 0:
         return list(q.entries())
     residual, jacobian = system.geometry(q.entries(), parameters, literals)
-    units = _units(jacobian)
+    units = _units(system, jacobian)
     residual, jacobian = units * residual, units * jacobian
     size = norm(residual)
     damping = 1e-3
@@ -112,14 +112,19 @@ def admissible(
 ) -> list[Any]:
     """The part of a shift that leaves the geometric rows as they are to first order; rows may depend on each other."""
     jacobian = system.geometry(column(q).entries(), parameters, literals)[1].mid()
-    units = _units(jacobian)
+    units = _units(system, jacobian)
     moved = column(shift)
     step = _step(units * jacobian * moved, units * jacobian, 1e-25)
     return list((moved if step is None else moved - step).mid().entries())
 
 
-def _units(jacobian: Any) -> Any:
-    """Diagonal of factors for rows."""
+def _units(system: System, jacobian: Any) -> Any:
+    """Diagonal of factors that bring rows to ordinary size.
+
+    Where loading found what rows usually are that counts: of some nothing but rounding is left on V.
+    """
+    if system.model.assembly is not None and system.model.assembly.units:
+        return _powers(system.model.assembly.units[: system.r_geometric])
     sizes = [max((abs(float(entry)) for entry in row), default=0.0) for row in jacobian.tolist()]
     return _powers([-frexp(size)[1] if 0 < size < inf else 0 for size in sizes])
 

@@ -72,3 +72,31 @@ def test_rows_that_span_all_of_them() -> None:
         assert independent_rows(arb_mat([[1, 0, 2], [2, 0, 4], [0, 1, 0]])) == [1, 2]
         assert independent_rows(arb_mat([[0, 0], [1, 5]])) == [1]
         assert independent_rows(arb_mat([[1, 1], [1, 1 + 2**-80]])) is not None
+
+
+def test_what_rounding_leaves_of_a_row_is_no_row_in_a_small_unit() -> None:
+    """A slide that holds one joint still: of its other rows 1e-17 is left, of a gradient and of a value."""
+    text = """\
+model: slide_that_holds
+parameters: {l: {value: 1.1, range: [0.77, 1.54]}}
+gravity: [0, -9.81, 0]
+joints:
+  stand: {type: revolute, axis: [1, 2, 3], coordinate: a}
+  lever: {type: revolute, parent: stand, at: [0, 0.64, 0], axis: x, coordinate: b}
+  tip: {type: revolute, parent: lever, at: [l, -0.32, 0], axis: x, coordinate: c}
+frames:
+  dock:
+    parent: tip
+    translation: [-1.1000000000000003, 0.1248485389786337, 0.29464019127556335]
+    rotation: [[[1.0, -6.782514753583869e-17, 0.0], 1.1699999999999997]]
+bodies:
+  stand: {mass: 2, com: [0, 0.3, 0], inertia: {xx: 0.1, yy: 0.2, zz: 0.2}}
+  lever: {mass: 1, com: [0.5, 0, 0], inertia: {xx: 0.1, yy: 0.2, zz: 0.2}}
+  tip: {mass: 1, com: [0.2, 0, 0], inertia: {xx: 0.1, yy: 0.2, zz: 0.2}}
+loops: {slide: {type: prismatic, between: [lever, dock]}}
+inputs: {turn: {joint: b}}
+configuration: {c: -1.17}
+"""
+    reference = Reference(load_text(text, "slide.yaml"))
+    assert (reference.ranks.constraints, reference.ranks.actuation) == (1, 1)
+    assert len(sample_states(reference, ("inverse_dynamics",), 12)) == 12
