@@ -201,6 +201,8 @@ class Fallback:
         for way in self._inaccurate[quantity][:CARRYING]:
             self._progress(f"where {quantity} loses digits, {way.choice.way}")
             plain = draft.kernels_along(way, tuple(draft.kernels(quantity)))
+            if max(len(kernel.statements) for kernel in plain.values()) > LONGEST // 2:
+                continue  # errors of what matters at least double a kernel
             lost: dict[tuple[object, ...], frozenset[str]] = {}
             marks: list[tuple[Scalar, str]] = []
             for scalar, kernel in plain.items():

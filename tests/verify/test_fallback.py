@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from symgen import cli
+from symgen import cli, fallback
 from symgen.diagnostics import SymgenBug
 from symgen.dynamics import alternatives, by_name, compared, derivation
 from symgen.dynamics.catalogue import Derived
@@ -351,6 +351,17 @@ def test_where_every_way_loses_digits_one_carries_its_rounding_errors(
     assert certificate["passed"]
     assert max(e["largest"] for e in certificate["errors"] if e["quantity"] == "multipliers") <= 8
     assert cli.main([*common, "--quiet", "--check"]) == 0
+
+
+def test_kernels_that_carrying_errors_makes_too_long_are_not_weighed(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Weighing every rounding of a long kernel takes more memory than all else."""
+    spoil_choice(monkeypatch, losing_digits)
+    spoil_named(monkeypatch, losing_digits)
+    monkeypatch.setattr(fallback, "LONGEST", 20)
+    monkeypatch.setattr(fallback, "losing", lambda *_: pytest.fail("weighed"))
+    assert [one.quantity for one in made(yoke).left_out] == ["multipliers"]
 
 
 def test_a_form_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
