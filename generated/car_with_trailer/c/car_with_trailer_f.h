@@ -17,8 +17,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      38     57      2      0      3      0
- * forward_dynamics     136    247      1      0      3      0
- * multipliers          147    261      1      0      3      0
+ * forward_dynamics     136    246      1      0      3      0
+ * multipliers          147    260      1      0      3      0
  * singularity           16     29      8      2      3      0
  * (changes of sign are not counted)
  *

@@ -19,10 +19,10 @@ typedef struct {
 
 car_with_trailer_prepared car_with_trailer_prepare(const car_with_trailer_params *p);
 
-/* q̈: accelerations under the inputs, (15); 357 operations instead of 402 */
+/* q̈: accelerations under the inputs, (15); 357 operations instead of 401 */
 car_with_trailer_status car_with_trailer_forward_dynamics_prepared(const double q[5], const double qd[5], const double u[2], const car_with_trailer_prepared *p, double qdd[5]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 379 operations instead of 424 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 379 operations instead of 423 */
 car_with_trailer_status car_with_trailer_multipliers_prepared(const double q[5], const double qd[5], const double u[2], const car_with_trailer_prepared *p, double lambda_B[3]);
 
 #ifdef __cplusplus

@@ -17,8 +17,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      59     82      2      0      4      0
- * forward_dynamics     194    307      1      0      4      0
- * multipliers          217    303     13      1      4      0
+ * forward_dynamics     198    311      1      0      4      0
+ * multipliers          217    302     13      1      4      1
  * singularity           26     35      9      2      4      0
  * (changes of sign are not counted)
  *

@@ -20,8 +20,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      45     82      1      0      2      0
- * forward_dynamics     434    657      1      0      5      0
- * multipliers          533    801      1      0      5      0
+ * forward_dynamics     436    661      1      0      5      0
+ * multipliers          537    806      1      0      5      0
  * singularity           42     86     14      3      2      0
  * (changes of sign are not counted)
  *

@@ -22,10 +22,10 @@ differential_drive_prepared differential_drive_prepare(const differential_drive_
 /* u: the smallest inputs that produce the motion, (27); 97 operations instead of 136 */
 differential_drive_status differential_drive_inverse_dynamics_prepared(const double q[7], const double qd[7], const double qdd[7], const differential_drive_prepared *p, double u[2]);
 
-/* q̈: accelerations under the inputs, (15); 936 operations instead of 1120 */
+/* q̈: accelerations under the inputs, (15); 933 operations instead of 1126 */
 differential_drive_status differential_drive_forward_dynamics_prepared(const double q[7], const double qd[7], const double u[2], const differential_drive_prepared *p, double qdd[7]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 1172 operations instead of 1358 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 1172 operations instead of 1367 */
 differential_drive_status differential_drive_multipliers_prepared(const double q[7], const double qd[7], const double u[2], const differential_drive_prepared *p, double lambda_B[5]);
 
 #ifdef __cplusplus

@@ -1055,7 +1055,7 @@ double_pendulum_status double_pendulum_forward_dynamics(const double q[2], const
     const double t40 = t34 + t39;
     const double t41 = t31 * t40;
     const double t42 = t30 + t41;
-    const double t43 = t42 * 1.7763568394002505e-15;
+    const double t43 = t42 * 8.881784197001252e-16;
     if (DOUBLE_PENDULUM_RARELY(!(t22 > t43))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }

@@ -290,7 +290,7 @@ size_t double_pendulum_forward_dynamics_batch(size_t count, size_t stride, const
     const double t40 = t34 + t39;
     const double t41 = t31 * t40;
     const double t42 = t30 + t41;
-    const double t43 = t42 * 1.7763568394002505e-15;
+    const double t43 = t42 * 8.881784197001252e-16;
     const double t45 = l_1 * c_2;
     const double t48 = m_2 * t13;
     const double t49 = J_2 + t48;

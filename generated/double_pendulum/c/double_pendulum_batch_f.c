@@ -277,7 +277,7 @@ size_t double_pendulum_forward_dynamics_batch_f(size_t count, size_t stride, con
     const float t40 = t34 + t39;
     const float t41 = t31 * t40;
     const float t42 = t30 + t41;
-    const float t43 = t42 * 9.536743e-07f;
+    const float t43 = t42 * 4.7683716e-07f;
     const float t45 = l_1 * c_2;
     const float t48 = m_2 * t13;
     const float t49 = J_2 + t48;

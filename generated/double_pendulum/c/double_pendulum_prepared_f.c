@@ -183,7 +183,7 @@ double_pendulum_prepared_f double_pendulum_prepare_f(const double_pendulum_param
     const float v38 = v32 + v37;
     const float v39 = v29 * v38;
     const float v40 = v28 + v39;
-    const float v41 = v40 * 9.536743e-07f;
+    const float v41 = v40 * 4.7683716e-07f;
     const float v42 = m_2 * v19;
     const float v43 = J_2 + v42;
     const float v44 = 0.5f * v43;

@@ -31,7 +31,7 @@
  * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 1      5      2      0      2      0
  * projected_mass_matrix                10     32      3      0      2      0
- * projected_coriolis_matrix            72    166      3      0      2      0
+ * projected_coriolis_matrix            62    132     10      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0

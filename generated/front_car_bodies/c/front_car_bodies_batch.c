@@ -234,11 +234,11 @@ size_t front_car_bodies_forward_dynamics_batch(size_t count, size_t stride, cons
     const double t30 = fabs(m_2);
     const double t27 = fabs(Theta_2);
     const double t28 = fabs(Theta_1);
-    const double t31 = t30 * t29;
+    const double t31 = t29 * t30;
     const double t32 = t29 * t31;
     const double t33 = t28 + t32;
     const double t35 = fabs(m_1);
-    const double t36 = t35 + t30;
+    const double t36 = t30 + t35;
     double copy[8][LANES]; /* the last states, the first of them repeated */
     double result[4][LANES];
     double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -381,11 +381,11 @@ size_t front_car_bodies_forward_dynamics_batch(size_t count, size_t stride, cons
             const double t37 = t36 * t13;
             const double t38 = t34 + t37;
             const double t39 = t27 * t38;
-            const double t40 = t39 * 3.552713678800501e-15;
+            const double t40 = t39 * 8.881784197001252e-16;
             const double t14 = t7 + t13;
             const double t15 = t8 * t8;
             const double t16 = 1.0 + t15;
-            const double t17 = t16 * 1.262177448353619e-29;
+            const double t17 = t16 * 7.888609052210118e-31;
             const double t18 = Theta_1 * t7;
             const double t20 = t4 * t19;
             const double t21 = m_2 + t20;
@@ -462,11 +462,11 @@ size_t front_car_bodies_multipliers_batch(size_t count, size_t stride, const dou
     const double t30 = fabs(m_2);
     const double t27 = fabs(Theta_2);
     const double t28 = fabs(Theta_1);
-    const double t31 = t30 * t29;
+    const double t31 = t29 * t30;
     const double t32 = t29 * t31;
     const double t33 = t28 + t32;
     const double t35 = fabs(m_1);
-    const double t36 = t35 + t30;
+    const double t36 = t30 + t35;
     const double t42 = L * Theta_2;
     const double t55 = L * m_2;
     const double t74 = L * t55;
@@ -521,11 +521,11 @@ size_t front_car_bodies_multipliers_batch(size_t count, size_t stride, const dou
             const double t37 = t36 * t13;
             const double t38 = t34 + t37;
             const double t39 = t27 * t38;
-            const double t40 = t39 * 3.552713678800501e-15;
+            const double t40 = t39 * 8.881784197001252e-16;
             const double t14 = t7 + t13;
             const double t15 = t8 * t8;
             const double t16 = 1.0 + t15;
-            const double t17 = t16 * 1.262177448353619e-29;
+            const double t17 = t16 * 7.888609052210118e-31;
             const double t19 = m_1 * t4;
             const double t18 = Theta_1 * t7;
             const double t20 = t4 * t19;

@@ -221,11 +221,11 @@ size_t front_car_bodies_forward_dynamics_batch_f(size_t count, size_t stride, co
     const float t30 = fabsf(m_2);
     const float t27 = fabsf(Theta_2);
     const float t28 = fabsf(Theta_1);
-    const float t31 = t30 * t29;
+    const float t31 = t29 * t30;
     const float t32 = t29 * t31;
     const float t33 = t28 + t32;
     const float t35 = fabsf(m_1);
-    const float t36 = t35 + t30;
+    const float t36 = t30 + t35;
     float copy[8][LANES]; /* the last states, the first of them repeated */
     float result[4][LANES];
     float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -368,11 +368,11 @@ size_t front_car_bodies_forward_dynamics_batch_f(size_t count, size_t stride, co
             const float t37 = t36 * t13;
             const float t38 = t34 + t37;
             const float t39 = t27 * t38;
-            const float t40 = t39 * 1.9073486e-06f;
+            const float t40 = t39 * 4.7683716e-07f;
             const float t14 = t7 + t13;
             const float t15 = t8 * t8;
             const float t16 = 1.0f + t15;
-            const float t17 = t16 * 3.637979e-12f;
+            const float t17 = t16 * 2.2737368e-13f;
             const float t18 = Theta_1 * t7;
             const float t20 = t4 * t19;
             const float t21 = m_2 + t20;
@@ -449,11 +449,11 @@ size_t front_car_bodies_multipliers_batch_f(size_t count, size_t stride, const f
     const float t30 = fabsf(m_2);
     const float t27 = fabsf(Theta_2);
     const float t28 = fabsf(Theta_1);
-    const float t31 = t30 * t29;
+    const float t31 = t29 * t30;
     const float t32 = t29 * t31;
     const float t33 = t28 + t32;
     const float t35 = fabsf(m_1);
-    const float t36 = t35 + t30;
+    const float t36 = t30 + t35;
     const float t42 = L * Theta_2;
     const float t55 = L * m_2;
     const float t74 = L * t55;
@@ -508,11 +508,11 @@ size_t front_car_bodies_multipliers_batch_f(size_t count, size_t stride, const f
             const float t37 = t36 * t13;
             const float t38 = t34 + t37;
             const float t39 = t27 * t38;
-            const float t40 = t39 * 1.9073486e-06f;
+            const float t40 = t39 * 4.7683716e-07f;
             const float t14 = t7 + t13;
             const float t15 = t8 * t8;
             const float t16 = 1.0f + t15;
-            const float t17 = t16 * 3.637979e-12f;
+            const float t17 = t16 * 2.2737368e-13f;
             const float t19 = m_1 * t4;
             const float t18 = Theta_1 * t7;
             const float t20 = t4 * t19;

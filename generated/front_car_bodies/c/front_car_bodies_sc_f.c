@@ -211,20 +211,20 @@ front_car_bodies_status front_car_bodies_forward_dynamics_sc_f(const front_car_b
     const float t30 = fabsf(m_2);
     const float t27 = fabsf(Theta_2);
     const float t28 = fabsf(Theta_1);
-    const float t31 = t30 * t29;
+    const float t31 = t29 * t30;
     const float t32 = t29 * t31;
     const float t33 = t28 + t32;
     const float t34 = t7 * t33;
     const float t35 = fabsf(m_1);
-    const float t36 = t35 + t30;
+    const float t36 = t30 + t35;
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_BODIES_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_BODIES_CONSTRAINT_RANK;
     }
@@ -279,21 +279,21 @@ front_car_bodies_status front_car_bodies_multipliers_sc_f(const front_car_bodies
     const float t27 = fabsf(Theta_2);
     const float Theta_1 = p->Theta_1;
     const float t28 = fabsf(Theta_1);
-    const float t31 = t30 * t29;
+    const float t31 = t29 * t30;
     const float t32 = t29 * t31;
     const float t33 = t28 + t32;
     const float t34 = t7 * t33;
     const float m_1 = p->m_1;
     const float t35 = fabsf(m_1);
-    const float t36 = t35 + t30;
+    const float t36 = t30 + t35;
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_BODIES_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_BODIES_CONSTRAINT_RANK;
     }

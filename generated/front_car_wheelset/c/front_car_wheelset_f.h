@@ -32,11 +32,11 @@
  * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 1      5      2      0      2      0
  * projected_mass_matrix                12     41      5      0      2      0
- * projected_coriolis_matrix            79    186      5      0      2      0
+ * projected_coriolis_matrix            63    135     10      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   6     11      2      0      2      0
- * minimal_coriolis_matrix              17     41      2      0      2      0
+ * minimal_coriolis_matrix              17     40      2      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
@@ -49,7 +49,7 @@
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                        12     28      2      0      2      0
  * forward_dynamics                     38     86      1      0      2      0
- * multipliers                          42     88      1      0      2      0
+ * multipliers                          40     88      1      0      2      0
  * energy                                8     14      0      0      1      0
  * singularity                          12     23      5      1      2      0
  * (changes of sign are not counted)

@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[15];
+    double value[14];
 } front_car_wheelset_prepared;
 
 front_car_wheelset_prepared front_car_wheelset_prepare(const front_car_wheelset_params *p);
@@ -25,7 +25,7 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_prepared(const dou
 /* q̈: accelerations under the inputs, (15); 122 operations instead of 138 */
 front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_prepared *p, double qdd[4]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 124 operations instead of 141 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 124 operations instead of 139 */
 front_car_wheelset_status front_car_wheelset_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus

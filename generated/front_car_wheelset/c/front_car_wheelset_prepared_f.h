@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[15];
+    float value[14];
 } front_car_wheelset_prepared_f;
 
 front_car_wheelset_prepared_f front_car_wheelset_prepare_f(const front_car_wheelset_params_f *p);
@@ -25,7 +25,7 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_prepared_f(const f
 /* q̈: accelerations under the inputs, (15); 122 operations instead of 138 */
 front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_wheelset_prepared_f *p, float qdd[4]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 124 operations instead of 141 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 124 operations instead of 139 */
 front_car_wheelset_status front_car_wheelset_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_wheelset_prepared_f *p, float lambda_B[2]);
 
 #ifdef __cplusplus

@@ -19,9 +19,9 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      53     83      3      0      5      0
- * forward_dynamics     357    517     17      3      6      0
- * multipliers          338    488     17      3      6      0
- * singularity           55     91     17      4      6      0
+ * forward_dynamics     357    516     17      3      6      3
+ * multipliers          338    487     17      3      6      3
+ * singularity           53     91     17      4      6      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -25,36 +25,36 @@
  * constraint_residual                  23      8      0      0      6      0
  * constraint_jacobian                   9     12      0      0      6      0
  * constraint_jacobian_dot              12     18      0      0      6      0
- * constraint_pseudoinverse            134    206     14      4      6      0
- * nullspace_projector                 105    172      4      4      6      0
- * nullspace_projector_dot             375    534     14      4      6      0
- * weighted_pseudoinverse              319    519      1      0      6      0
- * weighted_nullspace_projector        202    318     17      4      6      0
+ * constraint_pseudoinverse            134    202     14      4      6      0
+ * nullspace_projector                 105    168      4      4      6      0
+ * nullspace_projector_dot             375    530     14      4      6      0
+ * weighted_pseudoinverse              327    526      1      0      6      0
+ * weighted_nullspace_projector        207    320     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix             88    157      1      0      6      0
  * projected_control_pseudoinverse      37     92      3      0      6      0
  * orthogonal_complement                37     92      3      0      6      0
- * projected_mass_matrix               265    393      4      4      6      0
- * projected_coriolis_matrix           706    975     14      4      6      0
+ * projected_mass_matrix               265    389      4      4      6      0
+ * projected_coriolis_matrix           706    971     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                  73    128      1      0      6      0
- * minimal_coriolis_matrix             338    539      2      0      6      0
+ * minimal_coriolis_matrix             338    540      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                0      0      0      0      0      0
- * admissible_velocity                  92    135      4      4      6      0
- * admissible_acceleration             181    252      8      4      6      0
- * projected_configuration             219    242     16      8     12      0
+ * admissible_velocity                  92    131      4      4      6      0
+ * admissible_acceleration             181    248      8      4      6      0
+ * projected_configuration             217    234     16      8     12      0
  * inverse_dynamics                     42     71      4      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                 73    128      1      0      6      0
- * actuator_bias                       169    306      2      0      6      0
- * forward_dynamics                    331    462     18      3      6      0
- * multipliers                         312    438     18      3      6      0
+ * actuator_bias                       169    307      2      0      6      0
+ * forward_dynamics                    335    465     18      3      6      3
+ * multipliers                         316    441     18      3      6      3
  * energy                               20     31      0      0      3      0
- * singularity                          55     90     17      4      6      0
+ * singularity                          53     90     17      4      6      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -296,7 +296,7 @@ void eva_constraint_jacobian_dot(void) {
 
 void eva_constraint_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t119, t196, t44, t78, t125, t191. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t129, t192, t47, t88, t135, t187. */
 void eva_constraint_pseudoinverse(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -328,7 +328,7 @@ void eva_constraint_pseudoinverse(void) {
 
 void eva_nullspace_projector(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t118, t170. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t128, t166. */
 void eva_nullspace_projector(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -360,7 +360,7 @@ void eva_nullspace_projector(void) {
 
 void eva_nullspace_projector_dot(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t119, t195, t44, t78, t125, t191. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t129, t191, t47, t88, t135, t187. */
 void eva_nullspace_projector_dot(void) {
     double q[6];
     double qd[6];
@@ -431,7 +431,7 @@ void eva_weighted_pseudoinverse(void) {
 
 void eva_weighted_nullspace_projector(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t130, t183, t284, t416. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t140, t179, t280, t422. */
 void eva_weighted_nullspace_projector(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -590,7 +590,7 @@ void eva_orthogonal_complement(void) {
 
 void eva_projected_mass_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t130, t185. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t140, t181. */
 void eva_projected_mass_matrix(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -622,7 +622,7 @@ void eva_projected_mass_matrix(void) {
 
 void eva_projected_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t83, t131, t186, t50, t89, t140, t182. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t141, t182, t56, t99, t150, t178. */
 void eva_projected_coriolis_matrix(void) {
     double q[6];
     double qd[6];
@@ -901,7 +901,7 @@ void eva_minimal_control_matrix(void) {
 
 void eva_admissible_velocity(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t118, t170. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t128, t166. */
 void eva_admissible_velocity(void) {
     double q[6];
     double qd[6];
@@ -940,7 +940,7 @@ void eva_admissible_velocity(void) {
 
 void eva_admissible_acceleration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t74, t119, t203, t44, t78, t125, t205. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t129, t199, t47, t88, t135, t201. */
 void eva_admissible_acceleration(void) {
     double q[6];
     double qd[6];
@@ -986,7 +986,7 @@ void eva_admissible_acceleration(void) {
 
 void eva_projected_configuration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t75, t120, t44, t79, t126, t176, t215, t305, t340, t389, t310, t344, t395, t441, t480. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t88, t132, t47, t92, t138, t170, t209, t292, t339, t393, t298, t348, t399, t431, t470. */
 void eva_projected_configuration(void) {
     double q[6];
     rapkm_two_drives_params p;
@@ -1218,7 +1218,7 @@ void eva_actuator_bias(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t225, t234, t257, t209, t289, t345, t300, t346, t421, t415. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t227, t236, t261, t209, t293, t351, t304, t352, t429, t423. */
 void eva_forward_dynamics(void) {
     double q[6];
     double qd[6];
@@ -1260,7 +1260,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t45, t80, t149, t225, t234, t257, t300, t289, t209, t346, t345, t421, t415. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t227, t236, t261, t304, t293, t209, t352, t351, t429, t423. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];

@@ -437,7 +437,7 @@ rear_car_status rear_car_constraint_pseudoinverse(const double q[4], const rear_
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -515,7 +515,7 @@ rear_car_status rear_car_nullspace_projector(const double q[4], const rear_car_p
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -587,7 +587,7 @@ rear_car_status rear_car_nullspace_projector_dot(const double q[4], const double
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -710,7 +710,7 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -740,7 +740,7 @@ rear_car_status rear_car_weighted_pseudoinverse(const double q[4], const rear_ca
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     if (REAR_CAR_RARELY(!(t26 > t40))) {
         return REAR_CAR_MASS_RANK;
     }
@@ -833,7 +833,7 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -863,7 +863,7 @@ rear_car_status rear_car_weighted_nullspace_projector(const double q[4], const r
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     if (REAR_CAR_RARELY(!(t26 > t40))) {
         return REAR_CAR_MASS_RANK;
     }
@@ -997,7 +997,7 @@ rear_car_status rear_car_projected_control_matrix(const double q[4], const rear_
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1044,17 +1044,18 @@ rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], cons
     const double t7 = L * t6;
     const double t8 = t7 * t7;
     const double t9 = 1.0 + t8;
-    const double t10 = t9 * 1.262177448353619e-29;
+    const double t10 = t9 * 7.888609052210118e-31;
     const double t5 = sine[1];
     if (REAR_CAR_RARELY(!(t8 > t10))) {
         const double t11 = t5 * t5;
-        if (!(t11 > t10)) {
+        const double t12 = t9 * 7.888609052210118e-31;
+        if (!(t11 > t12)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
-    const double t12 = t5 / t7;
-    double rest = t12 - t12;
+    const double t13 = t5 / t7;
+    double rest = t13 - t13;
     const double t4 = cosine[0];
     const double t3 = sine[0];
     rest *= t4;
@@ -1064,7 +1065,7 @@ rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], cons
     }
     M_tilde_pinv[0] = t4;
     M_tilde_pinv[1] = t3;
-    M_tilde_pinv[2] = t12;
+    M_tilde_pinv[2] = t13;
     M_tilde_pinv[3] = 0.0;
     M_tilde_pinv[4] = 0.0;
     M_tilde_pinv[5] = 0.0;
@@ -1096,7 +1097,7 @@ rear_car_status rear_car_orthogonal_complement(const double q[4], const rear_car
     const double t9 = t8 * t8;
     const double t10 = t7 * t7;
     const double t11 = 1.0 + t10;
-    const double t12 = t11 * 1.262177448353619e-29;
+    const double t12 = t11 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t9 > t12))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1150,7 +1151,7 @@ rear_car_status rear_car_projected_mass_matrix(const double q[4], const rear_car
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1242,281 +1243,245 @@ rear_car_status rear_car_projected_coriolis_matrix(const double q[4], const doub
     const double L = p->L;
     const double t6 = cosine[1];
     const double t8 = L * t6;
-    const double t15 = t8 * t8;
     const double t3 = sine[0];
     const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
     const double t4 = cosine[0];
     const double t12 = t4 * t8;
     const double t13 = t12 * t12;
+    const double t11 = t7 + t10;
     const double t14 = t11 + t13;
-    const double theta_dot = qd[2];
-    const double t34 = theta_dot * t5;
-    const double x_dot = qd[0];
-    const double t35 = x_dot * t4;
-    const double y_dot = qd[1];
-    const double t36 = y_dot * t3;
-    const double t37 = t35 + t36;
-    const double t38 = t8 * t37;
-    const double t39 = t34 + t38;
-    const double t19 = L * L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double t27 = m_1 + m_2;
-    const double phi_dot = qd[3];
-    const double t30 = phi_dot * t4;
-    const double t31 = t5 * t30;
-    const double t32 = t14 * t31;
-    const double t25 = m_2 * t19;
-    const double Theta_1 = p->Theta_1;
-    const double t26 = Theta_1 + t25;
-    const double t28 = 2.0 * t27;
-    const double t29 = t26 - t28;
-    const double t33 = t29 * t32;
-    const double t42 = m_2 * t4;
-    const double t44 = t6 * t6;
-    const double t45 = t44 + (-2.0);
-    const double t47 = t7 * t19;
-    const double t50 = t3 * t6;
-    const double t51 = t5 * t50;
-    const double t52 = t27 * t19;
-    const double t56 = t3 * t5;
-    const double t57 = t27 + t26;
-    const double t58 = t56 * t57;
-    const double t67 = t5 * t26;
-    const double t68 = t14 * t30;
-    const double t69 = 2.0 - t44;
-    const double t76 = t26 * t39;
-    const double t77 = t56 * t76;
-    const double t40 = t7 + t15;
-    const double t41 = 1.0 - t40;
-    const double t43 = t41 * t42;
-    const double t46 = t14 + t45;
-    const double t48 = t46 + t47;
-    const double t49 = t48 * t42;
-    const double t53 = t51 * t52;
-    const double t54 = t49 - t53;
-    const double t55 = t6 * t54;
-    const double t59 = t5 * t58;
-    const double t60 = t5 * t59;
-    const double t61 = t55 - t60;
-    const double t62 = t6 * t61;
-    const double t63 = t43 + t62;
-    const double t64 = t39 * t63;
-    const double t65 = t33 + t64;
-    const double t66 = t19 * t65;
-    const double t70 = t50 * t69;
-    const double t71 = t39 * t70;
-    const double t72 = t68 + t71;
-    const double t73 = t67 * t72;
-    const double t74 = t66 + t73;
-    const double t75 = t6 * t74;
-    const double t78 = t75 - t77;
-    const double t79 = t6 * t78;
-    const double t80 = t26 * t32;
-    const double t81 = t79 - t80;
-    const double t120 = t14 * t67;
-    const double t161 = t5 * t31;
-    const double t18 = t4 * t6;
-    const double t104 = (-2.0) + t47;
-    const double t92 = t7 * t14;
-    const double t93 = 1.0 - t92;
-    const double t138 = t69 * t76;
-    const double t139 = t51 * t138;
-    const double t140 = t93 * t42;
-    const double t141 = m_2 * t18;
-    const double t142 = 1.0 - t19;
-    const double t143 = t27 * t142;
-    const double t144 = t26 + t143;
-    const double t145 = t56 * t144;
-    const double t146 = t141 + t145;
-    const double t147 = t6 * t146;
-    const double t148 = t104 * t42;
-    const double t149 = t147 + t148;
-    const double t150 = t6 * t149;
-    const double t151 = t150 - t58;
-    const double t152 = t6 * t151;
-    const double t153 = t140 + t152;
-    const double t154 = t39 * t153;
-    const double t155 = t33 + t154;
-    const double t156 = t19 * t155;
-    const double t157 = t139 + t156;
-    const double t158 = t6 * t157;
-    const double t159 = t158 - t77;
-    const double t160 = t6 * t159;
-    const double t162 = t161 * t120;
-    const double t163 = t160 - t162;
-    const double t90 = t14 * t29;
-    const double t94 = m_2 * t93;
-    const double t169 = t6 * t44;
-    const double t170 = t6 * t169;
-    const double t171 = 3.0 * t7;
-    const double t172 = t170 + t171;
-    const double t173 = t172 * t39;
-    const double t83 = t4 * t5;
-    const double t85 = t5 * t18;
-    const double t105 = m_2 * t104;
-    const double t126 = t6 * t14;
-    const double t168 = 2.0 * t68;
-    const double t174 = t3 * t173;
-    const double t175 = t30 * t126;
-    const double t176 = t174 - t175;
-    const double t177 = t6 * t176;
-    const double t178 = t168 + t177;
-    const double t179 = t26 * t178;
-    const double t180 = t161 * t90;
-    const double t181 = t83 * t94;
-    const double t182 = m_2 * t85;
-    const double t183 = t26 * t69;
-    const double t184 = t69 - t47;
-    const double t185 = t27 * t184;
-    const double t186 = t183 + t185;
-    const double t187 = t3 * t186;
-    const double t188 = t182 + t187;
-    const double t189 = t6 * t188;
-    const double t190 = t83 * t105;
-    const double t191 = t189 + t190;
-    const double t192 = t6 * t191;
-    const double t193 = t3 * t57;
-    const double t194 = t192 - t193;
-    const double t195 = t6 * t194;
-    const double t196 = t181 + t195;
-    const double t197 = t39 * t196;
-    const double t198 = t180 + t197;
-    const double t199 = t19 * t198;
-    const double t200 = t179 + t199;
-    const double t201 = t6 * t200;
-    const double t202 = t3 * t76;
-    const double t203 = t201 - t202;
-    const double t204 = t6 * t203;
-    const double t205 = t26 * t68;
-    const double t206 = t204 - t205;
-    const double t88 = phi_dot * t3;
-    const double t89 = t5 * t88;
-    const double t119 = t5 * t89;
-    const double t209 = t14 * t88;
-    const double t208 = t4 * t76;
-    const double t210 = 2.0 * t209;
-    const double t211 = t4 * t173;
-    const double t212 = t88 * t126;
-    const double t213 = t211 + t212;
-    const double t214 = t6 * t213;
-    const double t215 = t210 - t214;
-    const double t216 = t26 * t215;
-    const double t217 = t119 * t90;
-    const double t218 = t56 * t94;
-    const double t219 = t4 * t57;
-    const double t220 = m_2 * t51;
-    const double t221 = t26 * t45;
-    const double t222 = t44 + t104;
-    const double t223 = t27 * t222;
-    const double t224 = t221 + t223;
-    const double t225 = t4 * t224;
-    const double t226 = t220 + t225;
-    const double t227 = t6 * t226;
-    const double t228 = t56 * t105;
-    const double t229 = t227 + t228;
-    const double t230 = t6 * t229;
-    const double t231 = t219 + t230;
-    const double t232 = t6 * t231;
-    const double t233 = t218 + t232;
-    const double t234 = t39 * t233;
-    const double t235 = t217 + t234;
-    const double t236 = t19 * t235;
-    const double t237 = t216 + t236;
-    const double t238 = t6 * t237;
-    const double t239 = t208 + t238;
-    const double t240 = t6 * t239;
-    const double t241 = t26 * t209;
-    const double t242 = t240 - t241;
-    const double t84 = t83 * t76;
-    const double t86 = t45 * t76;
-    const double t87 = t85 * t86;
-    const double t91 = t89 * t90;
-    const double t95 = t3 * t94;
-    const double t96 = t83 * t57;
-    const double t97 = m_2 * t50;
-    const double t98 = (-1.0) + t19;
-    const double t99 = t27 * t98;
-    const double t100 = t99 - t26;
-    const double t101 = t83 * t100;
-    const double t102 = t97 + t101;
-    const double t103 = t6 * t102;
-    const double t106 = t3 * t105;
-    const double t107 = t103 + t106;
-    const double t108 = t6 * t107;
-    const double t109 = t96 + t108;
-    const double t110 = t6 * t109;
-    const double t111 = t95 + t110;
-    const double t112 = t39 * t111;
-    const double t113 = t91 + t112;
-    const double t114 = t19 * t113;
-    const double t115 = t87 + t114;
-    const double t116 = t6 * t115;
-    const double t117 = t84 + t116;
-    const double t118 = t6 * t117;
-    const double t121 = t119 * t120;
-    const double t122 = t118 - t121;
-    const double t127 = t44 * t52;
-    const double t128 = 2.0 * t26;
-    const double t129 = t128 - t27;
-    const double t130 = t5 * t129;
-    const double t131 = t5 * t130;
-    const double t132 = t127 + t131;
-    const double t133 = phi_dot * t132;
+    const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t20 = t14 * t14;
-    const double t21 = t14 * t20;
-    const double t22 = t14 * t21;
-    const double t23 = t19 / t22;
-    const double t134 = t126 * t133;
-    const double t244 = t23 * t126;
-    const double t245 = t133 * t244;
-    const double t246 = t5 * t245;
-    double rest = t246 - t246;
-    const double t24 = t18 * t23;
-    const double t82 = t24 * t81;
-    rest *= t82;
-    const double t123 = t24 * t122;
-    rest *= t123;
-    const double t137 = t50 * t23;
-    const double t164 = t137 * t163;
-    double term = t164 - t164;
-    const double t165 = t137 * t122;
-    term *= t165;
-    const double t124 = L * t19;
-    const double t125 = t124 / t22;
-    const double t135 = t125 * t134;
-    const double t136 = t18 * t135;
-    term *= t136;
+    const double t24 = L * L;
+    const double t25 = t6 * t24;
+    const double t26 = t6 * t25;
+    const double t27 = t4 * t26;
+    const double t49 = t3 * t26;
+    const double t18 = 1.0 / t14;
+    const double t90 = t7 * t18;
+    const double t19 = t5 * t18;
+    const double t20 = t12 * t19;
+    const double theta_dot = qd[2];
+    const double t28 = theta_dot * t5;
+    const double x_dot = qd[0];
+    const double t29 = x_dot * t4;
+    const double y_dot = qd[1];
+    const double t30 = y_dot * t3;
+    const double t31 = t29 + t30;
+    const double t32 = t8 * t31;
+    const double t33 = t28 + t32;
+    const double t34 = t19 * t33;
+    const double phi_dot = qd[3];
+    const double t35 = phi_dot + t34;
+    const double t63 = t9 * t19;
+    const double t92 = t8 * t5;
+    const double t39 = phi_dot * t5;
+    const double t40 = L * t39;
+    const double t36 = t27 * t35;
+    const double t37 = t36 / t14;
+    const double t38 = t6 * t37;
+    const double t41 = t40 * t20;
+    const double t42 = t38 + t41;
+    const double t60 = t49 * t35;
+    const double t61 = t60 / t14;
+    const double t62 = t6 * t61;
+    const double t64 = t40 * t63;
+    const double t65 = t62 + t64;
+    const double t91 = t90 * t40;
+    const double t93 = t92 * t35;
+    const double t94 = t93 / t14;
+    const double t95 = t6 * t94;
+    const double t96 = t91 + t95;
+    const double t45 = t5 * t33;
+    const double t98 = t92 * t45;
+    const double t46 = t27 * t45;
+    const double t67 = t45 * t49;
+    const double t47 = t46 / t14;
+    const double t48 = t47 / t14;
+    const double t68 = t67 / t14;
+    const double t69 = t68 / t14;
+    const double t99 = t98 / t14;
+    const double t100 = t99 / t14;
+    const double t50 = t4 * t6;
+    const double t51 = t3 * t5;
+    const double t52 = t50 - t51;
+    const double t53 = t5 * t52;
+    const double t54 = t49 - t53;
+    const double t55 = t18 * t54;
+    const double t85 = t8 * t18;
+    const double t43 = t4 * t19;
+    const double t86 = t6 * t85;
+    const double t44 = t42 * t43;
+    const double t56 = t48 * t55;
+    const double t57 = t44 + t56;
+    const double t87 = t48 * t86;
+    const double t88 = t85 * t42;
+    const double t89 = t87 - t88;
+    const double t97 = t43 * t96;
+    const double t101 = t100 * t55;
+    const double t102 = t97 + t101;
+    const double t103 = t89 + t102;
+    const double t66 = t43 * t65;
+    const double t72 = t3 * t6;
+    const double t73 = t4 * t5;
+    const double t74 = t72 + t73;
+    const double t75 = t5 * t74;
+    const double t76 = t27 + t75;
+    const double t77 = t18 * t76;
+    const double t70 = t69 * t55;
+    const double t71 = t66 + t70;
+    const double t78 = t48 * t77;
+    const double t79 = t66 - t78;
+    const double t80 = t71 + t79;
+    const double t130 = t3 * t19;
+    const double t131 = t65 * t130;
+    const double t132 = t69 * t77;
+    const double t133 = t131 - t132;
+    const double t136 = t69 * t86;
+    const double t137 = t85 * t65;
+    const double t138 = t136 - t137;
+    const double t139 = t96 * t130;
+    const double t140 = t100 * t77;
+    const double t141 = t139 - t140;
+    const double t142 = t138 + t141;
+    const double t158 = t100 * t86;
+    const double t159 = t85 * t96;
+    const double t160 = t158 - t159;
+    const double m_2 = p->m_2;
+    const double t21 = L * m_2;
+    const double t59 = t4 * t21;
+    const double t108 = t3 * t21;
+    const double t114 = t59 * t34;
+    const double t149 = t108 * t34;
+    const double t83 = m_2 * t24;
+    const double Theta_1 = p->Theta_1;
+    const double t84 = Theta_1 + t83;
+    const double t109 = t108 * t103;
+    const double t151 = t59 * t142;
+    const double t175 = 2.0 * t84;
+    const double t174 = t109 - t151;
+    const double t176 = t175 * t160;
+    const double t177 = t174 - t176;
+    const double m_1 = p->m_1;
+    const double t110 = m_1 + m_2;
+    const double t111 = 2.0 * t110;
+    const double t112 = t111 * t57;
+    const double t113 = t109 - t112;
+    const double t115 = t20 * t114;
+    const double t116 = t113 - t115;
+    const double t150 = t63 * t149;
+    const double t152 = t111 * t133;
+    const double t153 = t151 + t152;
+    const double t154 = t150 + t153;
+    const double t22 = 2.0 * t21;
+    const double t23 = t3 * t22;
+    const double t129 = t4 * t22;
+    const double t58 = t23 * t57;
+    const double t81 = t59 * t80;
+    const double t82 = t58 - t81;
+    const double t104 = t84 * t103;
+    const double t105 = t82 - t104;
+    const double t128 = t108 * t80;
+    const double t134 = t129 * t133;
+    const double t135 = t128 - t134;
+    const double t143 = t84 * t142;
+    const double t144 = t135 - t143;
+    const double t167 = t90 * t149;
+    const double t168 = t129 * t160;
+    const double t169 = t110 * t142;
+    const double t170 = t168 + t169;
+    const double t171 = t167 + t170;
+    const double t161 = t23 * t160;
+    const double t162 = t110 * t103;
+    const double t163 = t161 - t162;
+    const double t164 = t90 * t114;
+    const double t165 = t163 - t164;
+    const double t121 = t63 * t114;
+    const double t122 = t110 * t80;
+    const double t123 = t121 + t122;
+    const double t120 = t59 * t103;
+    const double t124 = t120 + t123;
+    const double t146 = t108 * t142;
+    const double t147 = t146 - t123;
+    const double t118 = t9 * t12;
+    const double t107 = t13 * t18;
+    const double t119 = t18 * t118;
+    const double t182 = t10 * t18;
+    const double t106 = t20 * t105;
+    const double t117 = t107 * t116;
+    const double t125 = t119 * t124;
+    const double t126 = t117 - t125;
+    const double t127 = t106 + t126;
+    double rest = t127 - t127;
+    const double t180 = t63 * t105;
+    const double t181 = t119 * t116;
+    const double t183 = t182 * t124;
+    const double t184 = t181 - t183;
+    const double t185 = t180 + t184;
+    rest *= t185;
+    const double t196 = t90 * t105;
+    const double t197 = t20 * t116;
+    const double t198 = t63 * t124;
+    const double t199 = t197 - t198;
+    const double t200 = t196 + t199;
+    rest *= t200;
+    const double t145 = t20 * t144;
+    const double t148 = t107 * t147;
+    const double t155 = t119 * t154;
+    const double t156 = t148 - t155;
+    const double t157 = t145 + t156;
+    double term = t157 - t157;
+    const double t186 = t63 * t144;
+    const double t187 = t119 * t147;
+    const double t188 = t182 * t154;
+    const double t189 = t187 - t188;
+    const double t190 = t186 + t189;
+    term *= t190;
+    const double t201 = t90 * t144;
+    const double t202 = t20 * t147;
+    const double t203 = t63 * t154;
+    const double t204 = t202 - t203;
+    const double t205 = t201 + t204;
+    term *= t205;
     rest += term;
-    const double t166 = t50 * t135;
-    term = t166 - t166;
-    const double t167 = L / t22;
-    const double t207 = t167 * t206;
-    term *= t207;
-    const double t243 = t167 * t242;
-    term *= t243;
+    const double t166 = t107 * t165;
+    const double t172 = t119 * t171;
+    const double t173 = t166 - t172;
+    const double t178 = t20 * t177;
+    const double t179 = t173 + t178;
+    term = t179 - t179;
+    const double t191 = t119 * t165;
+    const double t192 = t182 * t171;
+    const double t193 = t191 - t192;
+    const double t194 = t63 * t177;
+    const double t195 = t193 + t194;
+    term *= t195;
+    const double t206 = t20 * t165;
+    const double t207 = t63 * t171;
+    const double t208 = t206 - t207;
+    const double t209 = t90 * t177;
+    const double t210 = t208 + t209;
+    term *= t210;
     rest += term;
     if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    C_tilde[0] = t82;
-    C_tilde[1] = t123;
-    C_tilde[2] = t136;
+    C_tilde[0] = t127;
+    C_tilde[1] = t157;
+    C_tilde[2] = t179;
     C_tilde[3] = 0.0;
-    C_tilde[4] = t164;
-    C_tilde[5] = t165;
-    C_tilde[6] = t166;
+    C_tilde[4] = t185;
+    C_tilde[5] = t190;
+    C_tilde[6] = t195;
     C_tilde[7] = 0.0;
-    C_tilde[8] = t207;
-    C_tilde[9] = t243;
-    C_tilde[10] = t246;
+    C_tilde[8] = t200;
+    C_tilde[9] = t205;
+    C_tilde[10] = t210;
     C_tilde[11] = 0.0;
     C_tilde[12] = 0.0;
     C_tilde[13] = 0.0;
@@ -1569,7 +1534,7 @@ rear_car_status rear_car_minimal_mass_matrix(const double q[4], const rear_car_p
     const double t9 = t8 * t8;
     const double t10 = t7 * t7;
     const double t11 = 1.0 + t10;
-    const double t12 = t11 * 1.262177448353619e-29;
+    const double t12 = t11 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t9 > t12))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1629,48 +1594,48 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    if (REAR_CAR_RARELY(!(t13 > t17))) {
+    const double t18 = t16 * 7.888609052210118e-31;
+    if (REAR_CAR_RARELY(!(t13 > t18))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = L * L;
+    const double t19 = L * L;
     const double m_2 = p->m_2;
-    const double t19 = m_2 * t18;
+    const double t20 = m_2 * t19;
     const double Theta_1 = p->Theta_1;
-    const double t20 = Theta_1 + t19;
+    const double t21 = Theta_1 + t20;
     const double phi_dot = qd[3];
-    const double t21 = phi_dot * t6;
-    const double t22 = t3 * t21;
-    const double t23 = t20 * t22;
+    const double t22 = phi_dot * t6;
+    const double t23 = t3 * t22;
+    const double t24 = t21 * t23;
     const double theta_dot = qd[2];
-    const double t24 = theta_dot * t5;
-    const double t25 = t20 * t24;
-    const double t26 = (-1.0) + t18;
-    const double t27 = t26 * t23;
-    const double t28 = t4 * t4;
-    const double t29 = t28 + (-2.0);
-    const double t30 = t20 * t29;
+    const double t25 = theta_dot * t5;
+    const double t26 = t21 * t25;
+    const double t27 = (-1.0) + t19;
+    const double t28 = t27 * t24;
+    const double t29 = t4 * t25;
+    const double t30 = t4 * t4;
+    const double t31 = t30 + (-2.0);
+    const double t32 = t21 * t31;
     const double m_1 = p->m_1;
-    const double t31 = m_1 + m_2;
-    const double t32 = t31 * t18;
-    const double t33 = t28 * t32;
-    const double t34 = t31 + t20;
-    const double t35 = t3 * t34;
-    const double t36 = t3 * t35;
-    const double t37 = t33 + t36;
-    const double t38 = t18 * t37;
-    const double t39 = t30 + t38;
-    const double t40 = t4 * t24;
-    const double t41 = t39 * t40;
-    const double t42 = t27 + t41;
+    const double t33 = m_1 + m_2;
+    const double t34 = t33 * t19;
+    const double t35 = t30 * t34;
+    const double t36 = t33 + t21;
+    const double t37 = t7 * t36;
+    const double t38 = t35 + t37;
+    const double t39 = t19 * t38;
+    const double t40 = t32 + t39;
+    const double t41 = t29 * t40;
+    const double t42 = t28 + t41;
     const double t43 = t4 * t42;
-    const double t44 = t25 + t43;
+    const double t44 = t26 + t43;
     const double t45 = t4 * t44;
-    const double t46 = t23 + t45;
-    const double t47 = t6 * t18;
+    const double t46 = t24 + t45;
+    const double t47 = t6 * t19;
     const double t48 = t6 * t47;
     const double t49 = t6 * t48;
     const double t50 = t4 * t49;
@@ -1729,7 +1694,7 @@ rear_car_status rear_car_minimal_control_matrix(const double q[4], const rear_ca
     const double t9 = t8 * t8;
     const double t10 = t7 * t7;
     const double t11 = 1.0 + t10;
-    const double t12 = t11 * 1.262177448353619e-29;
+    const double t12 = t11 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t9 > t12))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1775,7 +1740,7 @@ rear_car_status rear_car_admissible_velocity(const double q[4], const double qd[
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1840,7 +1805,7 @@ rear_car_status rear_car_admissible_acceleration(const double q[4], const double
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -2073,32 +2038,33 @@ rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_
     const double t4 = L * t3;
     const double t5 = t4 * t4;
     const double t6 = 1.0 + t5;
-    const double t7 = t6 * 1.262177448353619e-29;
+    const double t7 = t6 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t5 > t7))) {
         const double t8 = t2 * t2;
-        if (!(t8 > t7)) {
+        const double t9 = t6 * 7.888609052210118e-31;
+        if (!(t8 > t9)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
     const double m_1 = p->m_1;
     const double m_2 = p->m_2;
-    const double t9 = m_1 + m_2;
-    const double t10 = t2 / t4;
-    const double t11 = L * L;
-    const double t12 = m_2 * t11;
+    const double t10 = m_1 + m_2;
+    const double t11 = t2 / t4;
+    const double t12 = L * L;
+    const double t13 = m_2 * t12;
     const double Theta_1 = p->Theta_1;
-    const double t13 = Theta_1 + t12;
-    const double t14 = t13 * t10;
-    const double t15 = t10 * t14;
-    const double t16 = t9 + t15;
-    double rest = t16 - t16;
+    const double t14 = Theta_1 + t13;
+    const double t15 = t14 * t11;
+    const double t16 = t11 * t15;
+    const double t17 = t10 + t16;
+    double rest = t17 - t17;
     const double Theta_2 = p->Theta_2;
     rest *= Theta_2;
     if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    G_nu[0] = t16;
+    G_nu[0] = t17;
     G_nu[1] = 0.0;
     G_nu[2] = 0.0;
     G_nu[3] = Theta_2;
@@ -2135,37 +2101,38 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    if (REAR_CAR_RARELY(!(t15 > t17))) {
+    const double t18 = t16 * 7.888609052210118e-31;
+    if (REAR_CAR_RARELY(!(t15 > t18))) {
         if (!(t7 > t17)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
-    const double t18 = L * L;
+    const double t19 = L * L;
     const double m_2 = p->m_2;
-    const double t19 = m_2 * t18;
+    const double t20 = m_2 * t19;
     const double Theta_1 = p->Theta_1;
-    const double t20 = Theta_1 + t19;
-    const double t21 = t4 * t15;
-    const double t22 = t20 / t21;
+    const double t21 = Theta_1 + t20;
+    const double t22 = t4 * t15;
+    const double t23 = t21 / t22;
     const double x_dot = qd[0];
-    const double t23 = x_dot * t6;
+    const double t24 = x_dot * t6;
     const double y_dot = qd[1];
-    const double t24 = y_dot * t5;
-    const double t25 = t23 + t24;
+    const double t25 = y_dot * t5;
+    const double t26 = t24 + t25;
     const double phi_dot = qd[3];
-    const double t26 = phi_dot * t3;
-    const double t27 = t25 * t26;
-    const double t28 = t22 * t27;
-    double rest = t28 - t28;
+    const double t27 = phi_dot * t3;
+    const double t28 = t26 * t27;
+    const double t29 = t23 * t28;
+    double rest = t29 - t29;
     if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    bias_nu[0] = t28;
+    bias_nu[0] = t29;
     bias_nu[1] = 0.0;
     return REAR_CAR_OK;
 }
@@ -2291,7 +2258,7 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t13 = t10 + t12;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     const double t7 = t3 * t3;
     const double t14 = t7 + t13;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
@@ -2310,7 +2277,7 @@ rear_car_status rear_car_forward_dynamics(const double q[4], const double qd[4],
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t18 = Theta_1 * t7;
     const double t19 = L * L;
     const double t21 = t4 * t20;
@@ -2371,7 +2338,7 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -2392,7 +2359,7 @@ rear_car_status rear_car_multipliers(const double q[4], const double qd[4], cons
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t20 = m_1 * t4;
     const double t18 = Theta_1 * t7;
     const double t19 = L * L;

@@ -424,7 +424,7 @@ rear_car_status rear_car_constraint_pseudoinverse_f(const float q[4], const rear
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -502,7 +502,7 @@ rear_car_status rear_car_nullspace_projector_f(const float q[4], const rear_car_
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -574,7 +574,7 @@ rear_car_status rear_car_nullspace_projector_dot_f(const float q[4], const float
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -697,7 +697,7 @@ rear_car_status rear_car_weighted_pseudoinverse_f(const float q[4], const rear_c
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -727,7 +727,7 @@ rear_car_status rear_car_weighted_pseudoinverse_f(const float q[4], const rear_c
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     if (REAR_CAR_RARELY_F(!(t26 > t40))) {
         return REAR_CAR_MASS_RANK;
     }
@@ -820,7 +820,7 @@ rear_car_status rear_car_weighted_nullspace_projector_f(const float q[4], const 
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -850,7 +850,7 @@ rear_car_status rear_car_weighted_nullspace_projector_f(const float q[4], const 
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     if (REAR_CAR_RARELY_F(!(t26 > t40))) {
         return REAR_CAR_MASS_RANK;
     }
@@ -984,7 +984,7 @@ rear_car_status rear_car_projected_control_matrix_f(const float q[4], const rear
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1031,17 +1031,18 @@ rear_car_status rear_car_projected_control_pseudoinverse_f(const float q[4], con
     const float t7 = L * t6;
     const float t8 = t7 * t7;
     const float t9 = 1.0f + t8;
-    const float t10 = t9 * 3.637979e-12f;
+    const float t10 = t9 * 2.2737368e-13f;
     const float t5 = sine[1];
     if (REAR_CAR_RARELY_F(!(t8 > t10))) {
         const float t11 = t5 * t5;
-        if (!(t11 > t10)) {
+        const float t12 = t9 * 2.2737368e-13f;
+        if (!(t11 > t12)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
-    const float t12 = t5 / t7;
-    float rest = t12 - t12;
+    const float t13 = t5 / t7;
+    float rest = t13 - t13;
     const float t4 = cosine[0];
     const float t3 = sine[0];
     rest *= t4;
@@ -1051,7 +1052,7 @@ rear_car_status rear_car_projected_control_pseudoinverse_f(const float q[4], con
     }
     M_tilde_pinv[0] = t4;
     M_tilde_pinv[1] = t3;
-    M_tilde_pinv[2] = t12;
+    M_tilde_pinv[2] = t13;
     M_tilde_pinv[3] = 0.0f;
     M_tilde_pinv[4] = 0.0f;
     M_tilde_pinv[5] = 0.0f;
@@ -1083,7 +1084,7 @@ rear_car_status rear_car_orthogonal_complement_f(const float q[4], const rear_ca
     const float t9 = t8 * t8;
     const float t10 = t7 * t7;
     const float t11 = 1.0f + t10;
-    const float t12 = t11 * 3.637979e-12f;
+    const float t12 = t11 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t9 > t12))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1137,7 +1138,7 @@ rear_car_status rear_car_projected_mass_matrix_f(const float q[4], const rear_ca
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1229,281 +1230,245 @@ rear_car_status rear_car_projected_coriolis_matrix_f(const float q[4], const flo
     const float L = p->L;
     const float t6 = cosine[1];
     const float t8 = L * t6;
-    const float t15 = t8 * t8;
     const float t3 = sine[0];
     const float t9 = t3 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
     const float t4 = cosine[0];
     const float t12 = t4 * t8;
     const float t13 = t12 * t12;
+    const float t11 = t7 + t10;
     const float t14 = t11 + t13;
-    const float theta_dot = qd[2];
-    const float t34 = theta_dot * t5;
-    const float x_dot = qd[0];
-    const float t35 = x_dot * t4;
-    const float y_dot = qd[1];
-    const float t36 = y_dot * t3;
-    const float t37 = t35 + t36;
-    const float t38 = t8 * t37;
-    const float t39 = t34 + t38;
-    const float t19 = L * L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float t27 = m_1 + m_2;
-    const float phi_dot = qd[3];
-    const float t30 = phi_dot * t4;
-    const float t31 = t5 * t30;
-    const float t32 = t14 * t31;
-    const float t25 = m_2 * t19;
-    const float Theta_1 = p->Theta_1;
-    const float t26 = Theta_1 + t25;
-    const float t28 = 2.0f * t27;
-    const float t29 = t26 - t28;
-    const float t33 = t29 * t32;
-    const float t42 = m_2 * t4;
-    const float t44 = t6 * t6;
-    const float t45 = t44 + (-2.0f);
-    const float t47 = t7 * t19;
-    const float t50 = t3 * t6;
-    const float t51 = t5 * t50;
-    const float t52 = t27 * t19;
-    const float t56 = t3 * t5;
-    const float t57 = t27 + t26;
-    const float t58 = t56 * t57;
-    const float t67 = t5 * t26;
-    const float t68 = t14 * t30;
-    const float t69 = 2.0f - t44;
-    const float t76 = t26 * t39;
-    const float t77 = t56 * t76;
-    const float t40 = t7 + t15;
-    const float t41 = 1.0f - t40;
-    const float t43 = t41 * t42;
-    const float t46 = t14 + t45;
-    const float t48 = t46 + t47;
-    const float t49 = t48 * t42;
-    const float t53 = t51 * t52;
-    const float t54 = t49 - t53;
-    const float t55 = t6 * t54;
-    const float t59 = t5 * t58;
-    const float t60 = t5 * t59;
-    const float t61 = t55 - t60;
-    const float t62 = t6 * t61;
-    const float t63 = t43 + t62;
-    const float t64 = t39 * t63;
-    const float t65 = t33 + t64;
-    const float t66 = t19 * t65;
-    const float t70 = t50 * t69;
-    const float t71 = t39 * t70;
-    const float t72 = t68 + t71;
-    const float t73 = t67 * t72;
-    const float t74 = t66 + t73;
-    const float t75 = t6 * t74;
-    const float t78 = t75 - t77;
-    const float t79 = t6 * t78;
-    const float t80 = t26 * t32;
-    const float t81 = t79 - t80;
-    const float t120 = t14 * t67;
-    const float t161 = t5 * t31;
-    const float t18 = t4 * t6;
-    const float t104 = (-2.0f) + t47;
-    const float t92 = t7 * t14;
-    const float t93 = 1.0f - t92;
-    const float t138 = t69 * t76;
-    const float t139 = t51 * t138;
-    const float t140 = t93 * t42;
-    const float t141 = m_2 * t18;
-    const float t142 = 1.0f - t19;
-    const float t143 = t27 * t142;
-    const float t144 = t26 + t143;
-    const float t145 = t56 * t144;
-    const float t146 = t141 + t145;
-    const float t147 = t6 * t146;
-    const float t148 = t104 * t42;
-    const float t149 = t147 + t148;
-    const float t150 = t6 * t149;
-    const float t151 = t150 - t58;
-    const float t152 = t6 * t151;
-    const float t153 = t140 + t152;
-    const float t154 = t39 * t153;
-    const float t155 = t33 + t154;
-    const float t156 = t19 * t155;
-    const float t157 = t139 + t156;
-    const float t158 = t6 * t157;
-    const float t159 = t158 - t77;
-    const float t160 = t6 * t159;
-    const float t162 = t161 * t120;
-    const float t163 = t160 - t162;
-    const float t90 = t14 * t29;
-    const float t94 = m_2 * t93;
-    const float t169 = t6 * t44;
-    const float t170 = t6 * t169;
-    const float t171 = 3.0f * t7;
-    const float t172 = t170 + t171;
-    const float t173 = t172 * t39;
-    const float t83 = t4 * t5;
-    const float t85 = t5 * t18;
-    const float t105 = m_2 * t104;
-    const float t126 = t6 * t14;
-    const float t168 = 2.0f * t68;
-    const float t174 = t3 * t173;
-    const float t175 = t30 * t126;
-    const float t176 = t174 - t175;
-    const float t177 = t6 * t176;
-    const float t178 = t168 + t177;
-    const float t179 = t26 * t178;
-    const float t180 = t161 * t90;
-    const float t181 = t83 * t94;
-    const float t182 = m_2 * t85;
-    const float t183 = t26 * t69;
-    const float t184 = t69 - t47;
-    const float t185 = t27 * t184;
-    const float t186 = t183 + t185;
-    const float t187 = t3 * t186;
-    const float t188 = t182 + t187;
-    const float t189 = t6 * t188;
-    const float t190 = t83 * t105;
-    const float t191 = t189 + t190;
-    const float t192 = t6 * t191;
-    const float t193 = t3 * t57;
-    const float t194 = t192 - t193;
-    const float t195 = t6 * t194;
-    const float t196 = t181 + t195;
-    const float t197 = t39 * t196;
-    const float t198 = t180 + t197;
-    const float t199 = t19 * t198;
-    const float t200 = t179 + t199;
-    const float t201 = t6 * t200;
-    const float t202 = t3 * t76;
-    const float t203 = t201 - t202;
-    const float t204 = t6 * t203;
-    const float t205 = t26 * t68;
-    const float t206 = t204 - t205;
-    const float t88 = phi_dot * t3;
-    const float t89 = t5 * t88;
-    const float t119 = t5 * t89;
-    const float t209 = t14 * t88;
-    const float t208 = t4 * t76;
-    const float t210 = 2.0f * t209;
-    const float t211 = t4 * t173;
-    const float t212 = t88 * t126;
-    const float t213 = t211 + t212;
-    const float t214 = t6 * t213;
-    const float t215 = t210 - t214;
-    const float t216 = t26 * t215;
-    const float t217 = t119 * t90;
-    const float t218 = t56 * t94;
-    const float t219 = t4 * t57;
-    const float t220 = m_2 * t51;
-    const float t221 = t26 * t45;
-    const float t222 = t44 + t104;
-    const float t223 = t27 * t222;
-    const float t224 = t221 + t223;
-    const float t225 = t4 * t224;
-    const float t226 = t220 + t225;
-    const float t227 = t6 * t226;
-    const float t228 = t56 * t105;
-    const float t229 = t227 + t228;
-    const float t230 = t6 * t229;
-    const float t231 = t219 + t230;
-    const float t232 = t6 * t231;
-    const float t233 = t218 + t232;
-    const float t234 = t39 * t233;
-    const float t235 = t217 + t234;
-    const float t236 = t19 * t235;
-    const float t237 = t216 + t236;
-    const float t238 = t6 * t237;
-    const float t239 = t208 + t238;
-    const float t240 = t6 * t239;
-    const float t241 = t26 * t209;
-    const float t242 = t240 - t241;
-    const float t84 = t83 * t76;
-    const float t86 = t45 * t76;
-    const float t87 = t85 * t86;
-    const float t91 = t89 * t90;
-    const float t95 = t3 * t94;
-    const float t96 = t83 * t57;
-    const float t97 = m_2 * t50;
-    const float t98 = (-1.0f) + t19;
-    const float t99 = t27 * t98;
-    const float t100 = t99 - t26;
-    const float t101 = t83 * t100;
-    const float t102 = t97 + t101;
-    const float t103 = t6 * t102;
-    const float t106 = t3 * t105;
-    const float t107 = t103 + t106;
-    const float t108 = t6 * t107;
-    const float t109 = t96 + t108;
-    const float t110 = t6 * t109;
-    const float t111 = t95 + t110;
-    const float t112 = t39 * t111;
-    const float t113 = t91 + t112;
-    const float t114 = t19 * t113;
-    const float t115 = t87 + t114;
-    const float t116 = t6 * t115;
-    const float t117 = t84 + t116;
-    const float t118 = t6 * t117;
-    const float t121 = t119 * t120;
-    const float t122 = t118 - t121;
-    const float t127 = t44 * t52;
-    const float t128 = 2.0f * t26;
-    const float t129 = t128 - t27;
-    const float t130 = t5 * t129;
-    const float t131 = t5 * t130;
-    const float t132 = t127 + t131;
-    const float t133 = phi_dot * t132;
+    const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t20 = t14 * t14;
-    const float t21 = t14 * t20;
-    const float t22 = t14 * t21;
-    const float t23 = t19 / t22;
-    const float t134 = t126 * t133;
-    const float t244 = t23 * t126;
-    const float t245 = t133 * t244;
-    const float t246 = t5 * t245;
-    float rest = t246 - t246;
-    const float t24 = t18 * t23;
-    const float t82 = t24 * t81;
-    rest *= t82;
-    const float t123 = t24 * t122;
-    rest *= t123;
-    const float t137 = t50 * t23;
-    const float t164 = t137 * t163;
-    float term = t164 - t164;
-    const float t165 = t137 * t122;
-    term *= t165;
-    const float t124 = L * t19;
-    const float t125 = t124 / t22;
-    const float t135 = t125 * t134;
-    const float t136 = t18 * t135;
-    term *= t136;
+    const float t24 = L * L;
+    const float t25 = t6 * t24;
+    const float t26 = t6 * t25;
+    const float t27 = t4 * t26;
+    const float t49 = t3 * t26;
+    const float t18 = 1.0f / t14;
+    const float t90 = t7 * t18;
+    const float t19 = t5 * t18;
+    const float t20 = t12 * t19;
+    const float theta_dot = qd[2];
+    const float t28 = theta_dot * t5;
+    const float x_dot = qd[0];
+    const float t29 = x_dot * t4;
+    const float y_dot = qd[1];
+    const float t30 = y_dot * t3;
+    const float t31 = t29 + t30;
+    const float t32 = t8 * t31;
+    const float t33 = t28 + t32;
+    const float t34 = t19 * t33;
+    const float phi_dot = qd[3];
+    const float t35 = phi_dot + t34;
+    const float t63 = t9 * t19;
+    const float t92 = t8 * t5;
+    const float t39 = phi_dot * t5;
+    const float t40 = L * t39;
+    const float t36 = t27 * t35;
+    const float t37 = t36 / t14;
+    const float t38 = t6 * t37;
+    const float t41 = t40 * t20;
+    const float t42 = t38 + t41;
+    const float t60 = t49 * t35;
+    const float t61 = t60 / t14;
+    const float t62 = t6 * t61;
+    const float t64 = t40 * t63;
+    const float t65 = t62 + t64;
+    const float t91 = t90 * t40;
+    const float t93 = t92 * t35;
+    const float t94 = t93 / t14;
+    const float t95 = t6 * t94;
+    const float t96 = t91 + t95;
+    const float t45 = t5 * t33;
+    const float t98 = t92 * t45;
+    const float t46 = t27 * t45;
+    const float t67 = t45 * t49;
+    const float t47 = t46 / t14;
+    const float t48 = t47 / t14;
+    const float t68 = t67 / t14;
+    const float t69 = t68 / t14;
+    const float t99 = t98 / t14;
+    const float t100 = t99 / t14;
+    const float t50 = t4 * t6;
+    const float t51 = t3 * t5;
+    const float t52 = t50 - t51;
+    const float t53 = t5 * t52;
+    const float t54 = t49 - t53;
+    const float t55 = t18 * t54;
+    const float t85 = t8 * t18;
+    const float t43 = t4 * t19;
+    const float t86 = t6 * t85;
+    const float t44 = t42 * t43;
+    const float t56 = t48 * t55;
+    const float t57 = t44 + t56;
+    const float t87 = t48 * t86;
+    const float t88 = t85 * t42;
+    const float t89 = t87 - t88;
+    const float t97 = t43 * t96;
+    const float t101 = t100 * t55;
+    const float t102 = t97 + t101;
+    const float t103 = t89 + t102;
+    const float t66 = t43 * t65;
+    const float t72 = t3 * t6;
+    const float t73 = t4 * t5;
+    const float t74 = t72 + t73;
+    const float t75 = t5 * t74;
+    const float t76 = t27 + t75;
+    const float t77 = t18 * t76;
+    const float t70 = t69 * t55;
+    const float t71 = t66 + t70;
+    const float t78 = t48 * t77;
+    const float t79 = t66 - t78;
+    const float t80 = t71 + t79;
+    const float t130 = t3 * t19;
+    const float t131 = t65 * t130;
+    const float t132 = t69 * t77;
+    const float t133 = t131 - t132;
+    const float t136 = t69 * t86;
+    const float t137 = t85 * t65;
+    const float t138 = t136 - t137;
+    const float t139 = t96 * t130;
+    const float t140 = t100 * t77;
+    const float t141 = t139 - t140;
+    const float t142 = t138 + t141;
+    const float t158 = t100 * t86;
+    const float t159 = t85 * t96;
+    const float t160 = t158 - t159;
+    const float m_2 = p->m_2;
+    const float t21 = L * m_2;
+    const float t59 = t4 * t21;
+    const float t108 = t3 * t21;
+    const float t114 = t59 * t34;
+    const float t149 = t108 * t34;
+    const float t83 = m_2 * t24;
+    const float Theta_1 = p->Theta_1;
+    const float t84 = Theta_1 + t83;
+    const float t109 = t108 * t103;
+    const float t151 = t59 * t142;
+    const float t175 = 2.0f * t84;
+    const float t174 = t109 - t151;
+    const float t176 = t175 * t160;
+    const float t177 = t174 - t176;
+    const float m_1 = p->m_1;
+    const float t110 = m_1 + m_2;
+    const float t111 = 2.0f * t110;
+    const float t112 = t111 * t57;
+    const float t113 = t109 - t112;
+    const float t115 = t20 * t114;
+    const float t116 = t113 - t115;
+    const float t150 = t63 * t149;
+    const float t152 = t111 * t133;
+    const float t153 = t151 + t152;
+    const float t154 = t150 + t153;
+    const float t22 = 2.0f * t21;
+    const float t23 = t3 * t22;
+    const float t129 = t4 * t22;
+    const float t58 = t23 * t57;
+    const float t81 = t59 * t80;
+    const float t82 = t58 - t81;
+    const float t104 = t84 * t103;
+    const float t105 = t82 - t104;
+    const float t128 = t108 * t80;
+    const float t134 = t129 * t133;
+    const float t135 = t128 - t134;
+    const float t143 = t84 * t142;
+    const float t144 = t135 - t143;
+    const float t167 = t90 * t149;
+    const float t168 = t129 * t160;
+    const float t169 = t110 * t142;
+    const float t170 = t168 + t169;
+    const float t171 = t167 + t170;
+    const float t161 = t23 * t160;
+    const float t162 = t110 * t103;
+    const float t163 = t161 - t162;
+    const float t164 = t90 * t114;
+    const float t165 = t163 - t164;
+    const float t121 = t63 * t114;
+    const float t122 = t110 * t80;
+    const float t123 = t121 + t122;
+    const float t120 = t59 * t103;
+    const float t124 = t120 + t123;
+    const float t146 = t108 * t142;
+    const float t147 = t146 - t123;
+    const float t118 = t9 * t12;
+    const float t107 = t13 * t18;
+    const float t119 = t18 * t118;
+    const float t182 = t10 * t18;
+    const float t106 = t20 * t105;
+    const float t117 = t107 * t116;
+    const float t125 = t119 * t124;
+    const float t126 = t117 - t125;
+    const float t127 = t106 + t126;
+    float rest = t127 - t127;
+    const float t180 = t63 * t105;
+    const float t181 = t119 * t116;
+    const float t183 = t182 * t124;
+    const float t184 = t181 - t183;
+    const float t185 = t180 + t184;
+    rest *= t185;
+    const float t196 = t90 * t105;
+    const float t197 = t20 * t116;
+    const float t198 = t63 * t124;
+    const float t199 = t197 - t198;
+    const float t200 = t196 + t199;
+    rest *= t200;
+    const float t145 = t20 * t144;
+    const float t148 = t107 * t147;
+    const float t155 = t119 * t154;
+    const float t156 = t148 - t155;
+    const float t157 = t145 + t156;
+    float term = t157 - t157;
+    const float t186 = t63 * t144;
+    const float t187 = t119 * t147;
+    const float t188 = t182 * t154;
+    const float t189 = t187 - t188;
+    const float t190 = t186 + t189;
+    term *= t190;
+    const float t201 = t90 * t144;
+    const float t202 = t20 * t147;
+    const float t203 = t63 * t154;
+    const float t204 = t202 - t203;
+    const float t205 = t201 + t204;
+    term *= t205;
     rest += term;
-    const float t166 = t50 * t135;
-    term = t166 - t166;
-    const float t167 = L / t22;
-    const float t207 = t167 * t206;
-    term *= t207;
-    const float t243 = t167 * t242;
-    term *= t243;
+    const float t166 = t107 * t165;
+    const float t172 = t119 * t171;
+    const float t173 = t166 - t172;
+    const float t178 = t20 * t177;
+    const float t179 = t173 + t178;
+    term = t179 - t179;
+    const float t191 = t119 * t165;
+    const float t192 = t182 * t171;
+    const float t193 = t191 - t192;
+    const float t194 = t63 * t177;
+    const float t195 = t193 + t194;
+    term *= t195;
+    const float t206 = t20 * t165;
+    const float t207 = t63 * t171;
+    const float t208 = t206 - t207;
+    const float t209 = t90 * t177;
+    const float t210 = t208 + t209;
+    term *= t210;
     rest += term;
     if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    C_tilde[0] = t82;
-    C_tilde[1] = t123;
-    C_tilde[2] = t136;
+    C_tilde[0] = t127;
+    C_tilde[1] = t157;
+    C_tilde[2] = t179;
     C_tilde[3] = 0.0f;
-    C_tilde[4] = t164;
-    C_tilde[5] = t165;
-    C_tilde[6] = t166;
+    C_tilde[4] = t185;
+    C_tilde[5] = t190;
+    C_tilde[6] = t195;
     C_tilde[7] = 0.0f;
-    C_tilde[8] = t207;
-    C_tilde[9] = t243;
-    C_tilde[10] = t246;
+    C_tilde[8] = t200;
+    C_tilde[9] = t205;
+    C_tilde[10] = t210;
     C_tilde[11] = 0.0f;
     C_tilde[12] = 0.0f;
     C_tilde[13] = 0.0f;
@@ -1556,7 +1521,7 @@ rear_car_status rear_car_minimal_mass_matrix_f(const float q[4], const rear_car_
     const float t9 = t8 * t8;
     const float t10 = t7 * t7;
     const float t11 = 1.0f + t10;
-    const float t12 = t11 * 3.637979e-12f;
+    const float t12 = t11 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t9 > t12))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1616,48 +1581,48 @@ rear_car_status rear_car_minimal_coriolis_matrix_f(const float q[4], const float
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    if (REAR_CAR_RARELY_F(!(t13 > t17))) {
+    const float t18 = t16 * 2.2737368e-13f;
+    if (REAR_CAR_RARELY_F(!(t13 > t18))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = L * L;
+    const float t19 = L * L;
     const float m_2 = p->m_2;
-    const float t19 = m_2 * t18;
+    const float t20 = m_2 * t19;
     const float Theta_1 = p->Theta_1;
-    const float t20 = Theta_1 + t19;
+    const float t21 = Theta_1 + t20;
     const float phi_dot = qd[3];
-    const float t21 = phi_dot * t6;
-    const float t22 = t3 * t21;
-    const float t23 = t20 * t22;
+    const float t22 = phi_dot * t6;
+    const float t23 = t3 * t22;
+    const float t24 = t21 * t23;
     const float theta_dot = qd[2];
-    const float t24 = theta_dot * t5;
-    const float t25 = t20 * t24;
-    const float t26 = (-1.0f) + t18;
-    const float t27 = t26 * t23;
-    const float t28 = t4 * t4;
-    const float t29 = t28 + (-2.0f);
-    const float t30 = t20 * t29;
+    const float t25 = theta_dot * t5;
+    const float t26 = t21 * t25;
+    const float t27 = (-1.0f) + t19;
+    const float t28 = t27 * t24;
+    const float t29 = t4 * t25;
+    const float t30 = t4 * t4;
+    const float t31 = t30 + (-2.0f);
+    const float t32 = t21 * t31;
     const float m_1 = p->m_1;
-    const float t31 = m_1 + m_2;
-    const float t32 = t31 * t18;
-    const float t33 = t28 * t32;
-    const float t34 = t31 + t20;
-    const float t35 = t3 * t34;
-    const float t36 = t3 * t35;
-    const float t37 = t33 + t36;
-    const float t38 = t18 * t37;
-    const float t39 = t30 + t38;
-    const float t40 = t4 * t24;
-    const float t41 = t39 * t40;
-    const float t42 = t27 + t41;
+    const float t33 = m_1 + m_2;
+    const float t34 = t33 * t19;
+    const float t35 = t30 * t34;
+    const float t36 = t33 + t21;
+    const float t37 = t7 * t36;
+    const float t38 = t35 + t37;
+    const float t39 = t19 * t38;
+    const float t40 = t32 + t39;
+    const float t41 = t29 * t40;
+    const float t42 = t28 + t41;
     const float t43 = t4 * t42;
-    const float t44 = t25 + t43;
+    const float t44 = t26 + t43;
     const float t45 = t4 * t44;
-    const float t46 = t23 + t45;
-    const float t47 = t6 * t18;
+    const float t46 = t24 + t45;
+    const float t47 = t6 * t19;
     const float t48 = t6 * t47;
     const float t49 = t6 * t48;
     const float t50 = t4 * t49;
@@ -1716,7 +1681,7 @@ rear_car_status rear_car_minimal_control_matrix_f(const float q[4], const rear_c
     const float t9 = t8 * t8;
     const float t10 = t7 * t7;
     const float t11 = 1.0f + t10;
-    const float t12 = t11 * 3.637979e-12f;
+    const float t12 = t11 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t9 > t12))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1762,7 +1727,7 @@ rear_car_status rear_car_admissible_velocity_f(const float q[4], const float qd[
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -1827,7 +1792,7 @@ rear_car_status rear_car_admissible_acceleration_f(const float q[4], const float
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -2060,32 +2025,33 @@ rear_car_status rear_car_actuator_mass_matrix_f(const float q[4], const rear_car
     const float t4 = L * t3;
     const float t5 = t4 * t4;
     const float t6 = 1.0f + t5;
-    const float t7 = t6 * 3.637979e-12f;
+    const float t7 = t6 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t5 > t7))) {
         const float t8 = t2 * t2;
-        if (!(t8 > t7)) {
+        const float t9 = t6 * 2.2737368e-13f;
+        if (!(t8 > t9)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
     const float m_1 = p->m_1;
     const float m_2 = p->m_2;
-    const float t9 = m_1 + m_2;
-    const float t10 = t2 / t4;
-    const float t11 = L * L;
-    const float t12 = m_2 * t11;
+    const float t10 = m_1 + m_2;
+    const float t11 = t2 / t4;
+    const float t12 = L * L;
+    const float t13 = m_2 * t12;
     const float Theta_1 = p->Theta_1;
-    const float t13 = Theta_1 + t12;
-    const float t14 = t13 * t10;
-    const float t15 = t10 * t14;
-    const float t16 = t9 + t15;
-    float rest = t16 - t16;
+    const float t14 = Theta_1 + t13;
+    const float t15 = t14 * t11;
+    const float t16 = t11 * t15;
+    const float t17 = t10 + t16;
+    float rest = t17 - t17;
     const float Theta_2 = p->Theta_2;
     rest *= Theta_2;
     if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    G_nu[0] = t16;
+    G_nu[0] = t17;
     G_nu[1] = 0.0f;
     G_nu[2] = 0.0f;
     G_nu[3] = Theta_2;
@@ -2122,37 +2088,38 @@ rear_car_status rear_car_actuator_bias_f(const float q[4], const float qd[4], co
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    if (REAR_CAR_RARELY_F(!(t15 > t17))) {
+    const float t18 = t16 * 2.2737368e-13f;
+    if (REAR_CAR_RARELY_F(!(t15 > t18))) {
         if (!(t7 > t17)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
-    const float t18 = L * L;
+    const float t19 = L * L;
     const float m_2 = p->m_2;
-    const float t19 = m_2 * t18;
+    const float t20 = m_2 * t19;
     const float Theta_1 = p->Theta_1;
-    const float t20 = Theta_1 + t19;
-    const float t21 = t4 * t15;
-    const float t22 = t20 / t21;
+    const float t21 = Theta_1 + t20;
+    const float t22 = t4 * t15;
+    const float t23 = t21 / t22;
     const float x_dot = qd[0];
-    const float t23 = x_dot * t6;
+    const float t24 = x_dot * t6;
     const float y_dot = qd[1];
-    const float t24 = y_dot * t5;
-    const float t25 = t23 + t24;
+    const float t25 = y_dot * t5;
+    const float t26 = t24 + t25;
     const float phi_dot = qd[3];
-    const float t26 = phi_dot * t3;
-    const float t27 = t25 * t26;
-    const float t28 = t22 * t27;
-    float rest = t28 - t28;
+    const float t27 = phi_dot * t3;
+    const float t28 = t26 * t27;
+    const float t29 = t23 * t28;
+    float rest = t29 - t29;
     if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    bias_nu[0] = t28;
+    bias_nu[0] = t29;
     bias_nu[1] = 0.0f;
     return REAR_CAR_OK;
 }
@@ -2278,7 +2245,7 @@ rear_car_status rear_car_forward_dynamics_f(const float q[4], const float qd[4],
     const float t13 = t10 + t12;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     const float t7 = t3 * t3;
     const float t14 = t7 + t13;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
@@ -2297,7 +2264,7 @@ rear_car_status rear_car_forward_dynamics_f(const float q[4], const float qd[4],
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;
     const float t21 = t4 * t20;
@@ -2358,7 +2325,7 @@ rear_car_status rear_car_multipliers_f(const float q[4], const float qd[4], cons
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -2379,7 +2346,7 @@ rear_car_status rear_car_multipliers_f(const float q[4], const float qd[4], cons
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t20 = m_1 * t4;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;

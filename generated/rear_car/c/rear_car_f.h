@@ -31,7 +31,7 @@
  * projected_control_pseudoinverse       1      3      1      0      2      0
  * orthogonal_complement                 1      5      2      0      2      0
  * projected_mass_matrix                10     32      3      0      2      0
- * projected_coriolis_matrix            72    165      3      0      2      0
+ * projected_coriolis_matrix            62    132     10      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
@@ -46,7 +46,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
- * actuator_bias                         5     16      1      0      2      0
+ * actuator_bias                         5     17      1      0      2      0
  * forward_dynamics                     33     81      1      0      2      0
  * multipliers                          36     83      1      0      2      0
  * energy                                7     14      0      0      1      0

@@ -216,7 +216,7 @@ rear_car_status rear_car_forward_dynamics_sc(const rear_car_trig *sc, const doub
     const double t13 = t10 + t12;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     const double t7 = sin_phi * sin_phi;
     const double t14 = t7 + t13;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
@@ -235,7 +235,7 @@ rear_car_status rear_car_forward_dynamics_sc(const rear_car_trig *sc, const doub
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t18 = Theta_1 * t7;
     const double t19 = L * L;
     const double t21 = cos_phi * t20;
@@ -283,7 +283,7 @@ rear_car_status rear_car_multipliers_sc(const rear_car_trig *sc, const double q[
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -304,7 +304,7 @@ rear_car_status rear_car_multipliers_sc(const rear_car_trig *sc, const double q[
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t20 = m_1 * cos_phi;
     const double t18 = Theta_1 * t7;
     const double t19 = L * L;

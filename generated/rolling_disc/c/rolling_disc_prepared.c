@@ -157,7 +157,7 @@ rolling_disc_prepared rolling_disc_prepare(const rolling_disc_params *p) {
     const double v5 = v2 + v4;
     const double v6 = v3 * v5;
     const double v7 = v5 * v6;
-    const double v8 = v7 * 1.135959703518257e-28;
+    const double v8 = v7 * 3.1554436208840472e-30;
     const double v9 = m * R;
     rolling_disc_prepared prepared;
     prepared.value[0] = R;
@@ -249,7 +249,7 @@ rolling_disc_status rolling_disc_inverse_dynamics_prepared(const double q[6], co
         const double t71 = t53 + t70;
         const double t72 = t68 * t71;
         const double t73 = t67 * t72;
-        const double t74 = t73 * 2.8398992587956425e-29;
+        const double t74 = t73 * 7.888609052210118e-31;
         if (!(t65 > t74)) {
             return ROLLING_DISC_CONSTRAINT_RANK;
         }

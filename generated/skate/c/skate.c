@@ -337,7 +337,7 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -368,7 +368,7 @@ skate_status skate_weighted_nullspace_projector(const double q[3], const skate_p
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -476,7 +476,7 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
+    if (SKATE_RARELY(!(t4 > 7.888609052210118e-31))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const double t5 = t2 / t3;
@@ -596,7 +596,7 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
+    if (SKATE_RARELY(!(t4 > 7.888609052210118e-31))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const double m_s = p->m_s;
@@ -624,7 +624,7 @@ skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3]
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
+    if (SKATE_RARELY(!(t4 > 7.888609052210118e-31))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const double phi_dot = qd[0];
@@ -672,7 +672,7 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
+    if (SKATE_RARELY(!(t4 > 7.888609052210118e-31))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const double t5 = 1.0 / t3;
@@ -885,7 +885,7 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -938,7 +938,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }

@@ -197,7 +197,7 @@ size_t skate_forward_dynamics_batch(size_t count, size_t stride, const double *q
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     const double t11 = 1.0 / m_s;
     double copy[6][LANES]; /* the last states, the first of them repeated */
     double result[3][LANES];
@@ -304,7 +304,7 @@ size_t skate_multipliers_batch(size_t count, size_t stride, const double *q, con
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     double copy[4][LANES]; /* the last states, the first of them repeated */
     double result[1][LANES];
     double flag[LANES]; /* 0 where a check passed and the result is finite */

@@ -184,7 +184,7 @@ size_t skate_forward_dynamics_batch_f(size_t count, size_t stride, const float *
     const float t6 = fabsf(Theta_s);
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
-    const float t9 = t8 * 1.4305115e-06f;
+    const float t9 = t8 * 4.7683716e-07f;
     const float t11 = 1.0f / m_s;
     float copy[6][LANES]; /* the last states, the first of them repeated */
     float result[3][LANES];
@@ -291,7 +291,7 @@ size_t skate_multipliers_batch_f(size_t count, size_t stride, const float *q, co
     const float t6 = fabsf(Theta_s);
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
-    const float t9 = t8 * 1.4305115e-06f;
+    const float t9 = t8 * 4.7683716e-07f;
     float copy[4][LANES]; /* the last states, the first of them repeated */
     float result[1][LANES];
     float flag[LANES]; /* 0 where a check passed and the result is finite */

@@ -324,7 +324,7 @@ skate_status skate_weighted_pseudoinverse_f(const float q[3], const skate_params
     const float t6 = fabsf(Theta_s);
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
-    const float t9 = t8 * 1.4305115e-06f;
+    const float t9 = t8 * 4.7683716e-07f;
     if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -355,7 +355,7 @@ skate_status skate_weighted_nullspace_projector_f(const float q[3], const skate_
     const float t6 = fabsf(Theta_s);
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
-    const float t9 = t8 * 1.4305115e-06f;
+    const float t9 = t8 * 4.7683716e-07f;
     if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -463,7 +463,7 @@ skate_status skate_orthogonal_complement_f(const float q[3], const skate_params_
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
-    if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
+    if (SKATE_RARELY_F(!(t4 > 2.2737368e-13f))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const float t5 = t2 / t3;
@@ -583,7 +583,7 @@ skate_status skate_minimal_mass_matrix_f(const float q[3], const skate_params_f 
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
-    if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
+    if (SKATE_RARELY_F(!(t4 > 2.2737368e-13f))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const float m_s = p->m_s;
@@ -611,7 +611,7 @@ skate_status skate_minimal_coriolis_matrix_f(const float q[3], const float qd[3]
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
-    if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
+    if (SKATE_RARELY_F(!(t4 > 2.2737368e-13f))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const float phi_dot = qd[0];
@@ -659,7 +659,7 @@ skate_status skate_minimal_control_matrix_f(const float q[3], const skate_params
     float t3;
     skate_sincos_f(phi, &t2, &t3);
     const float t4 = t3 * t3;
-    if (SKATE_RARELY_F(!(t4 > 2.046363e-12f))) {
+    if (SKATE_RARELY_F(!(t4 > 2.2737368e-13f))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const float t5 = 1.0f / t3;
@@ -872,7 +872,7 @@ skate_status skate_forward_dynamics_f(const float q[3], const float qd[3], const
     const float t6 = fabsf(Theta_s);
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
-    const float t9 = t8 * 1.4305115e-06f;
+    const float t9 = t8 * 4.7683716e-07f;
     if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -925,7 +925,7 @@ skate_status skate_multipliers_f(const float q[3], const float qd[3], const floa
     const float t6 = fabsf(Theta_s);
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
-    const float t9 = t8 * 1.4305115e-06f;
+    const float t9 = t8 * 4.7683716e-07f;
     if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }

@@ -80,7 +80,7 @@ skate_status skate_forward_dynamics_sc(const skate_trig *sc, const double q[3], 
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -128,7 +128,7 @@ skate_status skate_multipliers_sc(const skate_trig *sc, const double q[3], const
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }

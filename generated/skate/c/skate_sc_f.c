@@ -75,7 +75,7 @@ skate_status skate_forward_dynamics_sc_f(const skate_trig_f *sc, const float q[3
     const float t6 = fabsf(Theta_s);
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
-    const float t9 = t8 * 1.4305115e-06f;
+    const float t9 = t8 * 4.7683716e-07f;
     if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -123,7 +123,7 @@ skate_status skate_multipliers_sc_f(const skate_trig_f *sc, const float q[3], co
     const float t6 = fabsf(Theta_s);
     const float t7 = fabsf(m_s);
     const float t8 = t6 * t7;
-    const float t9 = t8 * 1.4305115e-06f;
+    const float t9 = t8 * 4.7683716e-07f;
     if (SKATE_RARELY_F(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }

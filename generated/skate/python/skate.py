@@ -434,7 +434,7 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t6 = np.abs(Theta_s)
         t7 = np.abs(m_s)
         t8 = t6 * t7
-        t9 = t8 * 2.6645352591003757e-15
+        t9 = t8 * 8.881784197001252e-16
         status = _first(status, ~np.asarray(t5 > t9), 5)
         t10 = -t3
         entries = (
@@ -463,7 +463,7 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t6 = np.abs(Theta_s)
         t7 = np.abs(m_s)
         t8 = t6 * t7
-        t9 = t8 * 2.6645352591003757e-15
+        t9 = t8 * 8.881784197001252e-16
         status = _first(status, ~np.asarray(t5 > t9), 5)
         t10 = t3 * t3
         t11 = t2 * t3
@@ -560,7 +560,7 @@ def orthogonal_complement(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
-        status = _first(status, ~np.asarray(t4 > 7.099748146989106e-30), 2)
+        status = _first(status, ~np.asarray(t4 > 7.888609052210118e-31), 2)
         t5 = t2 / t3
         entries = (
             1.0,
@@ -687,7 +687,7 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
-        status = _first(status, ~np.asarray(t4 > 7.099748146989106e-30), 2)
+        status = _first(status, ~np.asarray(t4 > 7.888609052210118e-31), 2)
         t5 = m_s / t4
         entries = (
             Theta_s,
@@ -713,7 +713,7 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
-        status = _first(status, ~np.asarray(t4 > 7.099748146989106e-30), 2)
+        status = _first(status, ~np.asarray(t4 > 7.888609052210118e-31), 2)
         t5 = phi_dot * t2
         t6 = t3 * t4
         t7 = m_s / t6
@@ -768,7 +768,7 @@ def minimal_control_matrix(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         t2, t3 = _sincos(phi)
         t4 = t3 * t3
-        status = _first(status, ~np.asarray(t4 > 7.099748146989106e-30), 2)
+        status = _first(status, ~np.asarray(t4 > 7.888609052210118e-31), 2)
         t5 = 1.0 / t3
         entries = (
             1.0,
@@ -997,7 +997,7 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t6 = np.abs(Theta_s)
         t7 = np.abs(m_s)
         t8 = t6 * t7
-        t9 = t8 * 2.6645352591003757e-15
+        t9 = t8 * 8.881784197001252e-16
         status = _first(status, ~np.asarray(t5 > t9), 5)
         t10 = T / Theta_s
         t11 = 1.0 / m_s
@@ -1046,7 +1046,7 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t6 = np.abs(Theta_s)
         t7 = np.abs(m_s)
         t8 = t6 * t7
-        t9 = t8 * 2.6645352591003757e-15
+        t9 = t8 * 8.881784197001252e-16
         status = _first(status, ~np.asarray(t5 > t9), 5)
         t10 = x_dot * t3
         t11 = y_dot * t2

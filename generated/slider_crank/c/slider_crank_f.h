@@ -23,8 +23,8 @@
  * constraint_pseudoinverse              8     26      1      0      2      0
  * nullspace_projector                   5     23      1      0      2      0
  * nullspace_projector_dot              26     66      1      0      2      0
- * weighted_pseudoinverse               29     90      4      0      2      0
- * weighted_nullspace_projector         22     76      1      0      2      0
+ * weighted_pseudoinverse               33     95      4      0      2      0
+ * weighted_nullspace_projector         25     78      1      0      2      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix              5     19      1      0      2      0
  * projected_control_pseudoinverse       4     11      2      0      2      0
@@ -34,8 +34,8 @@
  * projected_potential_force            13     39      1      0      2      0
  * projected_applied_force               7     26      1      0      2      0
  * minimal_mass_matrix                  11     32      1      0      2      0
- * minimal_coriolis_matrix              23     59      3      0      2      0
- * minimal_potential_force               8     19      1      0      2      0
+ * minimal_coriolis_matrix              23     57      3      0      2      0
+ * minimal_potential_force               8     18      1      0      2      0
  * minimal_applied_force                 4     13      1      0      2      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                  14     39      3      0      2      0
@@ -46,8 +46,8 @@
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                 11     32      1      0      2      0
  * actuator_bias                        25     73      1      0      2      0
- * forward_dynamics                     41    107      1      0      2      0
- * multipliers                          47    120      1      0      2      0
+ * forward_dynamics                     44    110      1      0      2      0
+ * multipliers                          51    125      1      0      2      0
  * energy                               11     30      0      0      2      0
  * singularity                          10     23      6      2      2      0
  * (changes of sign are not counted)

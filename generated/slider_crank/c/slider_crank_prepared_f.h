@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[25];
+    float value[24];
 } slider_crank_prepared_f;
 
 slider_crank_prepared_f slider_crank_prepare_f(const slider_crank_params_f *p);
@@ -22,10 +22,10 @@ slider_crank_prepared_f slider_crank_prepare_f(const slider_crank_params_f *p);
 /* u: the smallest inputs that produce the motion, (27); 48 operations instead of 63 */
 slider_crank_status slider_crank_inverse_dynamics_prepared_f(const float q[3], const float qd[3], const float qdd[3], const slider_crank_prepared_f *p, float u[1]);
 
-/* q̈: accelerations under the inputs, (15); 134 operations instead of 160 */
+/* q̈: accelerations under the inputs, (15); 128 operations instead of 166 */
 slider_crank_status slider_crank_forward_dynamics_prepared_f(const float q[3], const float qd[3], const float u[1], const slider_crank_prepared_f *p, float qdd[3]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 151 operations instead of 181 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 149 operations instead of 190 */
 slider_crank_status slider_crank_multipliers_prepared_f(const float q[3], const float qd[3], const float u[1], const slider_crank_prepared_f *p, float lambda_B[2]);
 
 #ifdef __cplusplus

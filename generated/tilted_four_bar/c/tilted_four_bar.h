@@ -14,9 +14,9 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      60    108      1      0      3      0
- * forward_dynamics     232    399     16      0      3      2
- * multipliers          222    391     16      0      3      2
- * singularity           35     61     14      3      3      0
+ * forward_dynamics     235    404     16      0      3      4
+ * multipliers          225    396     16      0      3      4
+ * singularity           35     62     14      3      3      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

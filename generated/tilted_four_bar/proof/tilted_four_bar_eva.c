@@ -50,7 +50,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t379, t407, t443, t544. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t389, t417, t453, t554. */
 void eva_forward_dynamics(void) {
     double q[3];
     double qd[3];
@@ -78,7 +78,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t282, t431, t306, t496. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t292, t441, t316, t506. */
 void eva_multipliers(void) {
     double q[3];
     double qd[3];

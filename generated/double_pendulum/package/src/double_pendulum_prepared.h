@@ -232,7 +232,7 @@ double_pendulum_prepared double_pendulum_prepare(const double_pendulum_params *p
     const double v38 = v32 + v37;
     const double v39 = v29 * v38;
     const double v40 = v28 + v39;
-    const double v41 = v40 * 1.7763568394002505e-15;
+    const double v41 = v40 * 8.881784197001252e-16;
     const double v42 = m_2 * v19;
     const double v43 = J_2 + v42;
     const double v44 = 0.5 * v43;

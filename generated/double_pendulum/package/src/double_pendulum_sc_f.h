@@ -203,7 +203,7 @@ double_pendulum_status double_pendulum_forward_dynamics_sc_f(const double_pendul
     const float t40 = t34 + t39;
     const float t41 = t31 * t40;
     const float t42 = t30 + t41;
-    const float t43 = t42 * 9.536743e-07f;
+    const float t43 = t42 * 4.7683716e-07f;
     if (DOUBLE_PENDULUM_RARELY_F(!(t22 > t43))) {
         return DOUBLE_PENDULUM_MASS_RANK;
     }

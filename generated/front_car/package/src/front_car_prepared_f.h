@@ -388,7 +388,7 @@ front_car_status front_car_forward_dynamics_prepared_f(const float q[4], const f
     const float t13 = t10 + t12;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     const float t7 = t3 * t3;
     const float t14 = t7 + t13;
     if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
@@ -401,7 +401,7 @@ front_car_status front_car_forward_dynamics_prepared_f(const float q[4], const f
     const float t38 = t34 + t37;
     const float t27 = p->value[9];
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float Theta_1 = p->value[7];
     const float t18 = Theta_1 * t7;
     const float t21 = t4 * t20;
@@ -463,7 +463,7 @@ front_car_status front_car_multipliers_prepared_f(const float q[4], const float 
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
@@ -474,7 +474,7 @@ front_car_status front_car_multipliers_prepared_f(const float q[4], const float 
     const float t38 = t34 + t37;
     const float t27 = p->value[9];
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float m_1 = p->value[5];
     const float t20 = m_1 * t4;
     const float Theta_1 = p->value[7];

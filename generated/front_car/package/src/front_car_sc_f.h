@@ -239,7 +239,7 @@ front_car_status front_car_forward_dynamics_sc_f(const front_car_trig_f *sc, con
     const float t13 = t10 + t12;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     const float t7 = sin_phi * sin_phi;
     const float t14 = t7 + t13;
     if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
@@ -258,7 +258,7 @@ front_car_status front_car_forward_dynamics_sc_f(const front_car_trig_f *sc, con
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;
     const float t21 = cos_phi * t20;
@@ -306,7 +306,7 @@ front_car_status front_car_multipliers_sc_f(const front_car_trig_f *sc, const fl
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
@@ -327,7 +327,7 @@ front_car_status front_car_multipliers_sc_f(const front_car_trig_f *sc, const fl
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t20 = m_1 * cos_phi;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;

@@ -427,20 +427,20 @@ front_car_bodies_status front_car_bodies_forward_dynamics(const double q[4], con
     const double t30 = fabs(m_2);
     const double t27 = fabs(Theta_2);
     const double t28 = fabs(Theta_1);
-    const double t31 = t30 * t29;
+    const double t31 = t29 * t30;
     const double t32 = t29 * t31;
     const double t33 = t28 + t32;
     const double t34 = t7 * t33;
     const double t35 = fabs(m_1);
-    const double t36 = t35 + t30;
+    const double t36 = t30 + t35;
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_BODIES_RARELY(!(t14 > t17))) {
         return FRONT_CAR_BODIES_CONSTRAINT_RANK;
     }
@@ -508,21 +508,21 @@ front_car_bodies_status front_car_bodies_multipliers(const double q[4], const do
     const double t27 = fabs(Theta_2);
     const double Theta_1 = p->Theta_1;
     const double t28 = fabs(Theta_1);
-    const double t31 = t30 * t29;
+    const double t31 = t29 * t30;
     const double t32 = t29 * t31;
     const double t33 = t28 + t32;
     const double t34 = t7 * t33;
     const double m_1 = p->m_1;
     const double t35 = fabs(m_1);
-    const double t36 = t35 + t30;
+    const double t36 = t30 + t35;
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_BODIES_RARELY(!(t14 > t17))) {
         return FRONT_CAR_BODIES_CONSTRAINT_RANK;
     }

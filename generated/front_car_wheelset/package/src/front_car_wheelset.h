@@ -32,11 +32,11 @@
  * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 1      5      2      0      2      0
  * projected_mass_matrix                12     41      5      0      2      0
- * projected_coriolis_matrix            79    186      5      0      2      0
+ * projected_coriolis_matrix            63    135     10      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   6     11      2      0      2      0
- * minimal_coriolis_matrix              17     41      2      0      2      0
+ * minimal_coriolis_matrix              17     40      2      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
@@ -49,7 +49,7 @@
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                        12     28      2      0      2      0
  * forward_dynamics                     38     86      1      0      2      0
- * multipliers                          42     88      1      0      2      0
+ * multipliers                          40     88      1      0      2      0
  * energy                                8     14      0      0      1      0
  * singularity                          12     23      5      1      2      0
  * (changes of sign are not counted)
@@ -646,7 +646,7 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse(const doub
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -724,7 +724,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector(const double q[
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -796,7 +796,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot(const doubl
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -919,7 +919,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -949,7 +949,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse(const double
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     if (FRONT_CAR_WHEELSET_RARELY(!(t26 > t40))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
@@ -1046,7 +1046,7 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1076,7 +1076,7 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector(const 
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     if (FRONT_CAR_WHEELSET_RARELY(!(t26 > t40))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
@@ -1231,7 +1231,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix(const doub
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1291,7 +1291,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse(con
         const double t15 = t12 + t14;
         const double t16 = t9 * t9;
         const double t17 = 1.0 + t16;
-        const double t18 = t17 * 1.262177448353619e-29;
+        const double t18 = t17 * 7.888609052210118e-31;
         if (!(t15 > t18)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
@@ -1340,7 +1340,7 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement(const double 
     const double t9 = t8 * t8;
     const double t10 = t7 * t7;
     const double t11 = 1.0 + t10;
-    const double t12 = t11 * 1.262177448353619e-29;
+    const double t12 = t11 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t9 > t12))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1394,7 +1394,7 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix(const double 
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1503,320 +1503,261 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix(const dou
     const double L = p->L;
     const double t6 = cosine[1];
     const double t8 = L * t6;
-    const double phi_dot = qd[3];
-    const double t4 = cosine[0];
-    const double t31 = phi_dot * t4;
-    const double t32 = t5 * t31;
     const double t3 = sine[0];
     const double t9 = t3 * t8;
     const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
+    const double t4 = cosine[0];
     const double t12 = t4 * t8;
     const double t13 = t12 * t12;
+    const double t11 = t7 + t10;
     const double t14 = t11 + t13;
-    const double t33 = t14 * t32;
-    const double t121 = t5 * t14;
-    const double t163 = t32 * t121;
     const double t15 = t8 * t8;
-    const double theta_dot = qd[2];
-    const double t35 = theta_dot * t5;
-    const double x_dot = qd[0];
-    const double t36 = x_dot * t4;
-    const double y_dot = qd[1];
-    const double t37 = y_dot * t3;
-    const double t38 = t36 + t37;
-    const double t39 = t8 * t38;
-    const double t40 = t35 + t39;
-    const double t19 = L * L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double t28 = m_1 + m_2;
-    const double t25 = m_2 * t19;
-    const double Theta_1 = p->Theta_1;
-    const double t26 = Theta_1 + t25;
-    const double Theta_2 = p->Theta_2;
-    const double t27 = Theta_2 + t26;
-    const double t29 = 2.0 * t28;
-    const double t30 = t27 - t29;
-    const double t34 = t30 * t33;
-    const double t43 = t6 * t6;
-    const double t44 = t43 + (-2.0);
-    const double t47 = m_2 * t4;
-    const double t49 = t3 * t6;
-    const double t50 = t5 * t49;
-    const double t51 = t28 * t19;
-    const double t55 = t3 * t5;
-    const double t56 = t28 + t27;
-    const double t57 = t55 * t56;
-    const double t69 = t5 * t27;
-    const double t70 = t14 * t31;
-    const double t71 = 2.0 - t43;
-    const double t78 = t27 * t40;
-    const double t79 = t55 * t78;
-    const double t41 = L * t5;
-    const double t42 = t41 * t41;
-    const double t45 = t14 + t44;
-    const double t46 = t42 + t45;
-    const double t48 = t46 * t47;
-    const double t52 = t50 * t51;
-    const double t53 = t48 - t52;
-    const double t54 = t6 * t53;
-    const double t58 = t5 * t57;
-    const double t59 = t5 * t58;
-    const double t60 = t54 - t59;
-    const double t61 = t6 * t60;
-    const double t62 = t7 + t15;
-    const double t63 = 1.0 - t62;
-    const double t64 = t63 * t47;
-    const double t65 = t61 + t64;
-    const double t66 = t40 * t65;
-    const double t67 = t34 + t66;
-    const double t68 = t19 * t67;
-    const double t72 = t49 * t71;
-    const double t73 = t40 * t72;
-    const double t74 = t70 + t73;
-    const double t75 = t69 * t74;
-    const double t76 = t68 + t75;
-    const double t77 = t6 * t76;
-    const double t80 = t77 - t79;
-    const double t81 = t6 * t80;
-    const double t82 = t27 * t33;
-    const double t83 = t81 - t82;
-    const double t18 = t4 * t6;
-    const double t102 = (-2.0) + t42;
-    const double t109 = t7 * t14;
-    const double t110 = 1.0 - t109;
-    const double t140 = t71 * t78;
-    const double t141 = t50 * t140;
-    const double t142 = m_2 * t18;
-    const double t143 = 1.0 - t19;
-    const double t144 = t28 * t143;
-    const double t145 = t27 + t144;
-    const double t146 = t55 * t145;
-    const double t147 = t142 + t146;
-    const double t148 = t6 * t147;
-    const double t149 = t102 * t47;
-    const double t150 = t148 + t149;
-    const double t151 = t6 * t150;
-    const double t152 = t151 - t57;
-    const double t153 = t6 * t152;
-    const double t154 = t110 * t47;
-    const double t155 = t153 + t154;
-    const double t156 = t40 * t155;
-    const double t157 = t34 + t156;
-    const double t158 = t19 * t157;
-    const double t159 = t141 + t158;
-    const double t160 = t6 * t159;
-    const double t161 = t160 - t79;
-    const double t162 = t6 * t161;
-    const double t164 = t69 * t163;
-    const double t165 = t162 - t164;
-    const double t111 = m_2 * t110;
-    const double t90 = phi_dot * t3;
-    const double t91 = t5 * t90;
-    const double t122 = t91 * t121;
-    const double t85 = t4 * t5;
-    const double t87 = t5 * t18;
-    const double t103 = m_2 * t102;
-    const double t86 = t85 * t78;
-    const double t88 = t44 * t78;
-    const double t89 = t87 * t88;
-    const double t92 = t14 * t91;
-    const double t93 = t30 * t92;
-    const double t94 = t85 * t56;
-    const double t95 = m_2 * t49;
-    const double t96 = (-1.0) + t19;
-    const double t97 = t28 * t96;
-    const double t98 = t97 - t27;
-    const double t99 = t85 * t98;
-    const double t100 = t95 + t99;
-    const double t101 = t6 * t100;
-    const double t104 = t3 * t103;
-    const double t105 = t101 + t104;
-    const double t106 = t6 * t105;
-    const double t107 = t94 + t106;
-    const double t108 = t6 * t107;
-    const double t112 = t3 * t111;
-    const double t113 = t108 + t112;
-    const double t114 = t40 * t113;
-    const double t115 = t93 + t114;
-    const double t116 = t19 * t115;
-    const double t117 = t89 + t116;
-    const double t118 = t6 * t117;
-    const double t119 = t86 + t118;
-    const double t120 = t6 * t119;
-    const double t123 = t69 * t122;
-    const double t124 = t120 - t123;
-    const double t128 = t6 * t14;
-    const double t177 = t31 * t128;
-    const double t185 = t71 - t42;
-    const double t171 = t6 * t43;
-    const double t172 = t6 * t171;
-    const double t173 = 3.0 * t7;
-    const double t174 = t172 + t173;
-    const double t175 = t174 * t40;
-    const double t170 = 2.0 * t70;
-    const double t176 = t3 * t175;
-    const double t178 = t176 - t177;
-    const double t179 = t6 * t178;
-    const double t180 = t170 + t179;
-    const double t181 = t27 * t180;
-    const double t182 = t85 * t111;
-    const double t183 = m_2 * t87;
-    const double t184 = t27 * t71;
-    const double t186 = t28 * t185;
-    const double t187 = t184 + t186;
-    const double t188 = t3 * t187;
-    const double t189 = t183 + t188;
-    const double t190 = t6 * t189;
-    const double t191 = t85 * t103;
-    const double t192 = t190 + t191;
-    const double t193 = t6 * t192;
-    const double t194 = t3 * t56;
-    const double t195 = t193 - t194;
-    const double t196 = t6 * t195;
-    const double t197 = t182 + t196;
-    const double t198 = t40 * t197;
-    const double t199 = t30 * t163;
-    const double t200 = t198 + t199;
-    const double t201 = t19 * t200;
-    const double t202 = t181 + t201;
-    const double t203 = t6 * t202;
-    const double t204 = t3 * t78;
-    const double t205 = t203 - t204;
-    const double t206 = t6 * t205;
-    const double t207 = t27 * t70;
-    const double t208 = t206 - t207;
-    const double t211 = t14 * t90;
-    const double t214 = t90 * t128;
-    const double t221 = t43 + t102;
-    const double t210 = t4 * t78;
-    const double t212 = 2.0 * t211;
-    const double t213 = t4 * t175;
-    const double t215 = t213 + t214;
-    const double t216 = t6 * t215;
-    const double t217 = t212 - t216;
-    const double t218 = t27 * t217;
-    const double t219 = t4 * t56;
-    const double t220 = t27 * t44;
-    const double t222 = t28 * t221;
-    const double t223 = t220 + t222;
-    const double t224 = t4 * t223;
-    const double t225 = m_2 * t50;
-    const double t226 = t224 + t225;
-    const double t227 = t6 * t226;
-    const double t228 = t55 * t103;
-    const double t229 = t227 + t228;
-    const double t230 = t6 * t229;
-    const double t231 = t219 + t230;
-    const double t232 = t6 * t231;
-    const double t233 = t55 * t111;
-    const double t234 = t232 + t233;
-    const double t235 = t40 * t234;
-    const double t236 = t30 * t122;
-    const double t237 = t235 + t236;
-    const double t238 = t19 * t237;
-    const double t239 = t218 + t238;
-    const double t240 = t6 * t239;
-    const double t241 = t210 + t240;
-    const double t242 = t6 * t241;
-    const double t243 = t27 * t211;
-    const double t244 = t242 - t243;
-    const double t129 = t43 * t51;
-    const double t130 = 2.0 * t27;
-    const double t131 = t130 - t28;
-    const double t132 = t5 * t131;
-    const double t133 = t5 * t132;
-    const double t134 = t129 + t133;
-    const double t252 = t19 * t177;
-    const double t253 = t6 * t185;
-    const double t254 = t6 * t253;
-    const double t255 = (-1.0) + t254;
-    const double t256 = t255 * t40;
-    const double t257 = t3 * t256;
-    const double t258 = t252 + t257;
-    const double t259 = t6 * t258;
-    const double t260 = t259 - t163;
-    const double t262 = t6 * t221;
-    const double t263 = t6 * t262;
-    const double t264 = 1.0 + t263;
-    const double t265 = t264 * t40;
-    const double t266 = t4 * t265;
-    const double t267 = t19 * t214;
-    const double t268 = t266 + t267;
-    const double t269 = t6 * t268;
-    const double t270 = t269 - t122;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const double t20 = t14 * t14;
-    const double t246 = phi_dot * t5;
-    const double t272 = Theta_2 * t19;
-    const double t274 = 2.0 * t246;
-    const double t275 = t6 * t274;
-    const double t273 = t272 / t20;
-    const double t276 = t273 * t275;
-    double rest = t276 - t276;
-    const double t21 = t14 * t20;
-    const double t22 = t14 * t21;
-    const double t23 = t19 / t22;
-    const double t24 = t18 * t23;
-    const double t84 = t24 * t83;
-    rest *= t84;
-    const double t125 = t24 * t124;
-    rest *= t125;
-    const double t139 = t49 * t23;
-    const double t166 = t139 * t165;
-    double term = t166 - t166;
-    const double t167 = t139 * t124;
-    term *= t167;
-    const double t247 = t23 * t128;
-    const double t248 = t246 * t247;
-    const double t249 = t134 * t248;
-    term *= t249;
+    const double t24 = L * L;
+    const double t25 = t6 * t24;
+    const double t26 = t6 * t25;
+    const double t27 = t4 * t26;
+    const double t49 = t3 * t26;
+    const double t18 = 1.0 / t14;
+    const double t91 = t7 * t18;
+    const double t19 = t5 * t18;
+    const double t20 = t12 * t19;
+    const double theta_dot = qd[2];
+    const double t28 = theta_dot * t5;
+    const double x_dot = qd[0];
+    const double t29 = x_dot * t4;
+    const double y_dot = qd[1];
+    const double t30 = y_dot * t3;
+    const double t31 = t29 + t30;
+    const double t32 = t8 * t31;
+    const double t33 = t28 + t32;
+    const double t34 = t19 * t33;
+    const double phi_dot = qd[3];
+    const double t35 = phi_dot + t34;
+    const double t63 = t9 * t19;
+    const double t93 = t8 * t5;
+    const double t39 = phi_dot * t5;
+    const double t40 = L * t39;
+    const double t36 = t27 * t35;
+    const double t37 = t36 / t14;
+    const double t38 = t6 * t37;
+    const double t41 = t40 * t20;
+    const double t42 = t38 + t41;
+    const double t60 = t49 * t35;
+    const double t61 = t60 / t14;
+    const double t62 = t6 * t61;
+    const double t64 = t40 * t63;
+    const double t65 = t62 + t64;
+    const double t92 = t91 * t40;
+    const double t94 = t93 * t35;
+    const double t95 = t94 / t14;
+    const double t96 = t6 * t95;
+    const double t97 = t92 + t96;
+    const double t45 = t5 * t33;
+    const double t99 = t93 * t45;
+    const double t46 = t27 * t45;
+    const double t67 = t45 * t49;
+    const double t47 = t46 / t14;
+    const double t48 = t47 / t14;
+    const double t68 = t67 / t14;
+    const double t69 = t68 / t14;
+    const double t100 = t99 / t14;
+    const double t101 = t100 / t14;
+    const double t50 = t4 * t6;
+    const double t51 = t3 * t5;
+    const double t52 = t50 - t51;
+    const double t53 = t5 * t52;
+    const double t54 = t49 - t53;
+    const double t55 = t18 * t54;
+    const double t86 = t8 * t18;
+    const double t43 = t4 * t19;
+    const double t87 = t6 * t86;
+    const double t44 = t42 * t43;
+    const double t56 = t48 * t55;
+    const double t57 = t44 + t56;
+    const double t88 = t48 * t87;
+    const double t89 = t86 * t42;
+    const double t90 = t88 - t89;
+    const double t98 = t43 * t97;
+    const double t102 = t101 * t55;
+    const double t103 = t98 + t102;
+    const double t104 = t90 + t103;
+    const double t66 = t43 * t65;
+    const double t72 = t3 * t6;
+    const double t73 = t4 * t5;
+    const double t74 = t72 + t73;
+    const double t75 = t5 * t74;
+    const double t76 = t27 + t75;
+    const double t77 = t18 * t76;
+    const double t70 = t69 * t55;
+    const double t71 = t66 + t70;
+    const double t78 = t48 * t77;
+    const double t79 = t66 - t78;
+    const double t80 = t71 + t79;
+    const double t131 = t3 * t19;
+    const double t132 = t65 * t131;
+    const double t133 = t69 * t77;
+    const double t134 = t132 - t133;
+    const double t137 = t69 * t87;
+    const double t138 = t86 * t65;
+    const double t139 = t137 - t138;
+    const double t140 = t97 * t131;
+    const double t141 = t101 * t77;
+    const double t142 = t140 - t141;
+    const double t143 = t139 + t142;
+    const double t159 = t101 * t87;
+    const double t160 = t86 * t97;
+    const double t161 = t159 - t160;
+    const double m_2 = p->m_2;
+    const double t21 = L * m_2;
+    const double t22 = 2.0 * t21;
+    const double t59 = t4 * t21;
+    const double t109 = t3 * t21;
+    const double t23 = t3 * t22;
+    const double t130 = t4 * t22;
+    const double t115 = t59 * t34;
+    const double t150 = t109 * t34;
+    const double t83 = m_2 * t24;
+    const double Theta_1 = p->Theta_1;
+    const double t84 = Theta_1 + t83;
+    const double Theta_2 = p->Theta_2;
+    const double t85 = Theta_2 + t84;
+    const double t110 = t109 * t104;
+    const double m_1 = p->m_1;
+    const double t111 = m_1 + m_2;
+    const double t112 = 2.0 * t111;
+    const double t152 = t59 * t143;
+    const double t113 = t112 * t57;
+    const double t114 = t110 - t113;
+    const double t116 = t20 * t115;
+    const double t117 = t114 - t116;
+    const double t151 = t63 * t150;
+    const double t153 = t112 * t134;
+    const double t154 = t152 + t153;
+    const double t155 = t151 + t154;
+    const double t58 = t23 * t57;
+    const double t81 = t59 * t80;
+    const double t82 = t58 - t81;
+    const double t105 = t85 * t104;
+    const double t106 = t82 - t105;
+    const double t129 = t109 * t80;
+    const double t135 = t130 * t134;
+    const double t136 = t129 - t135;
+    const double t144 = t85 * t143;
+    const double t145 = t136 - t144;
+    const double t122 = t63 * t115;
+    const double t123 = t111 * t80;
+    const double t124 = t122 + t123;
+    const double t162 = t23 * t161;
+    const double t163 = t111 * t104;
+    const double t164 = t162 - t163;
+    const double t165 = t91 * t115;
+    const double t166 = t164 - t165;
+    const double t168 = t91 * t150;
+    const double t169 = t130 * t161;
+    const double t170 = t111 * t143;
+    const double t171 = t169 + t170;
+    const double t172 = t168 + t171;
+    const double t176 = 2.0 * t161;
+    const double t175 = t110 - t152;
+    const double t177 = t85 * t176;
+    const double t178 = t175 - t177;
+    const double t119 = t9 * t12;
+    const double t108 = t13 * t18;
+    const double t120 = t18 * t119;
+    const double t183 = t10 * t18;
+    const double t121 = t59 * t104;
+    const double t125 = t121 + t124;
+    const double t107 = t20 * t106;
+    const double t118 = t108 * t117;
+    const double t126 = t120 * t125;
+    const double t127 = t118 - t126;
+    const double t128 = t107 + t127;
+    double rest = t128 - t128;
+    const double t181 = t63 * t106;
+    const double t182 = t120 * t117;
+    const double t184 = t183 * t125;
+    const double t185 = t182 - t184;
+    const double t186 = t181 + t185;
+    rest *= t186;
+    const double t197 = t91 * t106;
+    const double t198 = t20 * t117;
+    const double t199 = t63 * t125;
+    const double t200 = t198 - t199;
+    const double t201 = t197 + t200;
+    rest *= t201;
+    const double t147 = t109 * t143;
+    const double t148 = t147 - t124;
+    const double t146 = t20 * t145;
+    const double t149 = t108 * t148;
+    const double t156 = t120 * t155;
+    const double t157 = t149 - t156;
+    const double t158 = t146 + t157;
+    double term = t158 - t158;
+    const double t187 = t63 * t145;
+    const double t188 = t120 * t148;
+    const double t189 = t183 * t155;
+    const double t190 = t188 - t189;
+    const double t191 = t187 + t190;
+    term *= t191;
+    const double t202 = t91 * t145;
+    const double t203 = t20 * t148;
+    const double t204 = t63 * t155;
+    const double t205 = t203 - t204;
+    const double t206 = t202 + t205;
+    term *= t206;
     rest += term;
-    const double t135 = phi_dot * t134;
-    const double t136 = t128 * t135;
-    const double t126 = L * t19;
-    const double t127 = t126 / t22;
-    const double t137 = t127 * t136;
-    const double t138 = t18 * t137;
-    term = t138 - t138;
-    const double t168 = t49 * t137;
-    term *= t168;
-    const double t169 = L / t22;
-    const double t209 = t169 * t208;
-    term *= t209;
+    const double t167 = t108 * t166;
+    const double t173 = t120 * t172;
+    const double t174 = t167 - t173;
+    const double t179 = t20 * t178;
+    const double t180 = t174 + t179;
+    term = t180 - t180;
+    const double t192 = t120 * t166;
+    const double t193 = t183 * t172;
+    const double t194 = t192 - t193;
+    const double t195 = t63 * t178;
+    const double t196 = t194 + t195;
+    term *= t196;
+    const double t207 = t20 * t166;
+    const double t208 = t63 * t172;
+    const double t209 = t207 - t208;
+    const double t210 = t91 * t178;
+    const double t211 = t209 + t210;
+    term *= t211;
     rest += term;
-    const double t245 = t169 * t244;
-    term = t245 - t245;
-    const double t250 = L * Theta_2;
-    const double t251 = t250 / t21;
-    const double t261 = t251 * t260;
-    term *= t261;
-    const double t271 = t251 * t270;
-    term *= t271;
+    const double t212 = Theta_2 * t104;
+    const double t213 = -t212;
+    term = t213 - t213;
+    const double t214 = Theta_2 * t143;
+    const double t215 = -t214;
+    term *= t215;
+    const double t216 = Theta_2 * t176;
+    const double t217 = -t216;
+    term *= t217;
     rest += term;
     if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_tilde[0] = t84;
-    C_tilde[1] = t125;
-    C_tilde[2] = t138;
+    C_tilde[0] = t128;
+    C_tilde[1] = t158;
+    C_tilde[2] = t180;
     C_tilde[3] = 0.0;
-    C_tilde[4] = t166;
-    C_tilde[5] = t167;
-    C_tilde[6] = t168;
+    C_tilde[4] = t186;
+    C_tilde[5] = t191;
+    C_tilde[6] = t196;
     C_tilde[7] = 0.0;
-    C_tilde[8] = t209;
-    C_tilde[9] = t245;
-    C_tilde[10] = t249;
+    C_tilde[8] = t201;
+    C_tilde[9] = t206;
+    C_tilde[10] = t211;
     C_tilde[11] = 0.0;
-    C_tilde[12] = t261;
-    C_tilde[13] = t271;
-    C_tilde[14] = t276;
+    C_tilde[12] = t213;
+    C_tilde[13] = t215;
+    C_tilde[14] = t217;
     C_tilde[15] = 0.0;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1865,7 +1806,7 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix(const double q[
     const double t9 = t8 * t8;
     const double t10 = t7 * t7;
     const double t11 = 1.0 + t10;
-    const double t12 = t11 * 1.262177448353619e-29;
+    const double t12 = t11 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t9 > t12))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1918,88 +1859,87 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
-    const double t4 = cosine[0];
-    const double t8 = L * t4;
+    const double t19 = L * L;
+    const double phi_dot = qd[3];
+    const double t6 = cosine[1];
+    const double t23 = phi_dot * t6;
+    const double theta_dot = qd[2];
     const double t5 = sine[1];
+    const double t26 = theta_dot * t5;
+    const double t28 = (-1.0) + t19;
+    const double t4 = cosine[0];
+    const double t31 = t4 * t4;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double t34 = m_1 + m_2;
+    const double t20 = m_2 * t19;
+    const double Theta_1 = p->Theta_1;
+    const double t21 = Theta_1 + t20;
+    const double Theta_2 = p->Theta_2;
+    const double t22 = Theta_2 + t21;
+    const double t24 = t3 * t23;
+    const double t25 = t22 * t24;
+    const double t27 = t22 * t26;
+    const double t29 = t28 * t25;
+    const double t30 = t4 * t26;
+    const double t32 = t31 + (-2.0);
+    const double t33 = t22 * t32;
+    const double t35 = t34 * t19;
+    const double t36 = t31 * t35;
+    const double t37 = t34 + t22;
+    const double t38 = t7 * t37;
+    const double t39 = t36 + t38;
+    const double t40 = t19 * t39;
+    const double t41 = t33 + t40;
+    const double t42 = t30 * t41;
+    const double t43 = t29 + t42;
+    const double t44 = t4 * t43;
+    const double t45 = t27 + t44;
+    const double t46 = t4 * t45;
+    const double t47 = t25 + t46;
+    const double t57 = t3 * t26;
+    const double t58 = t4 * t57;
+    const double t59 = t23 + t58;
+    const double t60 = t28 * t59;
+    const double t61 = t4 * t60;
+    const double t62 = t57 + t61;
+    const double t63 = t4 * t62;
+    const double t64 = t23 + t63;
+    const double t8 = L * t4;
+    const double t12 = t6 * t8;
+    const double t13 = t12 * t12;
     const double t9 = t5 * t8;
     const double t10 = t9 * t9;
     const double t11 = t7 + t10;
-    const double t6 = cosine[1];
-    const double t12 = t6 * t8;
-    const double t13 = t12 * t12;
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (FRONT_CAR_WHEELSET_RARELY(!(t13 > t17))) {
+    const double t18 = t16 * 7.888609052210118e-31;
+    if (FRONT_CAR_WHEELSET_RARELY(!(t13 > t18))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const double t18 = L * L;
-    const double m_2 = p->m_2;
-    const double t19 = m_2 * t18;
-    const double Theta_1 = p->Theta_1;
-    const double t20 = Theta_1 + t19;
-    const double Theta_2 = p->Theta_2;
-    const double t21 = Theta_2 + t20;
-    const double phi_dot = qd[3];
-    const double t22 = phi_dot * t6;
-    const double t23 = t3 * t22;
-    const double t24 = t21 * t23;
-    const double theta_dot = qd[2];
-    const double t25 = theta_dot * t5;
-    const double t26 = t21 * t25;
-    const double t27 = t5 * t4;
-    const double t28 = t4 * t4;
-    const double t29 = t28 + (-2.0);
-    const double t30 = t27 * t29;
-    const double t31 = t21 * t30;
-    const double m_1 = p->m_1;
-    const double t32 = m_1 + m_2;
-    const double t33 = t32 * t18;
-    const double t34 = t28 * t33;
-    const double t35 = t32 + t21;
-    const double t36 = t7 * t35;
-    const double t37 = t34 + t36;
-    const double t38 = t27 * t37;
-    const double t39 = t18 * t38;
-    const double t40 = t31 + t39;
-    const double t41 = theta_dot * t40;
-    const double t42 = (-1.0) + t18;
-    const double t43 = t42 * t24;
-    const double t44 = t41 + t43;
-    const double t45 = t4 * t44;
-    const double t46 = t26 + t45;
-    const double t47 = t4 * t46;
-    const double t48 = t24 + t47;
-    const double t49 = t6 * t4;
-    const double t50 = t14 * t49;
-    const double t51 = t18 * t49;
-    const double t52 = t6 * t51;
-    const double t53 = t4 * t52;
-    const double t54 = t50 * t53;
-    const double t55 = t48 / t54;
-    double rest = t55 - t55;
-    const double t56 = t12 * t50;
-    const double t57 = Theta_2 / t56;
-    const double t58 = t3 * t25;
-    const double t59 = t4 * t58;
-    const double t60 = t22 + t59;
-    const double t61 = t42 * t60;
-    const double t62 = t4 * t61;
-    const double t63 = t58 + t62;
-    const double t64 = t4 * t63;
-    const double t65 = t22 + t64;
-    const double t66 = t57 * t65;
-    rest *= t66;
+    const double t48 = t6 * t4;
+    const double t49 = t14 * t48;
+    const double t50 = t19 * t48;
+    const double t51 = t6 * t50;
+    const double t52 = t4 * t51;
+    const double t53 = t49 * t52;
+    const double t54 = t47 / t53;
+    double rest = t54 - t54;
+    const double t55 = t12 * t49;
+    const double t56 = Theta_2 / t55;
+    const double t65 = t56 * t64;
+    rest *= t65;
     if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_bar[0] = t55;
+    C_bar[0] = t54;
     C_bar[1] = 0.0;
-    C_bar[2] = t66;
+    C_bar[2] = t65;
     C_bar[3] = 0.0;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -2044,7 +1984,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix(const double
     const double t9 = t8 * t8;
     const double t10 = t7 * t7;
     const double t11 = 1.0 + t10;
-    const double t12 = t11 * 1.262177448353619e-29;
+    const double t12 = t11 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t9 > t12))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2091,7 +2031,7 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity(const double q[
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2156,7 +2096,7 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration(const doubl
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2406,7 +2346,7 @@ front_car_wheelset_status front_car_wheelset_actuator_mass_matrix(const double q
         const double t14 = t11 + t13;
         const double t15 = t8 * t8;
         const double t16 = 1.0 + t15;
-        const double t17 = t16 * 1.262177448353619e-29;
+        const double t17 = t16 * 7.888609052210118e-31;
         const double t18 = fabs(theta);
         if (!(100000.0 >= t18)) {
             return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2475,7 +2415,7 @@ front_car_wheelset_status front_car_wheelset_actuator_bias(const double q[4], co
     const double t14 = t11 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2662,7 +2602,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t13 = t10 + t12;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     const double t7 = t3 * t3;
     const double t14 = t7 + t13;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
@@ -2681,7 +2621,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics(const double q[4],
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t18 = Theta_1 * t7;
     const double t19 = L * L;
     const double t21 = t4 * t20;
@@ -2749,7 +2689,7 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2770,7 +2710,7 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t18 = Theta_1 * t7;
     const double t19 = L * L;
     const double t20 = m_1 * t4;
@@ -2864,41 +2804,39 @@ front_car_wheelset_status front_car_wheelset_multipliers(const double q[4], cons
     const double t115 = t6 * t103;
     const double t116 = t114 - t115;
     const double t117 = t110 + t116;
-    const double t127 = t56 * t68;
+    const double t125 = t56 * t68;
     const double t122 = K_f * t75;
-    const double t123 = Theta_2 + t72;
-    const double t124 = t123 - Theta_2;
-    const double t125 = t124 * t102;
-    const double t126 = t122 - t125;
-    const double t128 = t126 - t127;
+    const double t123 = t72 * t102;
+    const double t124 = t122 - t123;
+    const double t126 = t124 - t125;
     const double T = u[1];
-    const double t129 = T - t128;
+    const double t127 = T - t126;
     const double t121 = t74 * t106;
-    const double t130 = t99 * t129;
-    const double t131 = t121 + t130;
-    const double t134 = t74 * t117;
-    const double t135 = t55 * t129;
-    const double t136 = t134 + t135;
+    const double t128 = t99 * t127;
+    const double t129 = t121 + t128;
+    const double t132 = t74 * t117;
+    const double t133 = t55 * t127;
+    const double t134 = t132 + t133;
     const double t107 = t55 * t106;
     const double t118 = t99 * t117;
     const double t119 = t107 - t118;
     const double t120 = t8 * t119;
-    const double t132 = t62 * t131;
-    const double t133 = t120 - t132;
-    const double t137 = t52 * t136;
-    const double t138 = t133 - t137;
-    const double t139 = t47 * t138;
-    double rest = t139 - t139;
-    const double t140 = t6 * t131;
-    const double t141 = t5 * t136;
-    const double t142 = t140 + t141;
-    const double t143 = t47 * t142;
-    rest *= t143;
+    const double t130 = t62 * t129;
+    const double t131 = t120 - t130;
+    const double t135 = t52 * t134;
+    const double t136 = t131 - t135;
+    const double t137 = t47 * t136;
+    double rest = t137 - t137;
+    const double t138 = t6 * t129;
+    const double t139 = t5 * t134;
+    const double t140 = t138 + t139;
+    const double t141 = t47 * t140;
+    rest *= t141;
     if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t139;
-    lambda_B[1] = t143;
+    lambda_B[0] = t137;
+    lambda_B[1] = t141;
     return FRONT_CAR_WHEELSET_OK;
 }
 

@@ -32,11 +32,11 @@
  * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 1      5      2      0      2      0
  * projected_mass_matrix                12     41      5      0      2      0
- * projected_coriolis_matrix            79    186      5      0      2      0
+ * projected_coriolis_matrix            63    135     10      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   6     11      2      0      2      0
- * minimal_coriolis_matrix              17     41      2      0      2      0
+ * minimal_coriolis_matrix              17     40      2      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
@@ -49,7 +49,7 @@
  * actuator_mass_matrix                  4      7      1      0      1      0
  * actuator_bias                        12     28      2      0      2      0
  * forward_dynamics                     38     86      1      0      2      0
- * multipliers                          42     88      1      0      2      0
+ * multipliers                          40     88      1      0      2      0
  * energy                                8     14      0      0      1      0
  * singularity                          12     23      5      1      2      0
  * (changes of sign are not counted)
@@ -633,7 +633,7 @@ front_car_wheelset_status front_car_wheelset_constraint_pseudoinverse_f(const fl
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -711,7 +711,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_f(const float q
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -783,7 +783,7 @@ front_car_wheelset_status front_car_wheelset_nullspace_projector_dot_f(const flo
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -906,7 +906,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -936,7 +936,7 @@ front_car_wheelset_status front_car_wheelset_weighted_pseudoinverse_f(const floa
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t26 > t40))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
@@ -1033,7 +1033,7 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1063,7 +1063,7 @@ front_car_wheelset_status front_car_wheelset_weighted_nullspace_projector_f(cons
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t26 > t40))) {
         return FRONT_CAR_WHEELSET_MASS_RANK;
     }
@@ -1218,7 +1218,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_matrix_f(const fl
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1278,7 +1278,7 @@ front_car_wheelset_status front_car_wheelset_projected_control_pseudoinverse_f(c
         const float t15 = t12 + t14;
         const float t16 = t9 * t9;
         const float t17 = 1.0f + t16;
-        const float t18 = t17 * 3.637979e-12f;
+        const float t18 = t17 * 2.2737368e-13f;
         if (!(t15 > t18)) {
             return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
         }
@@ -1327,7 +1327,7 @@ front_car_wheelset_status front_car_wheelset_orthogonal_complement_f(const float
     const float t9 = t8 * t8;
     const float t10 = t7 * t7;
     const float t11 = 1.0f + t10;
-    const float t12 = t11 * 3.637979e-12f;
+    const float t12 = t11 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t9 > t12))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1381,7 +1381,7 @@ front_car_wheelset_status front_car_wheelset_projected_mass_matrix_f(const float
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1490,320 +1490,261 @@ front_car_wheelset_status front_car_wheelset_projected_coriolis_matrix_f(const f
     const float L = p->L;
     const float t6 = cosine[1];
     const float t8 = L * t6;
-    const float phi_dot = qd[3];
-    const float t4 = cosine[0];
-    const float t31 = phi_dot * t4;
-    const float t32 = t5 * t31;
     const float t3 = sine[0];
     const float t9 = t3 * t8;
     const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
+    const float t4 = cosine[0];
     const float t12 = t4 * t8;
     const float t13 = t12 * t12;
+    const float t11 = t7 + t10;
     const float t14 = t11 + t13;
-    const float t33 = t14 * t32;
-    const float t121 = t5 * t14;
-    const float t163 = t32 * t121;
     const float t15 = t8 * t8;
-    const float theta_dot = qd[2];
-    const float t35 = theta_dot * t5;
-    const float x_dot = qd[0];
-    const float t36 = x_dot * t4;
-    const float y_dot = qd[1];
-    const float t37 = y_dot * t3;
-    const float t38 = t36 + t37;
-    const float t39 = t8 * t38;
-    const float t40 = t35 + t39;
-    const float t19 = L * L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float t28 = m_1 + m_2;
-    const float t25 = m_2 * t19;
-    const float Theta_1 = p->Theta_1;
-    const float t26 = Theta_1 + t25;
-    const float Theta_2 = p->Theta_2;
-    const float t27 = Theta_2 + t26;
-    const float t29 = 2.0f * t28;
-    const float t30 = t27 - t29;
-    const float t34 = t30 * t33;
-    const float t43 = t6 * t6;
-    const float t44 = t43 + (-2.0f);
-    const float t47 = m_2 * t4;
-    const float t49 = t3 * t6;
-    const float t50 = t5 * t49;
-    const float t51 = t28 * t19;
-    const float t55 = t3 * t5;
-    const float t56 = t28 + t27;
-    const float t57 = t55 * t56;
-    const float t69 = t5 * t27;
-    const float t70 = t14 * t31;
-    const float t71 = 2.0f - t43;
-    const float t78 = t27 * t40;
-    const float t79 = t55 * t78;
-    const float t41 = L * t5;
-    const float t42 = t41 * t41;
-    const float t45 = t14 + t44;
-    const float t46 = t42 + t45;
-    const float t48 = t46 * t47;
-    const float t52 = t50 * t51;
-    const float t53 = t48 - t52;
-    const float t54 = t6 * t53;
-    const float t58 = t5 * t57;
-    const float t59 = t5 * t58;
-    const float t60 = t54 - t59;
-    const float t61 = t6 * t60;
-    const float t62 = t7 + t15;
-    const float t63 = 1.0f - t62;
-    const float t64 = t63 * t47;
-    const float t65 = t61 + t64;
-    const float t66 = t40 * t65;
-    const float t67 = t34 + t66;
-    const float t68 = t19 * t67;
-    const float t72 = t49 * t71;
-    const float t73 = t40 * t72;
-    const float t74 = t70 + t73;
-    const float t75 = t69 * t74;
-    const float t76 = t68 + t75;
-    const float t77 = t6 * t76;
-    const float t80 = t77 - t79;
-    const float t81 = t6 * t80;
-    const float t82 = t27 * t33;
-    const float t83 = t81 - t82;
-    const float t18 = t4 * t6;
-    const float t102 = (-2.0f) + t42;
-    const float t109 = t7 * t14;
-    const float t110 = 1.0f - t109;
-    const float t140 = t71 * t78;
-    const float t141 = t50 * t140;
-    const float t142 = m_2 * t18;
-    const float t143 = 1.0f - t19;
-    const float t144 = t28 * t143;
-    const float t145 = t27 + t144;
-    const float t146 = t55 * t145;
-    const float t147 = t142 + t146;
-    const float t148 = t6 * t147;
-    const float t149 = t102 * t47;
-    const float t150 = t148 + t149;
-    const float t151 = t6 * t150;
-    const float t152 = t151 - t57;
-    const float t153 = t6 * t152;
-    const float t154 = t110 * t47;
-    const float t155 = t153 + t154;
-    const float t156 = t40 * t155;
-    const float t157 = t34 + t156;
-    const float t158 = t19 * t157;
-    const float t159 = t141 + t158;
-    const float t160 = t6 * t159;
-    const float t161 = t160 - t79;
-    const float t162 = t6 * t161;
-    const float t164 = t69 * t163;
-    const float t165 = t162 - t164;
-    const float t111 = m_2 * t110;
-    const float t90 = phi_dot * t3;
-    const float t91 = t5 * t90;
-    const float t122 = t91 * t121;
-    const float t85 = t4 * t5;
-    const float t87 = t5 * t18;
-    const float t103 = m_2 * t102;
-    const float t86 = t85 * t78;
-    const float t88 = t44 * t78;
-    const float t89 = t87 * t88;
-    const float t92 = t14 * t91;
-    const float t93 = t30 * t92;
-    const float t94 = t85 * t56;
-    const float t95 = m_2 * t49;
-    const float t96 = (-1.0f) + t19;
-    const float t97 = t28 * t96;
-    const float t98 = t97 - t27;
-    const float t99 = t85 * t98;
-    const float t100 = t95 + t99;
-    const float t101 = t6 * t100;
-    const float t104 = t3 * t103;
-    const float t105 = t101 + t104;
-    const float t106 = t6 * t105;
-    const float t107 = t94 + t106;
-    const float t108 = t6 * t107;
-    const float t112 = t3 * t111;
-    const float t113 = t108 + t112;
-    const float t114 = t40 * t113;
-    const float t115 = t93 + t114;
-    const float t116 = t19 * t115;
-    const float t117 = t89 + t116;
-    const float t118 = t6 * t117;
-    const float t119 = t86 + t118;
-    const float t120 = t6 * t119;
-    const float t123 = t69 * t122;
-    const float t124 = t120 - t123;
-    const float t128 = t6 * t14;
-    const float t177 = t31 * t128;
-    const float t185 = t71 - t42;
-    const float t171 = t6 * t43;
-    const float t172 = t6 * t171;
-    const float t173 = 3.0f * t7;
-    const float t174 = t172 + t173;
-    const float t175 = t174 * t40;
-    const float t170 = 2.0f * t70;
-    const float t176 = t3 * t175;
-    const float t178 = t176 - t177;
-    const float t179 = t6 * t178;
-    const float t180 = t170 + t179;
-    const float t181 = t27 * t180;
-    const float t182 = t85 * t111;
-    const float t183 = m_2 * t87;
-    const float t184 = t27 * t71;
-    const float t186 = t28 * t185;
-    const float t187 = t184 + t186;
-    const float t188 = t3 * t187;
-    const float t189 = t183 + t188;
-    const float t190 = t6 * t189;
-    const float t191 = t85 * t103;
-    const float t192 = t190 + t191;
-    const float t193 = t6 * t192;
-    const float t194 = t3 * t56;
-    const float t195 = t193 - t194;
-    const float t196 = t6 * t195;
-    const float t197 = t182 + t196;
-    const float t198 = t40 * t197;
-    const float t199 = t30 * t163;
-    const float t200 = t198 + t199;
-    const float t201 = t19 * t200;
-    const float t202 = t181 + t201;
-    const float t203 = t6 * t202;
-    const float t204 = t3 * t78;
-    const float t205 = t203 - t204;
-    const float t206 = t6 * t205;
-    const float t207 = t27 * t70;
-    const float t208 = t206 - t207;
-    const float t211 = t14 * t90;
-    const float t214 = t90 * t128;
-    const float t221 = t43 + t102;
-    const float t210 = t4 * t78;
-    const float t212 = 2.0f * t211;
-    const float t213 = t4 * t175;
-    const float t215 = t213 + t214;
-    const float t216 = t6 * t215;
-    const float t217 = t212 - t216;
-    const float t218 = t27 * t217;
-    const float t219 = t4 * t56;
-    const float t220 = t27 * t44;
-    const float t222 = t28 * t221;
-    const float t223 = t220 + t222;
-    const float t224 = t4 * t223;
-    const float t225 = m_2 * t50;
-    const float t226 = t224 + t225;
-    const float t227 = t6 * t226;
-    const float t228 = t55 * t103;
-    const float t229 = t227 + t228;
-    const float t230 = t6 * t229;
-    const float t231 = t219 + t230;
-    const float t232 = t6 * t231;
-    const float t233 = t55 * t111;
-    const float t234 = t232 + t233;
-    const float t235 = t40 * t234;
-    const float t236 = t30 * t122;
-    const float t237 = t235 + t236;
-    const float t238 = t19 * t237;
-    const float t239 = t218 + t238;
-    const float t240 = t6 * t239;
-    const float t241 = t210 + t240;
-    const float t242 = t6 * t241;
-    const float t243 = t27 * t211;
-    const float t244 = t242 - t243;
-    const float t129 = t43 * t51;
-    const float t130 = 2.0f * t27;
-    const float t131 = t130 - t28;
-    const float t132 = t5 * t131;
-    const float t133 = t5 * t132;
-    const float t134 = t129 + t133;
-    const float t252 = t19 * t177;
-    const float t253 = t6 * t185;
-    const float t254 = t6 * t253;
-    const float t255 = (-1.0f) + t254;
-    const float t256 = t255 * t40;
-    const float t257 = t3 * t256;
-    const float t258 = t252 + t257;
-    const float t259 = t6 * t258;
-    const float t260 = t259 - t163;
-    const float t262 = t6 * t221;
-    const float t263 = t6 * t262;
-    const float t264 = 1.0f + t263;
-    const float t265 = t264 * t40;
-    const float t266 = t4 * t265;
-    const float t267 = t19 * t214;
-    const float t268 = t266 + t267;
-    const float t269 = t6 * t268;
-    const float t270 = t269 - t122;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t20 = t14 * t14;
-    const float t246 = phi_dot * t5;
-    const float t272 = Theta_2 * t19;
-    const float t274 = 2.0f * t246;
-    const float t275 = t6 * t274;
-    const float t273 = t272 / t20;
-    const float t276 = t273 * t275;
-    float rest = t276 - t276;
-    const float t21 = t14 * t20;
-    const float t22 = t14 * t21;
-    const float t23 = t19 / t22;
-    const float t24 = t18 * t23;
-    const float t84 = t24 * t83;
-    rest *= t84;
-    const float t125 = t24 * t124;
-    rest *= t125;
-    const float t139 = t49 * t23;
-    const float t166 = t139 * t165;
-    float term = t166 - t166;
-    const float t167 = t139 * t124;
-    term *= t167;
-    const float t247 = t23 * t128;
-    const float t248 = t246 * t247;
-    const float t249 = t134 * t248;
-    term *= t249;
+    const float t24 = L * L;
+    const float t25 = t6 * t24;
+    const float t26 = t6 * t25;
+    const float t27 = t4 * t26;
+    const float t49 = t3 * t26;
+    const float t18 = 1.0f / t14;
+    const float t91 = t7 * t18;
+    const float t19 = t5 * t18;
+    const float t20 = t12 * t19;
+    const float theta_dot = qd[2];
+    const float t28 = theta_dot * t5;
+    const float x_dot = qd[0];
+    const float t29 = x_dot * t4;
+    const float y_dot = qd[1];
+    const float t30 = y_dot * t3;
+    const float t31 = t29 + t30;
+    const float t32 = t8 * t31;
+    const float t33 = t28 + t32;
+    const float t34 = t19 * t33;
+    const float phi_dot = qd[3];
+    const float t35 = phi_dot + t34;
+    const float t63 = t9 * t19;
+    const float t93 = t8 * t5;
+    const float t39 = phi_dot * t5;
+    const float t40 = L * t39;
+    const float t36 = t27 * t35;
+    const float t37 = t36 / t14;
+    const float t38 = t6 * t37;
+    const float t41 = t40 * t20;
+    const float t42 = t38 + t41;
+    const float t60 = t49 * t35;
+    const float t61 = t60 / t14;
+    const float t62 = t6 * t61;
+    const float t64 = t40 * t63;
+    const float t65 = t62 + t64;
+    const float t92 = t91 * t40;
+    const float t94 = t93 * t35;
+    const float t95 = t94 / t14;
+    const float t96 = t6 * t95;
+    const float t97 = t92 + t96;
+    const float t45 = t5 * t33;
+    const float t99 = t93 * t45;
+    const float t46 = t27 * t45;
+    const float t67 = t45 * t49;
+    const float t47 = t46 / t14;
+    const float t48 = t47 / t14;
+    const float t68 = t67 / t14;
+    const float t69 = t68 / t14;
+    const float t100 = t99 / t14;
+    const float t101 = t100 / t14;
+    const float t50 = t4 * t6;
+    const float t51 = t3 * t5;
+    const float t52 = t50 - t51;
+    const float t53 = t5 * t52;
+    const float t54 = t49 - t53;
+    const float t55 = t18 * t54;
+    const float t86 = t8 * t18;
+    const float t43 = t4 * t19;
+    const float t87 = t6 * t86;
+    const float t44 = t42 * t43;
+    const float t56 = t48 * t55;
+    const float t57 = t44 + t56;
+    const float t88 = t48 * t87;
+    const float t89 = t86 * t42;
+    const float t90 = t88 - t89;
+    const float t98 = t43 * t97;
+    const float t102 = t101 * t55;
+    const float t103 = t98 + t102;
+    const float t104 = t90 + t103;
+    const float t66 = t43 * t65;
+    const float t72 = t3 * t6;
+    const float t73 = t4 * t5;
+    const float t74 = t72 + t73;
+    const float t75 = t5 * t74;
+    const float t76 = t27 + t75;
+    const float t77 = t18 * t76;
+    const float t70 = t69 * t55;
+    const float t71 = t66 + t70;
+    const float t78 = t48 * t77;
+    const float t79 = t66 - t78;
+    const float t80 = t71 + t79;
+    const float t131 = t3 * t19;
+    const float t132 = t65 * t131;
+    const float t133 = t69 * t77;
+    const float t134 = t132 - t133;
+    const float t137 = t69 * t87;
+    const float t138 = t86 * t65;
+    const float t139 = t137 - t138;
+    const float t140 = t97 * t131;
+    const float t141 = t101 * t77;
+    const float t142 = t140 - t141;
+    const float t143 = t139 + t142;
+    const float t159 = t101 * t87;
+    const float t160 = t86 * t97;
+    const float t161 = t159 - t160;
+    const float m_2 = p->m_2;
+    const float t21 = L * m_2;
+    const float t22 = 2.0f * t21;
+    const float t59 = t4 * t21;
+    const float t109 = t3 * t21;
+    const float t23 = t3 * t22;
+    const float t130 = t4 * t22;
+    const float t115 = t59 * t34;
+    const float t150 = t109 * t34;
+    const float t83 = m_2 * t24;
+    const float Theta_1 = p->Theta_1;
+    const float t84 = Theta_1 + t83;
+    const float Theta_2 = p->Theta_2;
+    const float t85 = Theta_2 + t84;
+    const float t110 = t109 * t104;
+    const float m_1 = p->m_1;
+    const float t111 = m_1 + m_2;
+    const float t112 = 2.0f * t111;
+    const float t152 = t59 * t143;
+    const float t113 = t112 * t57;
+    const float t114 = t110 - t113;
+    const float t116 = t20 * t115;
+    const float t117 = t114 - t116;
+    const float t151 = t63 * t150;
+    const float t153 = t112 * t134;
+    const float t154 = t152 + t153;
+    const float t155 = t151 + t154;
+    const float t58 = t23 * t57;
+    const float t81 = t59 * t80;
+    const float t82 = t58 - t81;
+    const float t105 = t85 * t104;
+    const float t106 = t82 - t105;
+    const float t129 = t109 * t80;
+    const float t135 = t130 * t134;
+    const float t136 = t129 - t135;
+    const float t144 = t85 * t143;
+    const float t145 = t136 - t144;
+    const float t122 = t63 * t115;
+    const float t123 = t111 * t80;
+    const float t124 = t122 + t123;
+    const float t162 = t23 * t161;
+    const float t163 = t111 * t104;
+    const float t164 = t162 - t163;
+    const float t165 = t91 * t115;
+    const float t166 = t164 - t165;
+    const float t168 = t91 * t150;
+    const float t169 = t130 * t161;
+    const float t170 = t111 * t143;
+    const float t171 = t169 + t170;
+    const float t172 = t168 + t171;
+    const float t176 = 2.0f * t161;
+    const float t175 = t110 - t152;
+    const float t177 = t85 * t176;
+    const float t178 = t175 - t177;
+    const float t119 = t9 * t12;
+    const float t108 = t13 * t18;
+    const float t120 = t18 * t119;
+    const float t183 = t10 * t18;
+    const float t121 = t59 * t104;
+    const float t125 = t121 + t124;
+    const float t107 = t20 * t106;
+    const float t118 = t108 * t117;
+    const float t126 = t120 * t125;
+    const float t127 = t118 - t126;
+    const float t128 = t107 + t127;
+    float rest = t128 - t128;
+    const float t181 = t63 * t106;
+    const float t182 = t120 * t117;
+    const float t184 = t183 * t125;
+    const float t185 = t182 - t184;
+    const float t186 = t181 + t185;
+    rest *= t186;
+    const float t197 = t91 * t106;
+    const float t198 = t20 * t117;
+    const float t199 = t63 * t125;
+    const float t200 = t198 - t199;
+    const float t201 = t197 + t200;
+    rest *= t201;
+    const float t147 = t109 * t143;
+    const float t148 = t147 - t124;
+    const float t146 = t20 * t145;
+    const float t149 = t108 * t148;
+    const float t156 = t120 * t155;
+    const float t157 = t149 - t156;
+    const float t158 = t146 + t157;
+    float term = t158 - t158;
+    const float t187 = t63 * t145;
+    const float t188 = t120 * t148;
+    const float t189 = t183 * t155;
+    const float t190 = t188 - t189;
+    const float t191 = t187 + t190;
+    term *= t191;
+    const float t202 = t91 * t145;
+    const float t203 = t20 * t148;
+    const float t204 = t63 * t155;
+    const float t205 = t203 - t204;
+    const float t206 = t202 + t205;
+    term *= t206;
     rest += term;
-    const float t135 = phi_dot * t134;
-    const float t136 = t128 * t135;
-    const float t126 = L * t19;
-    const float t127 = t126 / t22;
-    const float t137 = t127 * t136;
-    const float t138 = t18 * t137;
-    term = t138 - t138;
-    const float t168 = t49 * t137;
-    term *= t168;
-    const float t169 = L / t22;
-    const float t209 = t169 * t208;
-    term *= t209;
+    const float t167 = t108 * t166;
+    const float t173 = t120 * t172;
+    const float t174 = t167 - t173;
+    const float t179 = t20 * t178;
+    const float t180 = t174 + t179;
+    term = t180 - t180;
+    const float t192 = t120 * t166;
+    const float t193 = t183 * t172;
+    const float t194 = t192 - t193;
+    const float t195 = t63 * t178;
+    const float t196 = t194 + t195;
+    term *= t196;
+    const float t207 = t20 * t166;
+    const float t208 = t63 * t172;
+    const float t209 = t207 - t208;
+    const float t210 = t91 * t178;
+    const float t211 = t209 + t210;
+    term *= t211;
     rest += term;
-    const float t245 = t169 * t244;
-    term = t245 - t245;
-    const float t250 = L * Theta_2;
-    const float t251 = t250 / t21;
-    const float t261 = t251 * t260;
-    term *= t261;
-    const float t271 = t251 * t270;
-    term *= t271;
+    const float t212 = Theta_2 * t104;
+    const float t213 = -t212;
+    term = t213 - t213;
+    const float t214 = Theta_2 * t143;
+    const float t215 = -t214;
+    term *= t215;
+    const float t216 = Theta_2 * t176;
+    const float t217 = -t216;
+    term *= t217;
     rest += term;
     if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_tilde[0] = t84;
-    C_tilde[1] = t125;
-    C_tilde[2] = t138;
+    C_tilde[0] = t128;
+    C_tilde[1] = t158;
+    C_tilde[2] = t180;
     C_tilde[3] = 0.0f;
-    C_tilde[4] = t166;
-    C_tilde[5] = t167;
-    C_tilde[6] = t168;
+    C_tilde[4] = t186;
+    C_tilde[5] = t191;
+    C_tilde[6] = t196;
     C_tilde[7] = 0.0f;
-    C_tilde[8] = t209;
-    C_tilde[9] = t245;
-    C_tilde[10] = t249;
+    C_tilde[8] = t201;
+    C_tilde[9] = t206;
+    C_tilde[10] = t211;
     C_tilde[11] = 0.0f;
-    C_tilde[12] = t261;
-    C_tilde[13] = t271;
-    C_tilde[14] = t276;
+    C_tilde[12] = t213;
+    C_tilde[13] = t215;
+    C_tilde[14] = t217;
     C_tilde[15] = 0.0f;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -1852,7 +1793,7 @@ front_car_wheelset_status front_car_wheelset_minimal_mass_matrix_f(const float q
     const float t9 = t8 * t8;
     const float t10 = t7 * t7;
     const float t11 = 1.0f + t10;
-    const float t12 = t11 * 3.637979e-12f;
+    const float t12 = t11 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t9 > t12))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -1905,88 +1846,87 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     const float t3 = sine[0];
     const float t7 = t3 * t3;
     const float L = p->L;
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
+    const float t19 = L * L;
+    const float phi_dot = qd[3];
+    const float t6 = cosine[1];
+    const float t23 = phi_dot * t6;
+    const float theta_dot = qd[2];
     const float t5 = sine[1];
+    const float t26 = theta_dot * t5;
+    const float t28 = (-1.0f) + t19;
+    const float t4 = cosine[0];
+    const float t31 = t4 * t4;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
+    const float t34 = m_1 + m_2;
+    const float t20 = m_2 * t19;
+    const float Theta_1 = p->Theta_1;
+    const float t21 = Theta_1 + t20;
+    const float Theta_2 = p->Theta_2;
+    const float t22 = Theta_2 + t21;
+    const float t24 = t3 * t23;
+    const float t25 = t22 * t24;
+    const float t27 = t22 * t26;
+    const float t29 = t28 * t25;
+    const float t30 = t4 * t26;
+    const float t32 = t31 + (-2.0f);
+    const float t33 = t22 * t32;
+    const float t35 = t34 * t19;
+    const float t36 = t31 * t35;
+    const float t37 = t34 + t22;
+    const float t38 = t7 * t37;
+    const float t39 = t36 + t38;
+    const float t40 = t19 * t39;
+    const float t41 = t33 + t40;
+    const float t42 = t30 * t41;
+    const float t43 = t29 + t42;
+    const float t44 = t4 * t43;
+    const float t45 = t27 + t44;
+    const float t46 = t4 * t45;
+    const float t47 = t25 + t46;
+    const float t57 = t3 * t26;
+    const float t58 = t4 * t57;
+    const float t59 = t23 + t58;
+    const float t60 = t28 * t59;
+    const float t61 = t4 * t60;
+    const float t62 = t57 + t61;
+    const float t63 = t4 * t62;
+    const float t64 = t23 + t63;
+    const float t8 = L * t4;
+    const float t12 = t6 * t8;
+    const float t13 = t12 * t12;
     const float t9 = t5 * t8;
     const float t10 = t9 * t9;
     const float t11 = t7 + t10;
-    const float t6 = cosine[1];
-    const float t12 = t6 * t8;
-    const float t13 = t12 * t12;
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    if (FRONT_CAR_WHEELSET_RARELY_F(!(t13 > t17))) {
+    const float t18 = t16 * 2.2737368e-13f;
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t13 > t18))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t18 = L * L;
-    const float m_2 = p->m_2;
-    const float t19 = m_2 * t18;
-    const float Theta_1 = p->Theta_1;
-    const float t20 = Theta_1 + t19;
-    const float Theta_2 = p->Theta_2;
-    const float t21 = Theta_2 + t20;
-    const float phi_dot = qd[3];
-    const float t22 = phi_dot * t6;
-    const float t23 = t3 * t22;
-    const float t24 = t21 * t23;
-    const float theta_dot = qd[2];
-    const float t25 = theta_dot * t5;
-    const float t26 = t21 * t25;
-    const float t27 = t5 * t4;
-    const float t28 = t4 * t4;
-    const float t29 = t28 + (-2.0f);
-    const float t30 = t27 * t29;
-    const float t31 = t21 * t30;
-    const float m_1 = p->m_1;
-    const float t32 = m_1 + m_2;
-    const float t33 = t32 * t18;
-    const float t34 = t28 * t33;
-    const float t35 = t32 + t21;
-    const float t36 = t7 * t35;
-    const float t37 = t34 + t36;
-    const float t38 = t27 * t37;
-    const float t39 = t18 * t38;
-    const float t40 = t31 + t39;
-    const float t41 = theta_dot * t40;
-    const float t42 = (-1.0f) + t18;
-    const float t43 = t42 * t24;
-    const float t44 = t41 + t43;
-    const float t45 = t4 * t44;
-    const float t46 = t26 + t45;
-    const float t47 = t4 * t46;
-    const float t48 = t24 + t47;
-    const float t49 = t6 * t4;
-    const float t50 = t14 * t49;
-    const float t51 = t18 * t49;
-    const float t52 = t6 * t51;
-    const float t53 = t4 * t52;
-    const float t54 = t50 * t53;
-    const float t55 = t48 / t54;
-    float rest = t55 - t55;
-    const float t56 = t12 * t50;
-    const float t57 = Theta_2 / t56;
-    const float t58 = t3 * t25;
-    const float t59 = t4 * t58;
-    const float t60 = t22 + t59;
-    const float t61 = t42 * t60;
-    const float t62 = t4 * t61;
-    const float t63 = t58 + t62;
-    const float t64 = t4 * t63;
-    const float t65 = t22 + t64;
-    const float t66 = t57 * t65;
-    rest *= t66;
+    const float t48 = t6 * t4;
+    const float t49 = t14 * t48;
+    const float t50 = t19 * t48;
+    const float t51 = t6 * t50;
+    const float t52 = t4 * t51;
+    const float t53 = t49 * t52;
+    const float t54 = t47 / t53;
+    float rest = t54 - t54;
+    const float t55 = t12 * t49;
+    const float t56 = Theta_2 / t55;
+    const float t65 = t56 * t64;
+    rest *= t65;
     if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_bar[0] = t55;
+    C_bar[0] = t54;
     C_bar[1] = 0.0f;
-    C_bar[2] = t66;
+    C_bar[2] = t65;
     C_bar[3] = 0.0f;
     return FRONT_CAR_WHEELSET_OK;
 }
@@ -2031,7 +1971,7 @@ front_car_wheelset_status front_car_wheelset_minimal_control_matrix_f(const floa
     const float t9 = t8 * t8;
     const float t10 = t7 * t7;
     const float t11 = 1.0f + t10;
-    const float t12 = t11 * 3.637979e-12f;
+    const float t12 = t11 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t9 > t12))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2078,7 +2018,7 @@ front_car_wheelset_status front_car_wheelset_admissible_velocity_f(const float q
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2143,7 +2083,7 @@ front_car_wheelset_status front_car_wheelset_admissible_acceleration_f(const flo
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2393,7 +2333,7 @@ front_car_wheelset_status front_car_wheelset_actuator_mass_matrix_f(const float 
         const float t14 = t11 + t13;
         const float t15 = t8 * t8;
         const float t16 = 1.0f + t15;
-        const float t17 = t16 * 3.637979e-12f;
+        const float t17 = t16 * 2.2737368e-13f;
         const float t18 = fabsf(theta);
         if (!(100.0f >= t18)) {
             return FRONT_CAR_WHEELSET_ANGLE_RANGE;
@@ -2462,7 +2402,7 @@ front_car_wheelset_status front_car_wheelset_actuator_bias_f(const float q[4], c
     const float t14 = t11 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2649,7 +2589,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t13 = t10 + t12;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     const float t7 = t3 * t3;
     const float t14 = t7 + t13;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
@@ -2668,7 +2608,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_f(const float q[4]
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;
     const float t21 = t4 * t20;
@@ -2736,7 +2676,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -2757,7 +2697,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;
     const float t20 = m_1 * t4;
@@ -2851,41 +2791,39 @@ front_car_wheelset_status front_car_wheelset_multipliers_f(const float q[4], con
     const float t115 = t6 * t103;
     const float t116 = t114 - t115;
     const float t117 = t110 + t116;
-    const float t127 = t56 * t68;
+    const float t125 = t56 * t68;
     const float t122 = K_f * t75;
-    const float t123 = Theta_2 + t72;
-    const float t124 = t123 - Theta_2;
-    const float t125 = t124 * t102;
-    const float t126 = t122 - t125;
-    const float t128 = t126 - t127;
+    const float t123 = t72 * t102;
+    const float t124 = t122 - t123;
+    const float t126 = t124 - t125;
     const float T = u[1];
-    const float t129 = T - t128;
+    const float t127 = T - t126;
     const float t121 = t74 * t106;
-    const float t130 = t99 * t129;
-    const float t131 = t121 + t130;
-    const float t134 = t74 * t117;
-    const float t135 = t55 * t129;
-    const float t136 = t134 + t135;
+    const float t128 = t99 * t127;
+    const float t129 = t121 + t128;
+    const float t132 = t74 * t117;
+    const float t133 = t55 * t127;
+    const float t134 = t132 + t133;
     const float t107 = t55 * t106;
     const float t118 = t99 * t117;
     const float t119 = t107 - t118;
     const float t120 = t8 * t119;
-    const float t132 = t62 * t131;
-    const float t133 = t120 - t132;
-    const float t137 = t52 * t136;
-    const float t138 = t133 - t137;
-    const float t139 = t47 * t138;
-    float rest = t139 - t139;
-    const float t140 = t6 * t131;
-    const float t141 = t5 * t136;
-    const float t142 = t140 + t141;
-    const float t143 = t47 * t142;
-    rest *= t143;
+    const float t130 = t62 * t129;
+    const float t131 = t120 - t130;
+    const float t135 = t52 * t134;
+    const float t136 = t131 - t135;
+    const float t137 = t47 * t136;
+    float rest = t137 - t137;
+    const float t138 = t6 * t129;
+    const float t139 = t5 * t134;
+    const float t140 = t138 + t139;
+    const float t141 = t47 * t140;
+    rest *= t141;
     if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t139;
-    lambda_B[1] = t143;
+    lambda_B[0] = t137;
+    lambda_B[1] = t141;
     return FRONT_CAR_WHEELSET_OK;
 }
 

@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[15];
+    double value[14];
 } front_car_wheelset_prepared;
 
 front_car_wheelset_prepared front_car_wheelset_prepare(const front_car_wheelset_params *p);
@@ -25,7 +25,7 @@ front_car_wheelset_status front_car_wheelset_inverse_dynamics_prepared(const dou
 /* q̈: accelerations under the inputs, (15); 122 operations instead of 138 */
 front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_prepared *p, double qdd[4]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 124 operations instead of 141 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 124 operations instead of 139 */
 front_car_wheelset_status front_car_wheelset_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_wheelset_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus
@@ -206,7 +206,6 @@ front_car_wheelset_prepared front_car_wheelset_prepare(const front_car_wheelset_
     const double v14 = fabs(m_1);
     const double v15 = v14 + v7;
     const double v16 = L * L;
-    const double v17 = v5 - Theta_2;
     front_car_wheelset_prepared prepared;
     prepared.value[0] = L;
     prepared.value[1] = Theta_2;
@@ -222,7 +221,6 @@ front_car_wheelset_prepared front_car_wheelset_prepare(const front_car_wheelset_
     prepared.value[11] = v13;
     prepared.value[12] = v15;
     prepared.value[13] = v16;
-    prepared.value[14] = v17;
     return prepared;
 }
 
@@ -411,7 +409,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared(const dou
     const double t13 = t10 + t12;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     const double t7 = t3 * t3;
     const double t14 = t7 + t13;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
@@ -424,7 +422,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_prepared(const dou
     const double t38 = t34 + t37;
     const double t27 = p->value[10];
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double Theta_1 = p->value[7];
     const double t18 = Theta_1 * t7;
     const double t21 = t4 * t20;
@@ -493,7 +491,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_prepared(const double q
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -504,7 +502,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_prepared(const double q
     const double t38 = t34 + t37;
     const double t27 = p->value[10];
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double Theta_1 = p->value[7];
     const double t18 = Theta_1 * t7;
     const double m_1 = p->value[5];
@@ -601,40 +599,39 @@ front_car_wheelset_status front_car_wheelset_multipliers_prepared(const double q
     const double t115 = t6 * t103;
     const double t116 = t114 - t115;
     const double t117 = t110 + t116;
-    const double t127 = t56 * t68;
+    const double t125 = t56 * t68;
     const double t122 = K_f * t75;
-    const double t124 = p->value[14];
-    const double t125 = t124 * t102;
-    const double t126 = t122 - t125;
-    const double t128 = t126 - t127;
+    const double t123 = t72 * t102;
+    const double t124 = t122 - t123;
+    const double t126 = t124 - t125;
     const double T = u[1];
-    const double t129 = T - t128;
+    const double t127 = T - t126;
     const double t121 = t74 * t106;
-    const double t130 = t99 * t129;
-    const double t131 = t121 + t130;
-    const double t134 = t74 * t117;
-    const double t135 = t55 * t129;
-    const double t136 = t134 + t135;
+    const double t128 = t99 * t127;
+    const double t129 = t121 + t128;
+    const double t132 = t74 * t117;
+    const double t133 = t55 * t127;
+    const double t134 = t132 + t133;
     const double t107 = t55 * t106;
     const double t118 = t99 * t117;
     const double t119 = t107 - t118;
     const double t120 = t8 * t119;
-    const double t132 = t62 * t131;
-    const double t133 = t120 - t132;
-    const double t137 = t52 * t136;
-    const double t138 = t133 - t137;
-    const double t139 = t47 * t138;
-    double rest = t139 - t139;
-    const double t140 = t6 * t131;
-    const double t141 = t5 * t136;
-    const double t142 = t140 + t141;
-    const double t143 = t47 * t142;
-    rest *= t143;
+    const double t130 = t62 * t129;
+    const double t131 = t120 - t130;
+    const double t135 = t52 * t134;
+    const double t136 = t131 - t135;
+    const double t137 = t47 * t136;
+    double rest = t137 - t137;
+    const double t138 = t6 * t129;
+    const double t139 = t5 * t134;
+    const double t140 = t138 + t139;
+    const double t141 = t47 * t140;
+    rest *= t141;
     if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t139;
-    lambda_B[1] = t143;
+    lambda_B[0] = t137;
+    lambda_B[1] = t141;
     return FRONT_CAR_WHEELSET_OK;
 }
 

@@ -251,7 +251,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_sc(const front_car
     const double t13 = t10 + t12;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     const double t7 = sin_phi * sin_phi;
     const double t14 = t7 + t13;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
@@ -270,7 +270,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_sc(const front_car
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t18 = Theta_1 * t7;
     const double t19 = L * L;
     const double t21 = cos_phi * t20;
@@ -325,7 +325,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_sc(const front_car_whee
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -346,7 +346,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_sc(const front_car_whee
     const double t37 = t36 * t13;
     const double t38 = t34 + t37;
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double t18 = Theta_1 * t7;
     const double t19 = L * L;
     const double t20 = m_1 * cos_phi;
@@ -440,41 +440,39 @@ front_car_wheelset_status front_car_wheelset_multipliers_sc(const front_car_whee
     const double t115 = cos_theta * t103;
     const double t116 = t114 - t115;
     const double t117 = t110 + t116;
-    const double t127 = t56 * t68;
+    const double t125 = t56 * t68;
     const double t122 = K_f * t75;
-    const double t123 = Theta_2 + t72;
-    const double t124 = t123 - Theta_2;
-    const double t125 = t124 * t102;
-    const double t126 = t122 - t125;
-    const double t128 = t126 - t127;
+    const double t123 = t72 * t102;
+    const double t124 = t122 - t123;
+    const double t126 = t124 - t125;
     const double T = u[1];
-    const double t129 = T - t128;
+    const double t127 = T - t126;
     const double t121 = t74 * t106;
-    const double t130 = t99 * t129;
-    const double t131 = t121 + t130;
-    const double t134 = t74 * t117;
-    const double t135 = t55 * t129;
-    const double t136 = t134 + t135;
+    const double t128 = t99 * t127;
+    const double t129 = t121 + t128;
+    const double t132 = t74 * t117;
+    const double t133 = t55 * t127;
+    const double t134 = t132 + t133;
     const double t107 = t55 * t106;
     const double t118 = t99 * t117;
     const double t119 = t107 - t118;
     const double t120 = t8 * t119;
-    const double t132 = t62 * t131;
-    const double t133 = t120 - t132;
-    const double t137 = t52 * t136;
-    const double t138 = t133 - t137;
-    const double t139 = t47 * t138;
-    double rest = t139 - t139;
-    const double t140 = cos_theta * t131;
-    const double t141 = sin_theta * t136;
-    const double t142 = t140 + t141;
-    const double t143 = t47 * t142;
-    rest *= t143;
+    const double t130 = t62 * t129;
+    const double t131 = t120 - t130;
+    const double t135 = t52 * t134;
+    const double t136 = t131 - t135;
+    const double t137 = t47 * t136;
+    double rest = t137 - t137;
+    const double t138 = cos_theta * t129;
+    const double t139 = sin_theta * t134;
+    const double t140 = t138 + t139;
+    const double t141 = t47 * t140;
+    rest *= t141;
     if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t139;
-    lambda_B[1] = t143;
+    lambda_B[0] = t137;
+    lambda_B[1] = t141;
     return FRONT_CAR_WHEELSET_OK;
 }
 

@@ -246,7 +246,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_sc_f(const front_c
     const float t13 = t10 + t12;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     const float t7 = sin_phi * sin_phi;
     const float t14 = t7 + t13;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
@@ -265,7 +265,7 @@ front_car_wheelset_status front_car_wheelset_forward_dynamics_sc_f(const front_c
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;
     const float t21 = cos_phi * t20;
@@ -320,7 +320,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_sc_f(const front_car_wh
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
@@ -341,7 +341,7 @@ front_car_wheelset_status front_car_wheelset_multipliers_sc_f(const front_car_wh
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;
     const float t20 = m_1 * cos_phi;
@@ -435,41 +435,39 @@ front_car_wheelset_status front_car_wheelset_multipliers_sc_f(const front_car_wh
     const float t115 = cos_theta * t103;
     const float t116 = t114 - t115;
     const float t117 = t110 + t116;
-    const float t127 = t56 * t68;
+    const float t125 = t56 * t68;
     const float t122 = K_f * t75;
-    const float t123 = Theta_2 + t72;
-    const float t124 = t123 - Theta_2;
-    const float t125 = t124 * t102;
-    const float t126 = t122 - t125;
-    const float t128 = t126 - t127;
+    const float t123 = t72 * t102;
+    const float t124 = t122 - t123;
+    const float t126 = t124 - t125;
     const float T = u[1];
-    const float t129 = T - t128;
+    const float t127 = T - t126;
     const float t121 = t74 * t106;
-    const float t130 = t99 * t129;
-    const float t131 = t121 + t130;
-    const float t134 = t74 * t117;
-    const float t135 = t55 * t129;
-    const float t136 = t134 + t135;
+    const float t128 = t99 * t127;
+    const float t129 = t121 + t128;
+    const float t132 = t74 * t117;
+    const float t133 = t55 * t127;
+    const float t134 = t132 + t133;
     const float t107 = t55 * t106;
     const float t118 = t99 * t117;
     const float t119 = t107 - t118;
     const float t120 = t8 * t119;
-    const float t132 = t62 * t131;
-    const float t133 = t120 - t132;
-    const float t137 = t52 * t136;
-    const float t138 = t133 - t137;
-    const float t139 = t47 * t138;
-    float rest = t139 - t139;
-    const float t140 = cos_theta * t131;
-    const float t141 = sin_theta * t136;
-    const float t142 = t140 + t141;
-    const float t143 = t47 * t142;
-    rest *= t143;
+    const float t130 = t62 * t129;
+    const float t131 = t120 - t130;
+    const float t135 = t52 * t134;
+    const float t136 = t131 - t135;
+    const float t137 = t47 * t136;
+    float rest = t137 - t137;
+    const float t138 = cos_theta * t129;
+    const float t139 = sin_theta * t134;
+    const float t140 = t138 + t139;
+    const float t141 = t47 * t140;
+    rest *= t141;
     if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    lambda_B[0] = t139;
-    lambda_B[1] = t143;
+    lambda_B[0] = t137;
+    lambda_B[1] = t141;
     return FRONT_CAR_WHEELSET_OK;
 }
 

@@ -414,7 +414,7 @@ rear_car_status rear_car_forward_dynamics_prepared(const double q[4], const doub
     const double t13 = t10 + t12;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     const double t7 = t3 * t3;
     const double t14 = t7 + t13;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
@@ -427,7 +427,7 @@ rear_car_status rear_car_forward_dynamics_prepared(const double q[4], const doub
     const double t38 = t34 + t37;
     const double t27 = p->value[10];
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double Theta_1 = p->value[8];
     const double t18 = Theta_1 * t7;
     const double t21 = t4 * t20;
@@ -489,7 +489,7 @@ rear_car_status rear_car_multipliers_prepared(const double q[4], const double qd
     const double t14 = t7 + t13;
     const double t15 = t8 * t8;
     const double t16 = 1.0 + t15;
-    const double t17 = t16 * 1.262177448353619e-29;
+    const double t17 = t16 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -500,7 +500,7 @@ rear_car_status rear_car_multipliers_prepared(const double q[4], const double qd
     const double t38 = t34 + t37;
     const double t27 = p->value[10];
     const double t39 = t27 * t38;
-    const double t40 = t39 * 3.552713678800501e-15;
+    const double t40 = t39 * 8.881784197001252e-16;
     const double m_1 = p->value[6];
     const double t20 = m_1 * t4;
     const double Theta_1 = p->value[8];

@@ -401,7 +401,7 @@ rear_car_status rear_car_forward_dynamics_prepared_f(const float q[4], const flo
     const float t13 = t10 + t12;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     const float t7 = t3 * t3;
     const float t14 = t7 + t13;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
@@ -414,7 +414,7 @@ rear_car_status rear_car_forward_dynamics_prepared_f(const float q[4], const flo
     const float t38 = t34 + t37;
     const float t27 = p->value[10];
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float Theta_1 = p->value[8];
     const float t18 = Theta_1 * t7;
     const float t21 = t4 * t20;
@@ -476,7 +476,7 @@ rear_car_status rear_car_multipliers_prepared_f(const float q[4], const float qd
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -487,7 +487,7 @@ rear_car_status rear_car_multipliers_prepared_f(const float q[4], const float qd
     const float t38 = t34 + t37;
     const float t27 = p->value[10];
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float m_1 = p->value[6];
     const float t20 = m_1 * t4;
     const float Theta_1 = p->value[8];

@@ -250,7 +250,7 @@ rear_car_status rear_car_forward_dynamics_sc_f(const rear_car_trig_f *sc, const 
     const float t13 = t10 + t12;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     const float t7 = sin_phi * sin_phi;
     const float t14 = t7 + t13;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
@@ -269,7 +269,7 @@ rear_car_status rear_car_forward_dynamics_sc_f(const rear_car_trig_f *sc, const 
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;
     const float t21 = cos_phi * t20;
@@ -317,7 +317,7 @@ rear_car_status rear_car_multipliers_sc_f(const rear_car_trig_f *sc, const float
     const float t14 = t7 + t13;
     const float t15 = t8 * t8;
     const float t16 = 1.0f + t15;
-    const float t17 = t16 * 3.637979e-12f;
+    const float t17 = t16 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
@@ -338,7 +338,7 @@ rear_car_status rear_car_multipliers_sc_f(const rear_car_trig_f *sc, const float
     const float t37 = t36 * t13;
     const float t38 = t34 + t37;
     const float t39 = t27 * t38;
-    const float t40 = t39 * 1.9073486e-06f;
+    const float t40 = t39 * 4.7683716e-07f;
     const float t20 = m_1 * cos_phi;
     const float t18 = Theta_1 * t7;
     const float t19 = L * L;

@@ -177,7 +177,7 @@ rolling_disc_prepared_f rolling_disc_prepare_f(const rolling_disc_params_f *p) {
     const float v5 = v2 + v4;
     const float v6 = v3 * v5;
     const float v7 = v5 * v6;
-    const float v8 = v7 * 3.274181e-11f;
+    const float v8 = v7 * 9.094947e-13f;
     const float v9 = m * R;
     rolling_disc_prepared_f prepared;
     prepared.value[0] = R;
@@ -269,7 +269,7 @@ rolling_disc_status rolling_disc_inverse_dynamics_prepared_f(const float q[6], c
         const float t71 = t53 + t70;
         const float t72 = t68 * t71;
         const float t73 = t67 * t72;
-        const float t74 = t73 * 8.185452e-12f;
+        const float t74 = t73 * 2.2737368e-13f;
         if (!(t65 > t74)) {
             return ROLLING_DISC_CONSTRAINT_RANK;
         }

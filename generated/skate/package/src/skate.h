@@ -541,7 +541,7 @@ skate_status skate_weighted_pseudoinverse(const double q[3], const skate_params 
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -572,7 +572,7 @@ skate_status skate_weighted_nullspace_projector(const double q[3], const skate_p
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -680,7 +680,7 @@ skate_status skate_orthogonal_complement(const double q[3], const skate_params *
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
+    if (SKATE_RARELY(!(t4 > 7.888609052210118e-31))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const double t5 = t2 / t3;
@@ -800,7 +800,7 @@ skate_status skate_minimal_mass_matrix(const double q[3], const skate_params *p,
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
+    if (SKATE_RARELY(!(t4 > 7.888609052210118e-31))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const double m_s = p->m_s;
@@ -828,7 +828,7 @@ skate_status skate_minimal_coriolis_matrix(const double q[3], const double qd[3]
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
+    if (SKATE_RARELY(!(t4 > 7.888609052210118e-31))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const double phi_dot = qd[0];
@@ -876,7 +876,7 @@ skate_status skate_minimal_control_matrix(const double q[3], const skate_params 
     double t3;
     skate_sincos(phi, &t2, &t3);
     const double t4 = t3 * t3;
-    if (SKATE_RARELY(!(t4 > 7.099748146989106e-30))) {
+    if (SKATE_RARELY(!(t4 > 7.888609052210118e-31))) {
         return SKATE_CONSTRAINT_RANK;
     }
     const double t5 = 1.0 / t3;
@@ -1089,7 +1089,7 @@ skate_status skate_forward_dynamics(const double q[3], const double qd[3], const
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }
@@ -1142,7 +1142,7 @@ skate_status skate_multipliers(const double q[3], const double qd[3], const doub
     const double t6 = fabs(Theta_s);
     const double t7 = fabs(m_s);
     const double t8 = t6 * t7;
-    const double t9 = t8 * 2.6645352591003757e-15;
+    const double t9 = t8 * 8.881784197001252e-16;
     if (SKATE_RARELY(!(t5 > t9))) {
         return SKATE_MASS_RANK;
     }

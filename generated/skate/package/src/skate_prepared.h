@@ -156,7 +156,7 @@ skate_prepared skate_prepare(const skate_params *p) {
     const double v3 = fabs(Theta_s);
     const double v4 = fabs(m_s);
     const double v5 = v3 * v4;
-    const double v6 = v5 * 2.6645352591003757e-15;
+    const double v6 = v5 * 8.881784197001252e-16;
     const double v7 = 1.0 / m_s;
     skate_prepared prepared;
     prepared.value[0] = m_s;

@@ -143,7 +143,7 @@ skate_prepared_f skate_prepare_f(const skate_params_f *p) {
     const float v3 = fabsf(Theta_s);
     const float v4 = fabsf(m_s);
     const float v5 = v3 * v4;
-    const float v6 = v5 * 1.4305115e-06f;
+    const float v6 = v5 * 4.7683716e-07f;
     const float v7 = 1.0f / m_s;
     skate_prepared_f prepared;
     prepared.value[0] = m_s;

@@ -23,8 +23,8 @@
  * constraint_pseudoinverse              8     26      1      0      2      0
  * nullspace_projector                   5     23      1      0      2      0
  * nullspace_projector_dot              26     66      1      0      2      0
- * weighted_pseudoinverse               29     90      4      0      2      0
- * weighted_nullspace_projector         22     76      1      0      2      0
+ * weighted_pseudoinverse               33     95      4      0      2      0
+ * weighted_nullspace_projector         25     78      1      0      2      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix              5     19      1      0      2      0
  * projected_control_pseudoinverse       4     11      2      0      2      0
@@ -34,8 +34,8 @@
  * projected_potential_force            13     39      1      0      2      0
  * projected_applied_force               7     26      1      0      2      0
  * minimal_mass_matrix                  11     32      1      0      2      0
- * minimal_coriolis_matrix              23     59      3      0      2      0
- * minimal_potential_force               8     19      1      0      2      0
+ * minimal_coriolis_matrix              23     57      3      0      2      0
+ * minimal_potential_force               8     18      1      0      2      0
  * minimal_applied_force                 4     13      1      0      2      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                  14     39      3      0      2      0
@@ -46,8 +46,8 @@
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                 11     32      1      0      2      0
  * actuator_bias                        25     73      1      0      2      0
- * forward_dynamics                     41    107      1      0      2      0
- * multipliers                          47    120      1      0      2      0
+ * forward_dynamics                     44    110      1      0      2      0
+ * multipliers                          51    125      1      0      2      0
  * energy                               11     30      0      0      2      0
  * singularity                          10     23      6      2      2      0
  * (changes of sign are not counted)
@@ -742,7 +742,7 @@ slider_crank_status slider_crank_constraint_pseudoinverse(const double q[3], con
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -824,7 +824,7 @@ slider_crank_status slider_crank_nullspace_projector(const double q[3], const sl
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -901,7 +901,7 @@ slider_crank_status slider_crank_nullspace_projector_dot(const double q[3], cons
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1061,73 +1061,82 @@ slider_crank_status slider_crank_weighted_pseudoinverse(const double q[3], const
     const double t52 = t33 + t51;
     const double t53 = t31 * t52;
     const double t54 = t30 + t53;
-    const double t87 = 0.5 * J_rod;
-    const double t88 = m_rod * t28;
-    const double t89 = 0.125 * t88;
-    const double t90 = t87 + t89;
-    const double t91 = 2.0 * t90;
+    const double t70 = 0.5 * J_rod;
+    const double t71 = m_rod * t28;
+    const double t72 = 0.125 * t71;
+    const double t73 = t70 + t72;
+    const double t74 = 2.0 * t73;
     const double t13 = t6 * t3;
     const double t15 = t13 + t14;
-    const double t120 = l * m_rod;
-    const double t121 = l * t120;
-    const double t119 = t91 * t32;
-    const double t122 = t15 * t121;
-    const double t123 = t14 * t122;
-    const double t124 = t119 + t123;
-    const double t125 = t31 * t124;
-    const double t126 = t30 + t125;
-    const double t129 = t4 * t3;
-    const double t131 = t6 * t5;
-    const double t130 = t129 * t29;
-    const double t132 = t131 + t129;
-    const double t133 = 0.5 * t121;
-    const double t134 = t132 * t133;
-    const double t135 = t91 * t131;
-    const double t136 = t134 - t135;
-    const double t137 = t31 * t136;
-    const double t138 = t130 + t137;
+    const double t129 = l * m_rod;
+    const double t130 = l * t129;
+    const double t128 = t74 * t32;
+    const double t131 = t15 * t130;
+    const double t132 = t14 * t131;
+    const double t133 = t128 + t132;
+    const double t134 = t31 * t133;
+    const double t135 = t30 + t134;
+    const double t138 = t4 * t3;
+    const double t140 = t6 * t5;
+    const double t139 = t138 * t29;
+    const double t141 = t140 + t138;
+    const double t142 = 0.5 * t130;
+    const double t143 = t141 * t142;
+    const double t144 = t74 * t140;
+    const double t145 = t143 - t144;
+    const double t146 = t31 * t145;
+    const double t147 = t139 + t146;
     const double t7 = r * t6;
+    const double t8 = t7 * t7;
     const double t9 = l * t4;
     const double t12 = r * l;
     const double t16 = t12 * t15;
     const double t21 = l * t3;
-    const double t93 = t6 * t4;
-    const double t94 = t5 * t3;
-    const double t95 = t93 - t94;
-    const double t96 = 0.5 * t95;
-    const double t85 = m_s * t16;
-    const double t86 = t21 * t85;
-    const double t92 = t7 * t91;
-    const double t97 = t9 * t96;
-    const double t98 = m_rod * t97;
-    const double t99 = t12 * t98;
-    const double t100 = t92 - t99;
-    const double t101 = t86 + t100;
-    const double t8 = t7 * t7;
+    const double t102 = t6 * t4;
+    const double t103 = t5 * t3;
+    const double t104 = t102 - t103;
+    const double t105 = 0.5 * t104;
+    const double t99 = m_s * t16;
+    const double t100 = t21 * t99;
+    const double t101 = t7 * t74;
+    const double t106 = t9 * t105;
+    const double t107 = m_rod * t106;
+    const double t108 = t12 * t107;
+    const double t109 = t101 - t108;
+    const double t110 = t100 + t109;
     const double t10 = t9 * t9;
     const double t17 = t16 * t16;
-    const double t58 = fabs(m_rod);
-    const double t56 = fabs(J_rod);
-    const double t57 = 0.5 * t56;
-    const double t59 = fabs(l);
-    const double t60 = t59 * t59;
-    const double t61 = t58 * t60;
-    const double t62 = 0.125 * t61;
-    const double t63 = t57 + t62;
-    const double t64 = t8 * t63;
-    const double t65 = fabs(J_crank);
-    const double t66 = fabs(r);
-    const double t67 = t66 * t66;
-    const double t68 = t58 * t67;
-    const double t69 = t65 + t68;
-    const double t70 = 0.5 * t69;
-    const double t71 = t10 * t70;
-    const double t72 = t64 + t71;
-    const double t73 = 2.0 * t72;
-    const double t74 = fabs(m_s);
-    const double t75 = t17 * t74;
-    const double t76 = t73 + t75;
-    const double t77 = 2.6645352591003757e-15 * t76;
+    const double t61 = fabs(m_rod);
+    const double t56 = m_rod * t31;
+    const double t57 = J_crank + t56;
+    const double t58 = 0.5 * t57;
+    const double t59 = 2.0 * t58;
+    const double t60 = fabs(J_crank);
+    const double t62 = fabs(r);
+    const double t63 = t62 * t62;
+    const double t64 = t61 * t63;
+    const double t65 = t60 + t64;
+    const double t66 = 0.5 * t65;
+    const double t67 = 7.450580596923828e-09 * t66;
+    const double t68 = t59 + t67;
+    const double t69 = t10 * t68;
+    const double t75 = fabs(J_rod);
+    const double t76 = 0.5 * t75;
+    const double t77 = fabs(l);
+    const double t78 = t77 * t77;
+    const double t79 = t61 * t78;
+    const double t80 = 0.125 * t79;
+    const double t81 = t76 + t80;
+    const double t82 = 7.450580596923828e-09 * t81;
+    const double t83 = t74 + t82;
+    const double t84 = t8 * t83;
+    const double t85 = fabs(m_s);
+    const double t86 = 3.725290298461914e-09 * t85;
+    const double t87 = m_s + t86;
+    const double t88 = t17 * t87;
+    const double t89 = t84 + t88;
+    const double t90 = t69 + t89;
+    const double t91 = 2.6645352591003757e-15 * t90;
     const double t11 = t8 + t10;
     const double t18 = t11 + t17;
     const double t19 = r * t5;
@@ -1136,57 +1145,57 @@ slider_crank_status slider_crank_weighted_pseudoinverse(const double q[3], const
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const double t55 = fabs(t54);
-    if (SLIDER_CRANK_RARELY(!(t55 > t77))) {
+    if (SLIDER_CRANK_RARELY(!(t55 > t91))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const double t78 = m_s * t12;
-    const double t79 = l * t78;
-    const double t81 = t4 * t15;
-    const double t80 = t79 / t54;
-    const double t82 = t80 * t81;
-    const double t83 = -t82;
-    double rest = t83 - t83;
-    const double t109 = t6 * t96;
-    const double t110 = t109 - t4;
-    const double t111 = m_rod * t110;
-    const double t112 = t5 * t15;
-    const double t113 = m_s * t112;
-    const double t114 = t111 - t113;
-    const double t115 = t31 * t114;
-    const double t116 = J_crank * t4;
-    const double t117 = t115 - t116;
-    const double t103 = r * t78;
-    const double t105 = t6 * t15;
-    const double t104 = t103 / t54;
-    const double t106 = t104 * t105;
-    const double t107 = -t106;
-    rest *= t107;
-    const double t108 = l / t54;
-    const double t118 = t108 * t117;
-    rest *= t118;
-    const double t84 = 1.0 / t54;
-    const double t102 = t84 * t101;
-    double term = t102 - t102;
-    const double t139 = t84 * t138;
-    term *= t139;
-    const double t127 = t84 * t126;
-    const double t128 = -t127;
-    term *= t128;
+    const double t92 = l * m_s;
+    const double t93 = t12 * t92;
+    const double t95 = t4 * t15;
+    const double t94 = t93 / t54;
+    const double t96 = t94 * t95;
+    const double t97 = -t96;
+    double rest = t97 - t97;
+    const double t112 = t31 * t92;
+    const double t118 = t6 * t105;
+    const double t119 = t118 - t4;
+    const double t120 = m_rod * t119;
+    const double t121 = t5 * t15;
+    const double t122 = m_s * t121;
+    const double t123 = t120 - t122;
+    const double t124 = t31 * t123;
+    const double t125 = J_crank * t4;
+    const double t126 = t124 - t125;
+    const double t114 = t6 * t15;
+    const double t113 = t112 / t54;
+    const double t115 = t113 * t114;
+    const double t116 = -t115;
+    rest *= t116;
+    const double t117 = l / t54;
+    const double t127 = t117 * t126;
+    rest *= t127;
+    const double t98 = 1.0 / t54;
+    const double t111 = t98 * t110;
+    double term = t111 - t111;
+    const double t148 = t98 * t147;
+    term *= t148;
+    const double t136 = t98 * t135;
+    const double t137 = -t136;
+    term *= t137;
     rest += term;
     if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    B_G_pinv[0] = t83;
-    B_G_pinv[1] = t102;
-    B_G_pinv[2] = t107;
-    B_G_pinv[3] = t118;
-    B_G_pinv[4] = t128;
-    B_G_pinv[5] = t139;
+    B_G_pinv[0] = t97;
+    B_G_pinv[1] = t111;
+    B_G_pinv[2] = t116;
+    B_G_pinv[3] = t127;
+    B_G_pinv[4] = t137;
+    B_G_pinv[5] = t148;
     return SLIDER_CRANK_OK;
 }
 
@@ -1230,7 +1239,7 @@ slider_crank_status slider_crank_weighted_nullspace_projector(const double q[3],
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1267,95 +1276,100 @@ slider_crank_status slider_crank_weighted_nullspace_projector(const double q[3],
     const double t53 = t31 * t52;
     const double t54 = t30 + t53;
     const double t55 = fabs(t54);
-    const double t56 = fabs(J_rod);
-    const double t57 = 0.5 * t56;
-    const double t58 = fabs(m_rod);
-    const double t59 = fabs(l);
-    const double t60 = t59 * t59;
-    const double t61 = t58 * t60;
-    const double t62 = 0.125 * t61;
-    const double t63 = t57 + t62;
-    const double t64 = t8 * t63;
-    const double t65 = fabs(J_crank);
-    const double t66 = fabs(r);
-    const double t67 = t66 * t66;
-    const double t68 = t58 * t67;
-    const double t69 = t65 + t68;
-    const double t70 = 0.5 * t69;
-    const double t71 = t10 * t70;
-    const double t72 = t64 + t71;
-    const double t73 = 2.0 * t72;
-    const double t74 = fabs(m_s);
-    const double t75 = t17 * t74;
-    const double t76 = t73 + t75;
-    const double t77 = 2.6645352591003757e-15 * t76;
-    if (SLIDER_CRANK_RARELY(!(t55 > t77))) {
+    const double t56 = m_rod * t31;
+    const double t57 = J_crank + t56;
+    const double t58 = 0.5 * t57;
+    const double t59 = 2.0 * t58;
+    const double t60 = fabs(J_crank);
+    const double t61 = fabs(m_rod);
+    const double t62 = fabs(r);
+    const double t63 = t62 * t62;
+    const double t64 = t61 * t63;
+    const double t65 = t60 + t64;
+    const double t66 = 0.5 * t65;
+    const double t67 = 7.450580596923828e-09 * t66;
+    const double t68 = t59 + t67;
+    const double t69 = t10 * t68;
+    const double t70 = 0.5 * J_rod;
+    const double t71 = m_rod * t28;
+    const double t72 = 0.125 * t71;
+    const double t73 = t70 + t72;
+    const double t74 = 2.0 * t73;
+    const double t75 = fabs(J_rod);
+    const double t76 = 0.5 * t75;
+    const double t77 = fabs(l);
+    const double t78 = t77 * t77;
+    const double t79 = t61 * t78;
+    const double t80 = 0.125 * t79;
+    const double t81 = t76 + t80;
+    const double t82 = 7.450580596923828e-09 * t81;
+    const double t83 = t74 + t82;
+    const double t84 = t8 * t83;
+    const double t85 = fabs(m_s);
+    const double t86 = 3.725290298461914e-09 * t85;
+    const double t87 = m_s + t86;
+    const double t88 = t17 * t87;
+    const double t89 = t84 + t88;
+    const double t90 = t69 + t89;
+    const double t91 = 2.6645352591003757e-15 * t90;
+    if (SLIDER_CRANK_RARELY(!(t55 > t91))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const double t78 = 1.0 / t54;
-    const double t79 = t9 * t78;
-    const double t80 = t6 * t4;
-    const double t81 = t5 * t3;
-    const double t82 = t80 - t81;
-    const double t83 = t12 * t82;
-    const double t84 = m_rod * t83;
-    const double t85 = t7 * t84;
-    const double t86 = 0.5 * t85;
-    const double t87 = m_rod * t31;
-    const double t88 = J_crank + t87;
-    const double t89 = 0.5 * t9;
-    const double t90 = 2.0 * t89;
-    const double t91 = t88 * t90;
-    const double t92 = t86 - t91;
-    const double t93 = t79 * t92;
-    const double t94 = -t93;
-    double rest = t94 - t94;
-    const double t95 = t84 * t89;
-    const double t96 = 0.5 * J_rod;
-    const double t97 = m_rod * t28;
-    const double t98 = 0.125 * t97;
-    const double t99 = t96 + t98;
+    const double t92 = 1.0 / t54;
+    const double t93 = t9 * t92;
+    const double t94 = t6 * t4;
+    const double t95 = t5 * t3;
+    const double t96 = t94 - t95;
+    const double t97 = t12 * t96;
+    const double t98 = m_rod * t97;
+    const double t99 = 0.5 * t98;
     const double t100 = t7 * t99;
-    const double t101 = 2.0 * t100;
-    const double t102 = t95 - t101;
-    const double t103 = t79 * t102;
+    const double t101 = t9 * t59;
+    const double t102 = t100 - t101;
+    const double t103 = t93 * t102;
     const double t104 = -t103;
-    rest *= t104;
-    const double t105 = m_s * t16;
-    const double t106 = t105 * t79;
-    const double t107 = -t106;
-    rest *= t107;
-    const double t108 = t7 * t78;
-    const double t109 = t108 * t92;
-    const double t110 = -t109;
-    double term = t110 - t110;
-    const double t111 = t108 * t102;
+    double rest = t104 - t104;
+    const double t105 = t9 * t99;
+    const double t106 = t7 * t74;
+    const double t107 = t105 - t106;
+    const double t108 = t93 * t107;
+    const double t109 = -t108;
+    rest *= t109;
+    const double t110 = m_s * t16;
+    const double t111 = t110 * t93;
     const double t112 = -t111;
-    term *= t112;
-    const double t113 = t105 * t108;
-    const double t114 = -t113;
-    term *= t114;
-    rest += term;
-    const double t115 = t16 * t78;
-    const double t116 = t92 * t115;
-    term = t116 - t116;
-    const double t117 = t102 * t115;
+    rest *= t112;
+    const double t113 = t7 * t92;
+    const double t114 = t113 * t102;
+    const double t115 = -t114;
+    double term = t115 - t115;
+    const double t116 = t113 * t107;
+    const double t117 = -t116;
     term *= t117;
-    const double t118 = t105 * t115;
-    term *= t118;
+    const double t118 = t110 * t113;
+    const double t119 = -t118;
+    term *= t119;
+    rest += term;
+    const double t120 = t16 * t92;
+    const double t121 = t102 * t120;
+    term = t121 - t121;
+    const double t122 = t107 * t120;
+    term *= t122;
+    const double t123 = t110 * t120;
+    term *= t123;
     rest += term;
     if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    N_BG[0] = t94;
-    N_BG[1] = t104;
-    N_BG[2] = t107;
-    N_BG[3] = t110;
-    N_BG[4] = t112;
-    N_BG[5] = t114;
-    N_BG[6] = t116;
-    N_BG[7] = t117;
-    N_BG[8] = t118;
+    N_BG[0] = t104;
+    N_BG[1] = t109;
+    N_BG[2] = t112;
+    N_BG[3] = t115;
+    N_BG[4] = t117;
+    N_BG[5] = t119;
+    N_BG[6] = t121;
+    N_BG[7] = t122;
+    N_BG[8] = t123;
     return SLIDER_CRANK_OK;
 }
 
@@ -1408,7 +1422,7 @@ slider_crank_status slider_crank_projected_control_matrix(const double q[3], con
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1461,7 +1475,7 @@ slider_crank_status slider_crank_projected_control_pseudoinverse(const double q[
     const double t16 = t13 + t15;
     const double t17 = 1.0 + t16;
     const double t18 = t11 * t17;
-    const double t19 = t18 * 7.099748146989106e-30;
+    const double t19 = t18 * 7.888609052210118e-31;
     const double t5 = sine[1];
     const double t3 = sine[0];
     if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
@@ -1479,7 +1493,7 @@ slider_crank_status slider_crank_projected_control_pseudoinverse(const double q[
         const double t31 = t28 + t30;
         const double t32 = 1.0 + t31;
         const double t33 = t32 * t11;
-        const double t34 = t33 * 7.099748146989106e-30;
+        const double t34 = t33 * 7.888609052210118e-31;
         if (!(t26 > t34)) {
             return SLIDER_CRANK_CONSTRAINT_RANK;
         }
@@ -1534,7 +1548,7 @@ slider_crank_status slider_crank_orthogonal_complement(const double q[3], const 
     const double t16 = t13 + t15;
     const double t17 = 1.0 + t16;
     const double t18 = t11 * t17;
-    const double t19 = t18 * 7.099748146989106e-30;
+    const double t19 = t18 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1598,7 +1612,7 @@ slider_crank_status slider_crank_projected_mass_matrix(const double q[3], const 
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1746,7 +1760,7 @@ slider_crank_status slider_crank_projected_coriolis_matrix(const double q[3], co
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2003,7 +2017,7 @@ slider_crank_status slider_crank_projected_potential_force(const double q[3], co
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2097,7 +2111,7 @@ slider_crank_status slider_crank_projected_applied_force(const double q[3], cons
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2163,7 +2177,7 @@ slider_crank_status slider_crank_minimal_mass_matrix(const double q[3], const sl
     const double t16 = t13 + t15;
     const double t17 = 1.0 + t16;
     const double t18 = t11 * t17;
-    const double t19 = t18 * 7.099748146989106e-30;
+    const double t19 = t18 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2232,29 +2246,29 @@ slider_crank_status slider_crank_minimal_coriolis_matrix(const double q[3], cons
     const double r = p->r;
     const double t4 = cosine[0];
     const double t7 = r * t4;
+    const double t8 = t7 * t7;
     const double l = p->l;
     const double t6 = cosine[1];
     const double t9 = l * t6;
     const double t10 = t9 * t9;
-    const double t12 = r * l;
-    const double t3 = sine[0];
-    const double t19 = r * t3;
-    const double t5 = sine[1];
-    const double t21 = l * t5;
-    const double t8 = t7 * t7;
     const double t11 = t8 + t10;
+    const double t12 = r * l;
+    const double t5 = sine[1];
     const double t13 = t4 * t5;
+    const double t3 = sine[0];
     const double t14 = t6 * t3;
     const double t15 = t13 + t14;
     const double t16 = t12 * t15;
     const double t17 = t16 * t16;
     const double t18 = t11 + t17;
+    const double t19 = r * t3;
     const double t20 = t19 * t19;
+    const double t21 = l * t5;
     const double t22 = t21 * t21;
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2265,79 +2279,77 @@ slider_crank_status slider_crank_minimal_coriolis_matrix(const double q[3], cons
     const double t31 = t28 + t30;
     const double t32 = 1.0 + t31;
     const double t33 = t11 * t32;
-    const double t34 = t33 * 7.099748146989106e-30;
+    const double t34 = t33 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t10 > t34))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const double alpha_dot = qd[0];
-    const double t42 = alpha_dot * r;
-    const double t43 = t3 * t42;
-    const double t46 = t4 * t42;
+    const double t35 = t16 / t9;
+    const double t36 = 1.0 / t18;
+    const double t37 = t21 * t16;
+    const double t38 = t7 + t37;
     const double t39 = t7 / t9;
     const double beta_dot = qd[1];
     const double t40 = beta_dot * t39;
     const double t41 = t21 * t40;
-    const double t44 = t41 - t43;
-    const double t47 = t9 * t40;
-    const double t48 = t46 + t47;
-    const double t36 = 1.0 / t18;
-    const double t37 = t21 * t16;
-    const double t38 = t7 + t37;
-    const double t55 = t9 * t21;
-    const double t56 = t7 * t19;
-    const double t57 = t55 - t56;
-    const double t76 = t19 * t16;
-    const double t77 = t9 + t76;
-    const double t49 = t16 * t48;
-    const double t45 = t38 * t44;
-    const double t50 = t9 * t49;
-    const double t51 = t45 + t50;
-    const double t52 = t36 * t51;
-    const double t74 = t39 * t52;
-    const double t75 = t7 * t49;
-    const double t78 = t77 * t44;
-    const double t79 = t75 - t78;
-    const double t80 = t36 * t79;
-    const double t81 = t74 - t80;
-    const double t35 = t16 / t9;
+    const double alpha_dot = qd[0];
+    const double t42 = alpha_dot * t19;
+    const double t43 = t41 - t42;
+    const double t44 = t38 * t43;
+    const double t45 = alpha_dot * t7;
+    const double t46 = t9 * t40;
+    const double t47 = t45 + t46;
+    const double t48 = t16 * t47;
+    const double t49 = t9 * t48;
+    const double t50 = t44 + t49;
+    const double t51 = t36 * t50;
+    const double t52 = t35 * t51;
+    const double t53 = t11 * t47;
+    const double t54 = t9 * t21;
+    const double t55 = t7 * t19;
+    const double t56 = t54 - t55;
+    const double t57 = t56 * t43;
+    const double t58 = t53 + t57;
+    const double t59 = t36 * t58;
+    const double t60 = t52 + t59;
+    const double m_s = p->m_s;
+    const double t61 = m_s * t60;
+    const double t62 = t35 * t61;
+    const double t63 = alpha_dot + beta_dot;
     const double m_rod = p->m_rod;
     const double t64 = 0.5 * m_rod;
     const double t65 = t64 * t16;
-    const double t86 = t4 * t6;
-    const double t87 = t3 * t5;
-    const double t88 = t86 - t87;
-    const double t89 = t12 * t88;
-    const double t90 = t64 * t89;
-    const double t66 = beta_dot * t65;
-    const double t67 = alpha_dot * t65;
+    const double t66 = t63 * t65;
     const double J_rod = p->J_rod;
-    const double t68 = 0.5 * J_rod;
-    const double t69 = l * l;
-    const double t70 = m_rod * t69;
-    const double t71 = 0.125 * t70;
-    const double t72 = t68 + t71;
-    const double t73 = 2.0 * t72;
-    const double t53 = t35 * t52;
-    const double t54 = t11 * t48;
-    const double t58 = t57 * t44;
-    const double t59 = t54 + t58;
-    const double t60 = t36 * t59;
-    const double t61 = t53 + t60;
-    const double m_s = p->m_s;
-    const double t62 = m_s * t61;
-    const double t63 = t35 * t62;
-    const double t82 = t73 * t81;
-    const double t83 = t67 + t82;
-    const double t84 = t66 + t83;
-    const double t85 = t39 * t84;
-    const double t91 = t90 * t81;
-    const double t92 = t85 - t91;
-    const double t93 = t63 + t92;
-    double rest = t93 - t93;
+    const double t67 = 0.5 * J_rod;
+    const double t68 = l * l;
+    const double t69 = m_rod * t68;
+    const double t70 = 0.125 * t69;
+    const double t71 = t67 + t70;
+    const double t72 = 2.0 * t71;
+    const double t73 = t39 * t51;
+    const double t74 = t7 * t48;
+    const double t75 = t19 * t16;
+    const double t76 = t9 + t75;
+    const double t77 = t76 * t43;
+    const double t78 = t74 - t77;
+    const double t79 = t36 * t78;
+    const double t80 = t73 - t79;
+    const double t81 = t72 * t80;
+    const double t82 = t66 + t81;
+    const double t83 = t39 * t82;
+    const double t84 = t4 * t6;
+    const double t85 = t3 * t5;
+    const double t86 = t84 - t85;
+    const double t87 = t12 * t86;
+    const double t88 = t64 * t87;
+    const double t89 = t88 * t80;
+    const double t90 = t83 - t89;
+    const double t91 = t62 + t90;
+    double rest = t91 - t91;
     if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    C_bar[0] = t93;
+    C_bar[0] = t91;
     return SLIDER_CRANK_OK;
 }
 
@@ -2372,39 +2384,38 @@ slider_crank_status slider_crank_minimal_potential_force(const double q[3], cons
     const double t16 = t13 + t15;
     const double t17 = 1.0 + t16;
     const double t18 = t11 * t17;
-    const double t19 = t18 * 7.099748146989106e-30;
+    const double t19 = t18 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const double m_crank = p->m_crank;
-    const double t20 = 0.5 * m_crank;
-    const double m_rod = p->m_rod;
-    const double t21 = m_rod + t20;
-    const double t22 = t4 * t6;
-    const double g = p->g;
-    const double t23 = g * t22;
-    const double t24 = t21 * t23;
     const double t5 = sine[1];
-    const double t25 = t4 * t5;
+    const double t20 = t4 * t5;
     const double t3 = sine[0];
-    const double t26 = t6 * t3;
-    const double t27 = t25 + t26;
+    const double t21 = t6 * t3;
+    const double t22 = t20 + t21;
     const double s = q[2];
-    const double t28 = l - s;
-    const double t29 = t27 * t28;
+    const double t23 = l - s;
+    const double t24 = t22 * t23;
     const double k = p->k;
-    const double t30 = k * t29;
-    const double t31 = 0.5 * m_rod;
-    const double t32 = t31 * t23;
-    const double t33 = t30 - t32;
-    const double t34 = t24 + t33;
+    const double t25 = k * t24;
+    const double t26 = t4 * t6;
+    const double g = p->g;
+    const double t27 = g * t26;
+    const double m_rod = p->m_rod;
+    const double t28 = 0.5 * m_rod;
+    const double m_crank = p->m_crank;
+    const double t29 = 0.5 * m_crank;
+    const double t30 = m_rod + t29;
+    const double t31 = t28 - t30;
+    const double t32 = t27 * t31;
+    const double t33 = t25 - t32;
+    const double t34 = r * t33;
     const double t35 = t34 / t6;
-    const double t36 = r * t35;
-    double rest = t36 - t36;
+    double rest = t35 - t35;
     if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    Q_bar[0] = t36;
+    Q_bar[0] = t35;
     return SLIDER_CRANK_OK;
 }
 
@@ -2439,7 +2450,7 @@ slider_crank_status slider_crank_minimal_applied_force(const double q[3], const 
     const double t16 = t13 + t15;
     const double t17 = 1.0 + t16;
     const double t18 = t11 * t17;
-    const double t19 = t18 * 7.099748146989106e-30;
+    const double t19 = t18 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2509,7 +2520,7 @@ slider_crank_status slider_crank_admissible_velocity(const double q[3], const do
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2604,7 +2615,7 @@ slider_crank_status slider_crank_admissible_acceleration(const double q[3], cons
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2726,7 +2737,7 @@ slider_crank_status slider_crank_projected_configuration(const double q[3], cons
     const double t24 = 1.0 + t23;
     const double t25 = t10 + t8;
     const double t26 = t24 * t25;
-    const double t27 = t26 * 7.099748146989106e-30;
+    const double t27 = t26 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2790,7 +2801,7 @@ slider_crank_status slider_crank_projected_configuration(const double q[3], cons
     const double t71 = t68 + t70;
     const double t72 = 1.0 + t71;
     const double t73 = t65 * t72;
-    const double t74 = 7.099748146989106e-30 * t73;
+    const double t74 = 7.888609052210118e-31 * t73;
     if (SLIDER_CRANK_RARELY(!(t66 > t74))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -3009,7 +3020,7 @@ slider_crank_status slider_crank_actuator_mass_matrix(const double q[3], const s
     const double t16 = t13 + t15;
     const double t17 = 1.0 + t16;
     const double t18 = t11 * t17;
-    const double t19 = t18 * 7.099748146989106e-30;
+    const double t19 = t18 * 7.888609052210118e-31;
     const double t3 = sine[0];
     const double t5 = sine[1];
     if (SLIDER_CRANK_RARELY(!(t8 > t19))) {
@@ -3027,7 +3038,7 @@ slider_crank_status slider_crank_actuator_mass_matrix(const double q[3], const s
         const double t31 = t28 + t30;
         const double t32 = 1.0 + t31;
         const double t33 = t32 * t11;
-        const double t34 = t33 * 7.099748146989106e-30;
+        const double t34 = t33 * 7.888609052210118e-31;
         if (!(t26 > t34)) {
             return SLIDER_CRANK_CONSTRAINT_RANK;
         }
@@ -3118,7 +3129,7 @@ slider_crank_status slider_crank_actuator_bias(const double q[3], const double q
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -3129,7 +3140,7 @@ slider_crank_status slider_crank_actuator_bias(const double q[3], const double q
     const double t31 = t28 + t30;
     const double t32 = 1.0 + t31;
     const double t33 = t11 * t32;
-    const double t34 = t33 * 7.099748146989106e-30;
+    const double t34 = t33 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t10 > t34))) {
         const double t35 = t8 + t17;
         if (!(t35 > t26)) {
@@ -3267,7 +3278,7 @@ slider_crank_status slider_crank_forward_dynamics(const double q[3], const doubl
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -3304,134 +3315,140 @@ slider_crank_status slider_crank_forward_dynamics(const double q[3], const doubl
     const double t53 = t31 * t52;
     const double t54 = t30 + t53;
     const double t55 = fabs(t54);
-    const double t56 = fabs(J_rod);
-    const double t57 = 0.5 * t56;
-    const double t58 = fabs(m_rod);
-    const double t59 = fabs(l);
-    const double t60 = t59 * t59;
-    const double t61 = t58 * t60;
-    const double t62 = 0.125 * t61;
-    const double t63 = t57 + t62;
-    const double t64 = t8 * t63;
-    const double t65 = fabs(J_crank);
-    const double t66 = fabs(r);
-    const double t67 = t66 * t66;
-    const double t68 = t58 * t67;
-    const double t69 = t65 + t68;
-    const double t70 = 0.5 * t69;
-    const double t71 = t10 * t70;
-    const double t72 = t64 + t71;
-    const double t73 = 2.0 * t72;
-    const double t74 = fabs(m_s);
-    const double t75 = t17 * t74;
-    const double t76 = t73 + t75;
-    const double t77 = 2.6645352591003757e-15 * t76;
-    if (SLIDER_CRANK_RARELY(!(t55 > t77))) {
+    const double t56 = m_rod * t31;
+    const double t57 = J_crank + t56;
+    const double t58 = 0.5 * t57;
+    const double t59 = 2.0 * t58;
+    const double t60 = fabs(J_crank);
+    const double t61 = fabs(m_rod);
+    const double t62 = fabs(r);
+    const double t63 = t62 * t62;
+    const double t64 = t61 * t63;
+    const double t65 = t60 + t64;
+    const double t66 = 0.5 * t65;
+    const double t67 = 7.450580596923828e-09 * t66;
+    const double t68 = t59 + t67;
+    const double t69 = t10 * t68;
+    const double t70 = 0.5 * J_rod;
+    const double t71 = m_rod * t28;
+    const double t72 = 0.125 * t71;
+    const double t73 = t70 + t72;
+    const double t74 = 2.0 * t73;
+    const double t75 = fabs(J_rod);
+    const double t76 = 0.5 * t75;
+    const double t77 = fabs(l);
+    const double t78 = t77 * t77;
+    const double t79 = t61 * t78;
+    const double t80 = 0.125 * t79;
+    const double t81 = t76 + t80;
+    const double t82 = 7.450580596923828e-09 * t81;
+    const double t83 = t74 + t82;
+    const double t84 = t8 * t83;
+    const double t85 = fabs(m_s);
+    const double t86 = 3.725290298461914e-09 * t85;
+    const double t87 = m_s + t86;
+    const double t88 = t17 * t87;
+    const double t89 = t84 + t88;
+    const double t90 = t69 + t89;
+    const double t91 = 2.6645352591003757e-15 * t90;
+    if (SLIDER_CRANK_RARELY(!(t55 > t91))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const double t78 = r * t52;
-    const double t79 = r * t78;
-    const double t80 = t30 + t79;
-    const double t81 = 1.0 / t80;
+    const double t92 = 1.0 / t54;
     const double s = q[2];
-    const double t82 = s - l;
+    const double t93 = s - l;
     const double k = p->k;
-    const double t83 = k * t82;
+    const double t94 = k * t93;
     const double s_dot = qd[2];
     const double d = p->d;
-    const double t84 = s_dot * d;
-    const double t85 = t83 + t84;
-    const double t86 = t16 * t85;
+    const double t95 = s_dot * d;
+    const double t96 = t94 + t95;
+    const double t97 = t16 * t96;
     const double beta_dot = qd[1];
-    const double t87 = beta_dot * beta_dot;
-    const double t88 = m_rod * t16;
-    const double t89 = t87 * t88;
-    const double t90 = 0.5 * t89;
+    const double t98 = beta_dot * beta_dot;
+    const double t99 = m_rod * t16;
+    const double t100 = t98 * t99;
+    const double t101 = 0.5 * t100;
     const double m_crank = p->m_crank;
-    const double t91 = 0.5 * m_crank;
-    const double t92 = m_rod + t91;
-    const double t93 = t7 * t92;
-    const double g = p->g;
-    const double t94 = g * t93;
-    const double t95 = t90 + t94;
-    const double crank = u[0];
-    const double t96 = crank - t95;
-    const double t97 = t9 * t96;
-    const double t98 = m_rod * t9;
-    const double t99 = g * t98;
-    const double alpha_dot = qd[0];
-    const double t100 = alpha_dot * alpha_dot;
-    const double t101 = t100 * t88;
-    const double t102 = t99 - t101;
-    const double t103 = 0.5 * t102;
+    const double t102 = 0.5 * m_crank;
+    const double t103 = m_rod + t102;
     const double t104 = t7 * t103;
-    const double t105 = t97 + t104;
-    const double t106 = t86 + t105;
-    const double t107 = t9 * t106;
-    const double t108 = m_s * t16;
-    const double t109 = alpha_dot * t7;
-    const double t110 = alpha_dot * t109;
-    const double t111 = beta_dot * t9;
-    const double t112 = beta_dot * t111;
-    const double t113 = t110 + t112;
-    const double t114 = t9 * t113;
-    const double t115 = beta_dot * t21;
-    const double t116 = beta_dot * t115;
-    const double t117 = alpha_dot * t19;
-    const double t118 = alpha_dot * t117;
-    const double t119 = t116 - t118;
-    const double t120 = t21 * t119;
-    const double t121 = t114 + t120;
-    const double t122 = t108 * t121;
-    const double t123 = t12 * t98;
-    const double t124 = t6 * t4;
-    const double t125 = t5 * t3;
-    const double t126 = t124 - t125;
-    const double t127 = 0.5 * t126;
-    const double t128 = t123 * t127;
-    const double t129 = 0.5 * J_rod;
-    const double t130 = m_rod * t28;
-    const double t131 = 0.125 * t130;
-    const double t132 = t129 + t131;
-    const double t133 = t7 * t132;
-    const double t134 = 2.0 * t133;
-    const double t135 = t128 - t134;
-    const double t136 = t119 * t135;
-    const double t137 = t122 - t136;
-    const double t138 = t107 - t137;
-    const double t139 = t81 * t138;
-    double rest = t139 - t139;
-    const double t140 = t7 * t106;
-    const double t141 = t7 * t113;
-    const double t142 = t19 * t119;
-    const double t143 = t141 - t142;
-    const double t144 = t108 * t143;
-    const double t145 = r * m_rod;
-    const double t146 = t6 * t127;
-    const double t147 = t146 - t4;
-    const double t148 = t145 * t147;
-    const double t149 = r * t148;
-    const double t150 = J_crank * t4;
-    const double t151 = t149 - t150;
-    const double t152 = l * t151;
-    const double t153 = t119 * t152;
-    const double t154 = t144 + t153;
-    const double t155 = t140 - t154;
-    const double t156 = t81 * t155;
-    rest *= t156;
-    const double t157 = t121 * t152;
-    const double t158 = t143 * t135;
-    const double t159 = t157 + t158;
-    const double t160 = t16 * t106;
-    const double t161 = t159 - t160;
-    const double t162 = t81 * t161;
+    const double g = p->g;
+    const double t105 = g * t104;
+    const double t106 = t101 + t105;
+    const double crank = u[0];
+    const double t107 = crank - t106;
+    const double t108 = t9 * t107;
+    const double t109 = m_rod * t9;
+    const double t110 = g * t109;
+    const double alpha_dot = qd[0];
+    const double t111 = alpha_dot * alpha_dot;
+    const double t112 = t111 * t99;
+    const double t113 = t110 - t112;
+    const double t114 = 0.5 * t113;
+    const double t115 = t7 * t114;
+    const double t116 = t108 + t115;
+    const double t117 = t97 + t116;
+    const double t118 = t9 * t117;
+    const double t119 = m_s * t16;
+    const double t120 = alpha_dot * t7;
+    const double t121 = alpha_dot * t120;
+    const double t122 = beta_dot * t9;
+    const double t123 = beta_dot * t122;
+    const double t124 = t121 + t123;
+    const double t125 = t9 * t124;
+    const double t126 = beta_dot * t21;
+    const double t127 = beta_dot * t126;
+    const double t128 = alpha_dot * t19;
+    const double t129 = alpha_dot * t128;
+    const double t130 = t127 - t129;
+    const double t131 = t21 * t130;
+    const double t132 = t125 + t131;
+    const double t133 = t119 * t132;
+    const double t134 = t12 * t109;
+    const double t135 = t6 * t4;
+    const double t136 = t5 * t3;
+    const double t137 = t135 - t136;
+    const double t138 = 0.5 * t137;
+    const double t139 = t134 * t138;
+    const double t140 = t7 * t74;
+    const double t141 = t139 - t140;
+    const double t142 = t130 * t141;
+    const double t143 = t133 - t142;
+    const double t144 = t118 - t143;
+    const double t145 = t92 * t144;
+    double rest = t145 - t145;
+    const double t146 = t7 * t117;
+    const double t147 = t7 * t124;
+    const double t148 = t19 * t130;
+    const double t149 = t147 - t148;
+    const double t150 = t119 * t149;
+    const double t151 = r * m_rod;
+    const double t152 = r * t151;
+    const double t153 = t6 * t138;
+    const double t154 = t153 - t4;
+    const double t155 = t152 * t154;
+    const double t156 = J_crank * t4;
+    const double t157 = t155 - t156;
+    const double t158 = l * t157;
+    const double t159 = t130 * t158;
+    const double t160 = t150 + t159;
+    const double t161 = t146 - t160;
+    const double t162 = t92 * t161;
     rest *= t162;
+    const double t163 = t132 * t158;
+    const double t164 = t149 * t141;
+    const double t165 = t163 + t164;
+    const double t166 = t16 * t117;
+    const double t167 = t165 - t166;
+    const double t168 = t92 * t167;
+    rest *= t168;
     if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd[0] = t139;
-    qdd[1] = t156;
-    qdd[2] = t162;
+    qdd[0] = t145;
+    qdd[1] = t162;
+    qdd[2] = t168;
     return SLIDER_CRANK_OK;
 }
 
@@ -3475,7 +3492,7 @@ slider_crank_status slider_crank_multipliers(const double q[3], const double qd[
     const double t23 = t20 + t22;
     const double t24 = 1.0 + t23;
     const double t25 = t24 * t11;
-    const double t26 = t25 * 7.099748146989106e-30;
+    const double t26 = t25 * 7.888609052210118e-31;
     if (SLIDER_CRANK_RARELY(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -3512,153 +3529,162 @@ slider_crank_status slider_crank_multipliers(const double q[3], const double qd[
     const double t53 = t31 * t52;
     const double t54 = t30 + t53;
     const double t55 = fabs(t54);
-    const double t56 = fabs(J_rod);
-    const double t57 = 0.5 * t56;
-    const double t58 = fabs(m_rod);
-    const double t59 = fabs(l);
-    const double t60 = t59 * t59;
-    const double t61 = t58 * t60;
-    const double t62 = 0.125 * t61;
-    const double t63 = t57 + t62;
-    const double t64 = t8 * t63;
-    const double t65 = fabs(J_crank);
-    const double t66 = fabs(r);
-    const double t67 = t66 * t66;
-    const double t68 = t58 * t67;
-    const double t69 = t65 + t68;
-    const double t70 = 0.5 * t69;
-    const double t71 = t10 * t70;
-    const double t72 = t64 + t71;
-    const double t73 = 2.0 * t72;
-    const double t74 = fabs(m_s);
-    const double t75 = t17 * t74;
-    const double t76 = t73 + t75;
-    const double t77 = 2.6645352591003757e-15 * t76;
-    if (SLIDER_CRANK_RARELY(!(t55 > t77))) {
+    const double t56 = m_rod * t31;
+    const double t57 = J_crank + t56;
+    const double t58 = 0.5 * t57;
+    const double t59 = 2.0 * t58;
+    const double t60 = fabs(J_crank);
+    const double t61 = fabs(m_rod);
+    const double t62 = fabs(r);
+    const double t63 = t62 * t62;
+    const double t64 = t61 * t63;
+    const double t65 = t60 + t64;
+    const double t66 = 0.5 * t65;
+    const double t67 = 7.450580596923828e-09 * t66;
+    const double t68 = t59 + t67;
+    const double t69 = t10 * t68;
+    const double t70 = 0.5 * J_rod;
+    const double t71 = m_rod * t28;
+    const double t72 = 0.125 * t71;
+    const double t73 = t70 + t72;
+    const double t74 = 2.0 * t73;
+    const double t75 = fabs(J_rod);
+    const double t76 = 0.5 * t75;
+    const double t77 = fabs(l);
+    const double t78 = t77 * t77;
+    const double t79 = t61 * t78;
+    const double t80 = 0.125 * t79;
+    const double t81 = t76 + t80;
+    const double t82 = 7.450580596923828e-09 * t81;
+    const double t83 = t74 + t82;
+    const double t84 = t8 * t83;
+    const double t85 = fabs(m_s);
+    const double t86 = 3.725290298461914e-09 * t85;
+    const double t87 = m_s + t86;
+    const double t88 = t17 * t87;
+    const double t89 = t84 + t88;
+    const double t90 = t69 + t89;
+    const double t91 = 2.6645352591003757e-15 * t90;
+    if (SLIDER_CRANK_RARELY(!(t55 > t91))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const double t78 = 1.0 / t54;
-    const double t79 = t6 * t4;
-    const double t80 = t5 * t3;
-    const double t81 = t79 - t80;
-    const double t82 = t6 * t81;
-    const double t83 = 0.5 * t82;
-    const double t84 = t83 - t4;
-    const double t85 = r * m_rod;
-    const double t86 = r * t85;
-    const double t87 = t84 * t86;
-    const double t88 = J_crank * t4;
-    const double t89 = t87 - t88;
-    const double t90 = l * t89;
+    const double t92 = 1.0 / t54;
+    const double t93 = t6 * t4;
+    const double t94 = t5 * t3;
+    const double t95 = t93 - t94;
+    const double t96 = t6 * t95;
+    const double t97 = 0.5 * t96;
+    const double t98 = t97 - t4;
+    const double t99 = r * m_rod;
+    const double t100 = r * t99;
+    const double t101 = t98 * t100;
+    const double t102 = J_crank * t4;
+    const double t103 = t101 - t102;
+    const double t104 = l * t103;
     const double s = q[2];
-    const double t91 = s - l;
+    const double t105 = s - l;
     const double k = p->k;
-    const double t92 = k * t91;
+    const double t106 = k * t105;
     const double s_dot = qd[2];
     const double d = p->d;
-    const double t93 = s_dot * d;
-    const double t94 = t92 + t93;
+    const double t107 = s_dot * d;
+    const double t108 = t106 + t107;
     const double alpha_dot = qd[0];
-    const double t95 = alpha_dot * t7;
-    const double t96 = alpha_dot * t95;
+    const double t109 = alpha_dot * t7;
+    const double t110 = alpha_dot * t109;
     const double beta_dot = qd[1];
-    const double t97 = beta_dot * t9;
-    const double t98 = beta_dot * t97;
-    const double t99 = t96 + t98;
-    const double t100 = t9 * t99;
-    const double t101 = beta_dot * t21;
-    const double t102 = beta_dot * t101;
-    const double t103 = alpha_dot * t19;
-    const double t104 = alpha_dot * t103;
-    const double t105 = t102 - t104;
-    const double t106 = t21 * t105;
-    const double t107 = t100 + t106;
-    const double t108 = t107 * t90;
-    const double t109 = t7 * t99;
-    const double t110 = t19 * t105;
-    const double t111 = t109 - t110;
-    const double t112 = t12 * t81;
-    const double t113 = m_rod * t112;
+    const double t111 = beta_dot * t9;
+    const double t112 = beta_dot * t111;
+    const double t113 = t110 + t112;
     const double t114 = t9 * t113;
-    const double t115 = 0.5 * t114;
-    const double t116 = 0.5 * J_rod;
-    const double t117 = m_rod * t28;
-    const double t118 = 0.125 * t117;
-    const double t119 = t116 + t118;
-    const double t120 = 2.0 * t119;
-    const double t121 = t7 * t120;
-    const double t122 = t115 - t121;
-    const double t123 = t111 * t122;
-    const double t124 = t108 + t123;
-    const double t125 = t78 * t124;
-    const double t126 = m_s * t125;
-    const double t127 = t94 + t126;
-    const double t128 = t90 * t127;
-    const double t129 = m_s * t16;
-    const double t130 = J_crank + t86;
-    const double t131 = 0.5 * t130;
-    const double t132 = t129 * t107;
-    const double t133 = t105 * t122;
-    const double t134 = t132 - t133;
-    const double t135 = t78 * t134;
-    const double t136 = t131 * t135;
-    const double t137 = 2.0 * t136;
-    const double t138 = beta_dot * beta_dot;
-    const double t139 = m_rod * t16;
-    const double t140 = t138 * t139;
-    const double t141 = t129 * t111;
-    const double t142 = t105 * t90;
-    const double t143 = t141 + t142;
-    const double t144 = t78 * t143;
-    const double t145 = t113 * t144;
-    const double t146 = t140 + t145;
-    const double t147 = 0.5 * t146;
+    const double t115 = beta_dot * t21;
+    const double t116 = beta_dot * t115;
+    const double t117 = alpha_dot * t19;
+    const double t118 = alpha_dot * t117;
+    const double t119 = t116 - t118;
+    const double t120 = t21 * t119;
+    const double t121 = t114 + t120;
+    const double t122 = t121 * t104;
+    const double t123 = t7 * t113;
+    const double t124 = t19 * t119;
+    const double t125 = t123 - t124;
+    const double t126 = t12 * t95;
+    const double t127 = m_rod * t126;
+    const double t128 = t9 * t127;
+    const double t129 = 0.5 * t128;
+    const double t130 = t7 * t74;
+    const double t131 = t129 - t130;
+    const double t132 = t125 * t131;
+    const double t133 = t122 + t132;
+    const double t134 = t92 * t133;
+    const double t135 = m_s * t134;
+    const double t136 = t108 + t135;
+    const double t137 = t104 * t136;
+    const double t138 = m_s * t16;
+    const double t139 = J_crank + t100;
+    const double t140 = 0.5 * t139;
+    const double t141 = 2.0 * t140;
+    const double t142 = t138 * t121;
+    const double t143 = t119 * t131;
+    const double t144 = t142 - t143;
+    const double t145 = t92 * t144;
+    const double t146 = t141 * t145;
+    const double t147 = beta_dot * beta_dot;
+    const double t148 = m_rod * t16;
+    const double t149 = t147 * t148;
+    const double t150 = t138 * t125;
+    const double t151 = t119 * t104;
+    const double t152 = t150 + t151;
+    const double t153 = t92 * t152;
+    const double t154 = t127 * t153;
+    const double t155 = t149 + t154;
+    const double t156 = 0.5 * t155;
     const double crank = u[0];
-    const double t148 = crank - t147;
+    const double t157 = crank - t156;
     const double m_crank = p->m_crank;
-    const double t149 = 0.5 * m_crank;
-    const double t150 = m_rod + t149;
-    const double t151 = t7 * t150;
+    const double t158 = 0.5 * m_crank;
+    const double t159 = m_rod + t158;
+    const double t160 = t7 * t159;
     const double g = p->g;
-    const double t152 = g * t151;
-    const double t153 = t148 - t152;
-    const double t154 = t137 + t153;
-    const double t155 = t129 * t154;
-    const double t156 = t128 + t155;
-    const double t157 = t9 * t156;
-    const double t158 = t122 * t127;
-    const double t159 = t120 * t144;
-    const double t160 = alpha_dot * alpha_dot;
-    const double t161 = t160 * t139;
-    const double t162 = m_rod * t9;
-    const double t163 = g * t162;
-    const double t164 = t161 - t163;
-    const double t165 = t113 * t135;
-    const double t166 = t164 + t165;
-    const double t167 = 0.5 * t166;
-    const double t168 = t159 - t167;
-    const double t169 = t129 * t168;
-    const double t170 = t158 + t169;
-    const double t171 = t7 * t170;
-    const double t172 = t157 + t171;
-    const double t173 = t78 * t172;
-    const double t174 = -t173;
-    double rest = t174 - t174;
-    const double t175 = t122 * t154;
-    const double t176 = t90 * t168;
-    const double t177 = t175 - t176;
-    const double t178 = t21 * t156;
-    const double t179 = t177 - t178;
-    const double t180 = t19 * t170;
-    const double t181 = t179 + t180;
-    const double t182 = t78 * t181;
+    const double t161 = g * t160;
+    const double t162 = t157 - t161;
+    const double t163 = t146 + t162;
+    const double t164 = t138 * t163;
+    const double t165 = t137 + t164;
+    const double t166 = t9 * t165;
+    const double t167 = t131 * t136;
+    const double t168 = t74 * t153;
+    const double t169 = alpha_dot * alpha_dot;
+    const double t170 = t169 * t148;
+    const double t171 = m_rod * t9;
+    const double t172 = g * t171;
+    const double t173 = t170 - t172;
+    const double t174 = t127 * t145;
+    const double t175 = t173 + t174;
+    const double t176 = 0.5 * t175;
+    const double t177 = t168 - t176;
+    const double t178 = t138 * t177;
+    const double t179 = t167 + t178;
+    const double t180 = t7 * t179;
+    const double t181 = t166 + t180;
+    const double t182 = t92 * t181;
     const double t183 = -t182;
-    rest *= t183;
+    double rest = t183 - t183;
+    const double t184 = t131 * t163;
+    const double t185 = t104 * t177;
+    const double t186 = t184 - t185;
+    const double t187 = t21 * t165;
+    const double t188 = t186 - t187;
+    const double t189 = t19 * t179;
+    const double t190 = t188 + t189;
+    const double t191 = t92 * t190;
+    const double t192 = -t191;
+    rest *= t192;
     if (SLIDER_CRANK_RARELY(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    lambda_B[0] = t174;
-    lambda_B[1] = t183;
+    lambda_B[0] = t183;
+    lambda_B[1] = t192;
     return SLIDER_CRANK_OK;
 }
 

@@ -23,8 +23,8 @@
  * constraint_pseudoinverse              8     26      1      0      2      0
  * nullspace_projector                   5     23      1      0      2      0
  * nullspace_projector_dot              26     66      1      0      2      0
- * weighted_pseudoinverse               29     90      4      0      2      0
- * weighted_nullspace_projector         22     76      1      0      2      0
+ * weighted_pseudoinverse               33     95      4      0      2      0
+ * weighted_nullspace_projector         25     78      1      0      2      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix              5     19      1      0      2      0
  * projected_control_pseudoinverse       4     11      2      0      2      0
@@ -34,8 +34,8 @@
  * projected_potential_force            13     39      1      0      2      0
  * projected_applied_force               7     26      1      0      2      0
  * minimal_mass_matrix                  11     32      1      0      2      0
- * minimal_coriolis_matrix              23     59      3      0      2      0
- * minimal_potential_force               8     19      1      0      2      0
+ * minimal_coriolis_matrix              23     57      3      0      2      0
+ * minimal_potential_force               8     18      1      0      2      0
  * minimal_applied_force                 4     13      1      0      2      0
  * minimal_control_matrix                0      0      0      0      0      0
  * admissible_velocity                  14     39      3      0      2      0
@@ -46,8 +46,8 @@
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                 11     32      1      0      2      0
  * actuator_bias                        25     73      1      0      2      0
- * forward_dynamics                     41    107      1      0      2      0
- * multipliers                          47    120      1      0      2      0
+ * forward_dynamics                     44    110      1      0      2      0
+ * multipliers                          51    125      1      0      2      0
  * energy                               11     30      0      0      2      0
  * singularity                          10     23      6      2      2      0
  * (changes of sign are not counted)
@@ -729,7 +729,7 @@ slider_crank_status slider_crank_constraint_pseudoinverse_f(const float q[3], co
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -811,7 +811,7 @@ slider_crank_status slider_crank_nullspace_projector_f(const float q[3], const s
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -888,7 +888,7 @@ slider_crank_status slider_crank_nullspace_projector_dot_f(const float q[3], con
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1048,73 +1048,82 @@ slider_crank_status slider_crank_weighted_pseudoinverse_f(const float q[3], cons
     const float t52 = t33 + t51;
     const float t53 = t31 * t52;
     const float t54 = t30 + t53;
-    const float t87 = 0.5f * J_rod;
-    const float t88 = m_rod * t28;
-    const float t89 = 0.125f * t88;
-    const float t90 = t87 + t89;
-    const float t91 = 2.0f * t90;
+    const float t70 = 0.5f * J_rod;
+    const float t71 = m_rod * t28;
+    const float t72 = 0.125f * t71;
+    const float t73 = t70 + t72;
+    const float t74 = 2.0f * t73;
     const float t13 = t6 * t3;
     const float t15 = t13 + t14;
-    const float t120 = l * m_rod;
-    const float t121 = l * t120;
-    const float t119 = t91 * t32;
-    const float t122 = t15 * t121;
-    const float t123 = t14 * t122;
-    const float t124 = t119 + t123;
-    const float t125 = t31 * t124;
-    const float t126 = t30 + t125;
-    const float t129 = t4 * t3;
-    const float t131 = t6 * t5;
-    const float t130 = t129 * t29;
-    const float t132 = t131 + t129;
-    const float t133 = 0.5f * t121;
-    const float t134 = t132 * t133;
-    const float t135 = t91 * t131;
-    const float t136 = t134 - t135;
-    const float t137 = t31 * t136;
-    const float t138 = t130 + t137;
+    const float t129 = l * m_rod;
+    const float t130 = l * t129;
+    const float t128 = t74 * t32;
+    const float t131 = t15 * t130;
+    const float t132 = t14 * t131;
+    const float t133 = t128 + t132;
+    const float t134 = t31 * t133;
+    const float t135 = t30 + t134;
+    const float t138 = t4 * t3;
+    const float t140 = t6 * t5;
+    const float t139 = t138 * t29;
+    const float t141 = t140 + t138;
+    const float t142 = 0.5f * t130;
+    const float t143 = t141 * t142;
+    const float t144 = t74 * t140;
+    const float t145 = t143 - t144;
+    const float t146 = t31 * t145;
+    const float t147 = t139 + t146;
     const float t7 = r * t6;
+    const float t8 = t7 * t7;
     const float t9 = l * t4;
     const float t12 = r * l;
     const float t16 = t12 * t15;
     const float t21 = l * t3;
-    const float t93 = t6 * t4;
-    const float t94 = t5 * t3;
-    const float t95 = t93 - t94;
-    const float t96 = 0.5f * t95;
-    const float t85 = m_s * t16;
-    const float t86 = t21 * t85;
-    const float t92 = t7 * t91;
-    const float t97 = t9 * t96;
-    const float t98 = m_rod * t97;
-    const float t99 = t12 * t98;
-    const float t100 = t92 - t99;
-    const float t101 = t86 + t100;
-    const float t8 = t7 * t7;
+    const float t102 = t6 * t4;
+    const float t103 = t5 * t3;
+    const float t104 = t102 - t103;
+    const float t105 = 0.5f * t104;
+    const float t99 = m_s * t16;
+    const float t100 = t21 * t99;
+    const float t101 = t7 * t74;
+    const float t106 = t9 * t105;
+    const float t107 = m_rod * t106;
+    const float t108 = t12 * t107;
+    const float t109 = t101 - t108;
+    const float t110 = t100 + t109;
     const float t10 = t9 * t9;
     const float t17 = t16 * t16;
-    const float t58 = fabsf(m_rod);
-    const float t56 = fabsf(J_rod);
-    const float t57 = 0.5f * t56;
-    const float t59 = fabsf(l);
-    const float t60 = t59 * t59;
-    const float t61 = t58 * t60;
-    const float t62 = 0.125f * t61;
-    const float t63 = t57 + t62;
-    const float t64 = t8 * t63;
-    const float t65 = fabsf(J_crank);
-    const float t66 = fabsf(r);
-    const float t67 = t66 * t66;
-    const float t68 = t58 * t67;
-    const float t69 = t65 + t68;
-    const float t70 = 0.5f * t69;
-    const float t71 = t10 * t70;
-    const float t72 = t64 + t71;
-    const float t73 = 2.0f * t72;
-    const float t74 = fabsf(m_s);
-    const float t75 = t17 * t74;
-    const float t76 = t73 + t75;
-    const float t77 = 1.4305115e-06f * t76;
+    const float t61 = fabsf(m_rod);
+    const float t56 = m_rod * t31;
+    const float t57 = J_crank + t56;
+    const float t58 = 0.5f * t57;
+    const float t59 = 2.0f * t58;
+    const float t60 = fabsf(J_crank);
+    const float t62 = fabsf(r);
+    const float t63 = t62 * t62;
+    const float t64 = t61 * t63;
+    const float t65 = t60 + t64;
+    const float t66 = 0.5f * t65;
+    const float t67 = 7.450581e-09f * t66;
+    const float t68 = t59 + t67;
+    const float t69 = t10 * t68;
+    const float t75 = fabsf(J_rod);
+    const float t76 = 0.5f * t75;
+    const float t77 = fabsf(l);
+    const float t78 = t77 * t77;
+    const float t79 = t61 * t78;
+    const float t80 = 0.125f * t79;
+    const float t81 = t76 + t80;
+    const float t82 = 7.450581e-09f * t81;
+    const float t83 = t74 + t82;
+    const float t84 = t8 * t83;
+    const float t85 = fabsf(m_s);
+    const float t86 = 3.7252903e-09f * t85;
+    const float t87 = m_s + t86;
+    const float t88 = t17 * t87;
+    const float t89 = t84 + t88;
+    const float t90 = t69 + t89;
+    const float t91 = 1.4305115e-06f * t90;
     const float t11 = t8 + t10;
     const float t18 = t11 + t17;
     const float t19 = r * t5;
@@ -1123,57 +1132,57 @@ slider_crank_status slider_crank_weighted_pseudoinverse_f(const float q[3], cons
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
     const float t55 = fabsf(t54);
-    if (SLIDER_CRANK_RARELY_F(!(t55 > t77))) {
+    if (SLIDER_CRANK_RARELY_F(!(t55 > t91))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t78 = m_s * t12;
-    const float t79 = l * t78;
-    const float t81 = t4 * t15;
-    const float t80 = t79 / t54;
-    const float t82 = t80 * t81;
-    const float t83 = -t82;
-    float rest = t83 - t83;
-    const float t109 = t6 * t96;
-    const float t110 = t109 - t4;
-    const float t111 = m_rod * t110;
-    const float t112 = t5 * t15;
-    const float t113 = m_s * t112;
-    const float t114 = t111 - t113;
-    const float t115 = t31 * t114;
-    const float t116 = J_crank * t4;
-    const float t117 = t115 - t116;
-    const float t103 = r * t78;
-    const float t105 = t6 * t15;
-    const float t104 = t103 / t54;
-    const float t106 = t104 * t105;
-    const float t107 = -t106;
-    rest *= t107;
-    const float t108 = l / t54;
-    const float t118 = t108 * t117;
-    rest *= t118;
-    const float t84 = 1.0f / t54;
-    const float t102 = t84 * t101;
-    float term = t102 - t102;
-    const float t139 = t84 * t138;
-    term *= t139;
-    const float t127 = t84 * t126;
-    const float t128 = -t127;
-    term *= t128;
+    const float t92 = l * m_s;
+    const float t93 = t12 * t92;
+    const float t95 = t4 * t15;
+    const float t94 = t93 / t54;
+    const float t96 = t94 * t95;
+    const float t97 = -t96;
+    float rest = t97 - t97;
+    const float t112 = t31 * t92;
+    const float t118 = t6 * t105;
+    const float t119 = t118 - t4;
+    const float t120 = m_rod * t119;
+    const float t121 = t5 * t15;
+    const float t122 = m_s * t121;
+    const float t123 = t120 - t122;
+    const float t124 = t31 * t123;
+    const float t125 = J_crank * t4;
+    const float t126 = t124 - t125;
+    const float t114 = t6 * t15;
+    const float t113 = t112 / t54;
+    const float t115 = t113 * t114;
+    const float t116 = -t115;
+    rest *= t116;
+    const float t117 = l / t54;
+    const float t127 = t117 * t126;
+    rest *= t127;
+    const float t98 = 1.0f / t54;
+    const float t111 = t98 * t110;
+    float term = t111 - t111;
+    const float t148 = t98 * t147;
+    term *= t148;
+    const float t136 = t98 * t135;
+    const float t137 = -t136;
+    term *= t137;
     rest += term;
     if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    B_G_pinv[0] = t83;
-    B_G_pinv[1] = t102;
-    B_G_pinv[2] = t107;
-    B_G_pinv[3] = t118;
-    B_G_pinv[4] = t128;
-    B_G_pinv[5] = t139;
+    B_G_pinv[0] = t97;
+    B_G_pinv[1] = t111;
+    B_G_pinv[2] = t116;
+    B_G_pinv[3] = t127;
+    B_G_pinv[4] = t137;
+    B_G_pinv[5] = t148;
     return SLIDER_CRANK_OK;
 }
 
@@ -1217,7 +1226,7 @@ slider_crank_status slider_crank_weighted_nullspace_projector_f(const float q[3]
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1254,95 +1263,100 @@ slider_crank_status slider_crank_weighted_nullspace_projector_f(const float q[3]
     const float t53 = t31 * t52;
     const float t54 = t30 + t53;
     const float t55 = fabsf(t54);
-    const float t56 = fabsf(J_rod);
-    const float t57 = 0.5f * t56;
-    const float t58 = fabsf(m_rod);
-    const float t59 = fabsf(l);
-    const float t60 = t59 * t59;
-    const float t61 = t58 * t60;
-    const float t62 = 0.125f * t61;
-    const float t63 = t57 + t62;
-    const float t64 = t8 * t63;
-    const float t65 = fabsf(J_crank);
-    const float t66 = fabsf(r);
-    const float t67 = t66 * t66;
-    const float t68 = t58 * t67;
-    const float t69 = t65 + t68;
-    const float t70 = 0.5f * t69;
-    const float t71 = t10 * t70;
-    const float t72 = t64 + t71;
-    const float t73 = 2.0f * t72;
-    const float t74 = fabsf(m_s);
-    const float t75 = t17 * t74;
-    const float t76 = t73 + t75;
-    const float t77 = 1.4305115e-06f * t76;
-    if (SLIDER_CRANK_RARELY_F(!(t55 > t77))) {
+    const float t56 = m_rod * t31;
+    const float t57 = J_crank + t56;
+    const float t58 = 0.5f * t57;
+    const float t59 = 2.0f * t58;
+    const float t60 = fabsf(J_crank);
+    const float t61 = fabsf(m_rod);
+    const float t62 = fabsf(r);
+    const float t63 = t62 * t62;
+    const float t64 = t61 * t63;
+    const float t65 = t60 + t64;
+    const float t66 = 0.5f * t65;
+    const float t67 = 7.450581e-09f * t66;
+    const float t68 = t59 + t67;
+    const float t69 = t10 * t68;
+    const float t70 = 0.5f * J_rod;
+    const float t71 = m_rod * t28;
+    const float t72 = 0.125f * t71;
+    const float t73 = t70 + t72;
+    const float t74 = 2.0f * t73;
+    const float t75 = fabsf(J_rod);
+    const float t76 = 0.5f * t75;
+    const float t77 = fabsf(l);
+    const float t78 = t77 * t77;
+    const float t79 = t61 * t78;
+    const float t80 = 0.125f * t79;
+    const float t81 = t76 + t80;
+    const float t82 = 7.450581e-09f * t81;
+    const float t83 = t74 + t82;
+    const float t84 = t8 * t83;
+    const float t85 = fabsf(m_s);
+    const float t86 = 3.7252903e-09f * t85;
+    const float t87 = m_s + t86;
+    const float t88 = t17 * t87;
+    const float t89 = t84 + t88;
+    const float t90 = t69 + t89;
+    const float t91 = 1.4305115e-06f * t90;
+    if (SLIDER_CRANK_RARELY_F(!(t55 > t91))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t78 = 1.0f / t54;
-    const float t79 = t9 * t78;
-    const float t80 = t6 * t4;
-    const float t81 = t5 * t3;
-    const float t82 = t80 - t81;
-    const float t83 = t12 * t82;
-    const float t84 = m_rod * t83;
-    const float t85 = t7 * t84;
-    const float t86 = 0.5f * t85;
-    const float t87 = m_rod * t31;
-    const float t88 = J_crank + t87;
-    const float t89 = 0.5f * t9;
-    const float t90 = 2.0f * t89;
-    const float t91 = t88 * t90;
-    const float t92 = t86 - t91;
-    const float t93 = t79 * t92;
-    const float t94 = -t93;
-    float rest = t94 - t94;
-    const float t95 = t84 * t89;
-    const float t96 = 0.5f * J_rod;
-    const float t97 = m_rod * t28;
-    const float t98 = 0.125f * t97;
-    const float t99 = t96 + t98;
+    const float t92 = 1.0f / t54;
+    const float t93 = t9 * t92;
+    const float t94 = t6 * t4;
+    const float t95 = t5 * t3;
+    const float t96 = t94 - t95;
+    const float t97 = t12 * t96;
+    const float t98 = m_rod * t97;
+    const float t99 = 0.5f * t98;
     const float t100 = t7 * t99;
-    const float t101 = 2.0f * t100;
-    const float t102 = t95 - t101;
-    const float t103 = t79 * t102;
+    const float t101 = t9 * t59;
+    const float t102 = t100 - t101;
+    const float t103 = t93 * t102;
     const float t104 = -t103;
-    rest *= t104;
-    const float t105 = m_s * t16;
-    const float t106 = t105 * t79;
-    const float t107 = -t106;
-    rest *= t107;
-    const float t108 = t7 * t78;
-    const float t109 = t108 * t92;
-    const float t110 = -t109;
-    float term = t110 - t110;
-    const float t111 = t108 * t102;
+    float rest = t104 - t104;
+    const float t105 = t9 * t99;
+    const float t106 = t7 * t74;
+    const float t107 = t105 - t106;
+    const float t108 = t93 * t107;
+    const float t109 = -t108;
+    rest *= t109;
+    const float t110 = m_s * t16;
+    const float t111 = t110 * t93;
     const float t112 = -t111;
-    term *= t112;
-    const float t113 = t105 * t108;
-    const float t114 = -t113;
-    term *= t114;
-    rest += term;
-    const float t115 = t16 * t78;
-    const float t116 = t92 * t115;
-    term = t116 - t116;
-    const float t117 = t102 * t115;
+    rest *= t112;
+    const float t113 = t7 * t92;
+    const float t114 = t113 * t102;
+    const float t115 = -t114;
+    float term = t115 - t115;
+    const float t116 = t113 * t107;
+    const float t117 = -t116;
     term *= t117;
-    const float t118 = t105 * t115;
-    term *= t118;
+    const float t118 = t110 * t113;
+    const float t119 = -t118;
+    term *= t119;
+    rest += term;
+    const float t120 = t16 * t92;
+    const float t121 = t102 * t120;
+    term = t121 - t121;
+    const float t122 = t107 * t120;
+    term *= t122;
+    const float t123 = t110 * t120;
+    term *= t123;
     rest += term;
     if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    N_BG[0] = t94;
-    N_BG[1] = t104;
-    N_BG[2] = t107;
-    N_BG[3] = t110;
-    N_BG[4] = t112;
-    N_BG[5] = t114;
-    N_BG[6] = t116;
-    N_BG[7] = t117;
-    N_BG[8] = t118;
+    N_BG[0] = t104;
+    N_BG[1] = t109;
+    N_BG[2] = t112;
+    N_BG[3] = t115;
+    N_BG[4] = t117;
+    N_BG[5] = t119;
+    N_BG[6] = t121;
+    N_BG[7] = t122;
+    N_BG[8] = t123;
     return SLIDER_CRANK_OK;
 }
 
@@ -1395,7 +1409,7 @@ slider_crank_status slider_crank_projected_control_matrix_f(const float q[3], co
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1448,7 +1462,7 @@ slider_crank_status slider_crank_projected_control_pseudoinverse_f(const float q
     const float t16 = t13 + t15;
     const float t17 = 1.0f + t16;
     const float t18 = t11 * t17;
-    const float t19 = t18 * 2.046363e-12f;
+    const float t19 = t18 * 2.2737368e-13f;
     const float t5 = sine[1];
     const float t3 = sine[0];
     if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
@@ -1466,7 +1480,7 @@ slider_crank_status slider_crank_projected_control_pseudoinverse_f(const float q
         const float t31 = t28 + t30;
         const float t32 = 1.0f + t31;
         const float t33 = t32 * t11;
-        const float t34 = t33 * 2.046363e-12f;
+        const float t34 = t33 * 2.2737368e-13f;
         if (!(t26 > t34)) {
             return SLIDER_CRANK_CONSTRAINT_RANK;
         }
@@ -1521,7 +1535,7 @@ slider_crank_status slider_crank_orthogonal_complement_f(const float q[3], const
     const float t16 = t13 + t15;
     const float t17 = 1.0f + t16;
     const float t18 = t11 * t17;
-    const float t19 = t18 * 2.046363e-12f;
+    const float t19 = t18 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1585,7 +1599,7 @@ slider_crank_status slider_crank_projected_mass_matrix_f(const float q[3], const
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1733,7 +1747,7 @@ slider_crank_status slider_crank_projected_coriolis_matrix_f(const float q[3], c
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -1990,7 +2004,7 @@ slider_crank_status slider_crank_projected_potential_force_f(const float q[3], c
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2084,7 +2098,7 @@ slider_crank_status slider_crank_projected_applied_force_f(const float q[3], con
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2150,7 +2164,7 @@ slider_crank_status slider_crank_minimal_mass_matrix_f(const float q[3], const s
     const float t16 = t13 + t15;
     const float t17 = 1.0f + t16;
     const float t18 = t11 * t17;
-    const float t19 = t18 * 2.046363e-12f;
+    const float t19 = t18 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2219,29 +2233,29 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
     const float r = p->r;
     const float t4 = cosine[0];
     const float t7 = r * t4;
+    const float t8 = t7 * t7;
     const float l = p->l;
     const float t6 = cosine[1];
     const float t9 = l * t6;
     const float t10 = t9 * t9;
-    const float t12 = r * l;
-    const float t3 = sine[0];
-    const float t19 = r * t3;
-    const float t5 = sine[1];
-    const float t21 = l * t5;
-    const float t8 = t7 * t7;
     const float t11 = t8 + t10;
+    const float t12 = r * l;
+    const float t5 = sine[1];
     const float t13 = t4 * t5;
+    const float t3 = sine[0];
     const float t14 = t6 * t3;
     const float t15 = t13 + t14;
     const float t16 = t12 * t15;
     const float t17 = t16 * t16;
     const float t18 = t11 + t17;
+    const float t19 = r * t3;
     const float t20 = t19 * t19;
+    const float t21 = l * t5;
     const float t22 = t21 * t21;
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2252,79 +2266,77 @@ slider_crank_status slider_crank_minimal_coriolis_matrix_f(const float q[3], con
     const float t31 = t28 + t30;
     const float t32 = 1.0f + t31;
     const float t33 = t11 * t32;
-    const float t34 = t33 * 2.046363e-12f;
+    const float t34 = t33 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t10 > t34))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float alpha_dot = qd[0];
-    const float t42 = alpha_dot * r;
-    const float t43 = t3 * t42;
-    const float t46 = t4 * t42;
+    const float t35 = t16 / t9;
+    const float t36 = 1.0f / t18;
+    const float t37 = t21 * t16;
+    const float t38 = t7 + t37;
     const float t39 = t7 / t9;
     const float beta_dot = qd[1];
     const float t40 = beta_dot * t39;
     const float t41 = t21 * t40;
-    const float t44 = t41 - t43;
-    const float t47 = t9 * t40;
-    const float t48 = t46 + t47;
-    const float t36 = 1.0f / t18;
-    const float t37 = t21 * t16;
-    const float t38 = t7 + t37;
-    const float t55 = t9 * t21;
-    const float t56 = t7 * t19;
-    const float t57 = t55 - t56;
-    const float t76 = t19 * t16;
-    const float t77 = t9 + t76;
-    const float t49 = t16 * t48;
-    const float t45 = t38 * t44;
-    const float t50 = t9 * t49;
-    const float t51 = t45 + t50;
-    const float t52 = t36 * t51;
-    const float t74 = t39 * t52;
-    const float t75 = t7 * t49;
-    const float t78 = t77 * t44;
-    const float t79 = t75 - t78;
-    const float t80 = t36 * t79;
-    const float t81 = t74 - t80;
-    const float t35 = t16 / t9;
+    const float alpha_dot = qd[0];
+    const float t42 = alpha_dot * t19;
+    const float t43 = t41 - t42;
+    const float t44 = t38 * t43;
+    const float t45 = alpha_dot * t7;
+    const float t46 = t9 * t40;
+    const float t47 = t45 + t46;
+    const float t48 = t16 * t47;
+    const float t49 = t9 * t48;
+    const float t50 = t44 + t49;
+    const float t51 = t36 * t50;
+    const float t52 = t35 * t51;
+    const float t53 = t11 * t47;
+    const float t54 = t9 * t21;
+    const float t55 = t7 * t19;
+    const float t56 = t54 - t55;
+    const float t57 = t56 * t43;
+    const float t58 = t53 + t57;
+    const float t59 = t36 * t58;
+    const float t60 = t52 + t59;
+    const float m_s = p->m_s;
+    const float t61 = m_s * t60;
+    const float t62 = t35 * t61;
+    const float t63 = alpha_dot + beta_dot;
     const float m_rod = p->m_rod;
     const float t64 = 0.5f * m_rod;
     const float t65 = t64 * t16;
-    const float t86 = t4 * t6;
-    const float t87 = t3 * t5;
-    const float t88 = t86 - t87;
-    const float t89 = t12 * t88;
-    const float t90 = t64 * t89;
-    const float t66 = beta_dot * t65;
-    const float t67 = alpha_dot * t65;
+    const float t66 = t63 * t65;
     const float J_rod = p->J_rod;
-    const float t68 = 0.5f * J_rod;
-    const float t69 = l * l;
-    const float t70 = m_rod * t69;
-    const float t71 = 0.125f * t70;
-    const float t72 = t68 + t71;
-    const float t73 = 2.0f * t72;
-    const float t53 = t35 * t52;
-    const float t54 = t11 * t48;
-    const float t58 = t57 * t44;
-    const float t59 = t54 + t58;
-    const float t60 = t36 * t59;
-    const float t61 = t53 + t60;
-    const float m_s = p->m_s;
-    const float t62 = m_s * t61;
-    const float t63 = t35 * t62;
-    const float t82 = t73 * t81;
-    const float t83 = t67 + t82;
-    const float t84 = t66 + t83;
-    const float t85 = t39 * t84;
-    const float t91 = t90 * t81;
-    const float t92 = t85 - t91;
-    const float t93 = t63 + t92;
-    float rest = t93 - t93;
+    const float t67 = 0.5f * J_rod;
+    const float t68 = l * l;
+    const float t69 = m_rod * t68;
+    const float t70 = 0.125f * t69;
+    const float t71 = t67 + t70;
+    const float t72 = 2.0f * t71;
+    const float t73 = t39 * t51;
+    const float t74 = t7 * t48;
+    const float t75 = t19 * t16;
+    const float t76 = t9 + t75;
+    const float t77 = t76 * t43;
+    const float t78 = t74 - t77;
+    const float t79 = t36 * t78;
+    const float t80 = t73 - t79;
+    const float t81 = t72 * t80;
+    const float t82 = t66 + t81;
+    const float t83 = t39 * t82;
+    const float t84 = t4 * t6;
+    const float t85 = t3 * t5;
+    const float t86 = t84 - t85;
+    const float t87 = t12 * t86;
+    const float t88 = t64 * t87;
+    const float t89 = t88 * t80;
+    const float t90 = t83 - t89;
+    const float t91 = t62 + t90;
+    float rest = t91 - t91;
     if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    C_bar[0] = t93;
+    C_bar[0] = t91;
     return SLIDER_CRANK_OK;
 }
 
@@ -2359,39 +2371,38 @@ slider_crank_status slider_crank_minimal_potential_force_f(const float q[3], con
     const float t16 = t13 + t15;
     const float t17 = 1.0f + t16;
     const float t18 = t11 * t17;
-    const float t19 = t18 * 2.046363e-12f;
+    const float t19 = t18 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
-    const float m_crank = p->m_crank;
-    const float t20 = 0.5f * m_crank;
-    const float m_rod = p->m_rod;
-    const float t21 = m_rod + t20;
-    const float t22 = t4 * t6;
-    const float g = p->g;
-    const float t23 = g * t22;
-    const float t24 = t21 * t23;
     const float t5 = sine[1];
-    const float t25 = t4 * t5;
+    const float t20 = t4 * t5;
     const float t3 = sine[0];
-    const float t26 = t6 * t3;
-    const float t27 = t25 + t26;
+    const float t21 = t6 * t3;
+    const float t22 = t20 + t21;
     const float s = q[2];
-    const float t28 = l - s;
-    const float t29 = t27 * t28;
+    const float t23 = l - s;
+    const float t24 = t22 * t23;
     const float k = p->k;
-    const float t30 = k * t29;
-    const float t31 = 0.5f * m_rod;
-    const float t32 = t31 * t23;
-    const float t33 = t30 - t32;
-    const float t34 = t24 + t33;
+    const float t25 = k * t24;
+    const float t26 = t4 * t6;
+    const float g = p->g;
+    const float t27 = g * t26;
+    const float m_rod = p->m_rod;
+    const float t28 = 0.5f * m_rod;
+    const float m_crank = p->m_crank;
+    const float t29 = 0.5f * m_crank;
+    const float t30 = m_rod + t29;
+    const float t31 = t28 - t30;
+    const float t32 = t27 * t31;
+    const float t33 = t25 - t32;
+    const float t34 = r * t33;
     const float t35 = t34 / t6;
-    const float t36 = r * t35;
-    float rest = t36 - t36;
+    float rest = t35 - t35;
     if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    Q_bar[0] = t36;
+    Q_bar[0] = t35;
     return SLIDER_CRANK_OK;
 }
 
@@ -2426,7 +2437,7 @@ slider_crank_status slider_crank_minimal_applied_force_f(const float q[3], const
     const float t16 = t13 + t15;
     const float t17 = 1.0f + t16;
     const float t18 = t11 * t17;
-    const float t19 = t18 * 2.046363e-12f;
+    const float t19 = t18 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2496,7 +2507,7 @@ slider_crank_status slider_crank_admissible_velocity_f(const float q[3], const f
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2591,7 +2602,7 @@ slider_crank_status slider_crank_admissible_acceleration_f(const float q[3], con
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2713,7 +2724,7 @@ slider_crank_status slider_crank_projected_configuration_f(const float q[3], con
     const float t24 = 1.0f + t23;
     const float t25 = t10 + t8;
     const float t26 = t24 * t25;
-    const float t27 = t26 * 2.046363e-12f;
+    const float t27 = t26 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t27))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2777,7 +2788,7 @@ slider_crank_status slider_crank_projected_configuration_f(const float q[3], con
     const float t71 = t68 + t70;
     const float t72 = 1.0f + t71;
     const float t73 = t65 * t72;
-    const float t74 = 2.046363e-12f * t73;
+    const float t74 = 2.2737368e-13f * t73;
     if (SLIDER_CRANK_RARELY_F(!(t66 > t74))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -2996,7 +3007,7 @@ slider_crank_status slider_crank_actuator_mass_matrix_f(const float q[3], const 
     const float t16 = t13 + t15;
     const float t17 = 1.0f + t16;
     const float t18 = t11 * t17;
-    const float t19 = t18 * 2.046363e-12f;
+    const float t19 = t18 * 2.2737368e-13f;
     const float t3 = sine[0];
     const float t5 = sine[1];
     if (SLIDER_CRANK_RARELY_F(!(t8 > t19))) {
@@ -3014,7 +3025,7 @@ slider_crank_status slider_crank_actuator_mass_matrix_f(const float q[3], const 
         const float t31 = t28 + t30;
         const float t32 = 1.0f + t31;
         const float t33 = t32 * t11;
-        const float t34 = t33 * 2.046363e-12f;
+        const float t34 = t33 * 2.2737368e-13f;
         if (!(t26 > t34)) {
             return SLIDER_CRANK_CONSTRAINT_RANK;
         }
@@ -3105,7 +3116,7 @@ slider_crank_status slider_crank_actuator_bias_f(const float q[3], const float q
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -3116,7 +3127,7 @@ slider_crank_status slider_crank_actuator_bias_f(const float q[3], const float q
     const float t31 = t28 + t30;
     const float t32 = 1.0f + t31;
     const float t33 = t11 * t32;
-    const float t34 = t33 * 2.046363e-12f;
+    const float t34 = t33 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t10 > t34))) {
         const float t35 = t8 + t17;
         if (!(t35 > t26)) {
@@ -3254,7 +3265,7 @@ slider_crank_status slider_crank_forward_dynamics_f(const float q[3], const floa
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -3291,134 +3302,140 @@ slider_crank_status slider_crank_forward_dynamics_f(const float q[3], const floa
     const float t53 = t31 * t52;
     const float t54 = t30 + t53;
     const float t55 = fabsf(t54);
-    const float t56 = fabsf(J_rod);
-    const float t57 = 0.5f * t56;
-    const float t58 = fabsf(m_rod);
-    const float t59 = fabsf(l);
-    const float t60 = t59 * t59;
-    const float t61 = t58 * t60;
-    const float t62 = 0.125f * t61;
-    const float t63 = t57 + t62;
-    const float t64 = t8 * t63;
-    const float t65 = fabsf(J_crank);
-    const float t66 = fabsf(r);
-    const float t67 = t66 * t66;
-    const float t68 = t58 * t67;
-    const float t69 = t65 + t68;
-    const float t70 = 0.5f * t69;
-    const float t71 = t10 * t70;
-    const float t72 = t64 + t71;
-    const float t73 = 2.0f * t72;
-    const float t74 = fabsf(m_s);
-    const float t75 = t17 * t74;
-    const float t76 = t73 + t75;
-    const float t77 = 1.4305115e-06f * t76;
-    if (SLIDER_CRANK_RARELY_F(!(t55 > t77))) {
+    const float t56 = m_rod * t31;
+    const float t57 = J_crank + t56;
+    const float t58 = 0.5f * t57;
+    const float t59 = 2.0f * t58;
+    const float t60 = fabsf(J_crank);
+    const float t61 = fabsf(m_rod);
+    const float t62 = fabsf(r);
+    const float t63 = t62 * t62;
+    const float t64 = t61 * t63;
+    const float t65 = t60 + t64;
+    const float t66 = 0.5f * t65;
+    const float t67 = 7.450581e-09f * t66;
+    const float t68 = t59 + t67;
+    const float t69 = t10 * t68;
+    const float t70 = 0.5f * J_rod;
+    const float t71 = m_rod * t28;
+    const float t72 = 0.125f * t71;
+    const float t73 = t70 + t72;
+    const float t74 = 2.0f * t73;
+    const float t75 = fabsf(J_rod);
+    const float t76 = 0.5f * t75;
+    const float t77 = fabsf(l);
+    const float t78 = t77 * t77;
+    const float t79 = t61 * t78;
+    const float t80 = 0.125f * t79;
+    const float t81 = t76 + t80;
+    const float t82 = 7.450581e-09f * t81;
+    const float t83 = t74 + t82;
+    const float t84 = t8 * t83;
+    const float t85 = fabsf(m_s);
+    const float t86 = 3.7252903e-09f * t85;
+    const float t87 = m_s + t86;
+    const float t88 = t17 * t87;
+    const float t89 = t84 + t88;
+    const float t90 = t69 + t89;
+    const float t91 = 1.4305115e-06f * t90;
+    if (SLIDER_CRANK_RARELY_F(!(t55 > t91))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t78 = r * t52;
-    const float t79 = r * t78;
-    const float t80 = t30 + t79;
-    const float t81 = 1.0f / t80;
+    const float t92 = 1.0f / t54;
     const float s = q[2];
-    const float t82 = s - l;
+    const float t93 = s - l;
     const float k = p->k;
-    const float t83 = k * t82;
+    const float t94 = k * t93;
     const float s_dot = qd[2];
     const float d = p->d;
-    const float t84 = s_dot * d;
-    const float t85 = t83 + t84;
-    const float t86 = t16 * t85;
+    const float t95 = s_dot * d;
+    const float t96 = t94 + t95;
+    const float t97 = t16 * t96;
     const float beta_dot = qd[1];
-    const float t87 = beta_dot * beta_dot;
-    const float t88 = m_rod * t16;
-    const float t89 = t87 * t88;
-    const float t90 = 0.5f * t89;
+    const float t98 = beta_dot * beta_dot;
+    const float t99 = m_rod * t16;
+    const float t100 = t98 * t99;
+    const float t101 = 0.5f * t100;
     const float m_crank = p->m_crank;
-    const float t91 = 0.5f * m_crank;
-    const float t92 = m_rod + t91;
-    const float t93 = t7 * t92;
-    const float g = p->g;
-    const float t94 = g * t93;
-    const float t95 = t90 + t94;
-    const float crank = u[0];
-    const float t96 = crank - t95;
-    const float t97 = t9 * t96;
-    const float t98 = m_rod * t9;
-    const float t99 = g * t98;
-    const float alpha_dot = qd[0];
-    const float t100 = alpha_dot * alpha_dot;
-    const float t101 = t100 * t88;
-    const float t102 = t99 - t101;
-    const float t103 = 0.5f * t102;
+    const float t102 = 0.5f * m_crank;
+    const float t103 = m_rod + t102;
     const float t104 = t7 * t103;
-    const float t105 = t97 + t104;
-    const float t106 = t86 + t105;
-    const float t107 = t9 * t106;
-    const float t108 = m_s * t16;
-    const float t109 = alpha_dot * t7;
-    const float t110 = alpha_dot * t109;
-    const float t111 = beta_dot * t9;
-    const float t112 = beta_dot * t111;
-    const float t113 = t110 + t112;
-    const float t114 = t9 * t113;
-    const float t115 = beta_dot * t21;
-    const float t116 = beta_dot * t115;
-    const float t117 = alpha_dot * t19;
-    const float t118 = alpha_dot * t117;
-    const float t119 = t116 - t118;
-    const float t120 = t21 * t119;
-    const float t121 = t114 + t120;
-    const float t122 = t108 * t121;
-    const float t123 = t12 * t98;
-    const float t124 = t6 * t4;
-    const float t125 = t5 * t3;
-    const float t126 = t124 - t125;
-    const float t127 = 0.5f * t126;
-    const float t128 = t123 * t127;
-    const float t129 = 0.5f * J_rod;
-    const float t130 = m_rod * t28;
-    const float t131 = 0.125f * t130;
-    const float t132 = t129 + t131;
-    const float t133 = t7 * t132;
-    const float t134 = 2.0f * t133;
-    const float t135 = t128 - t134;
-    const float t136 = t119 * t135;
-    const float t137 = t122 - t136;
-    const float t138 = t107 - t137;
-    const float t139 = t81 * t138;
-    float rest = t139 - t139;
-    const float t140 = t7 * t106;
-    const float t141 = t7 * t113;
-    const float t142 = t19 * t119;
-    const float t143 = t141 - t142;
-    const float t144 = t108 * t143;
-    const float t145 = r * m_rod;
-    const float t146 = t6 * t127;
-    const float t147 = t146 - t4;
-    const float t148 = t145 * t147;
-    const float t149 = r * t148;
-    const float t150 = J_crank * t4;
-    const float t151 = t149 - t150;
-    const float t152 = l * t151;
-    const float t153 = t119 * t152;
-    const float t154 = t144 + t153;
-    const float t155 = t140 - t154;
-    const float t156 = t81 * t155;
-    rest *= t156;
-    const float t157 = t121 * t152;
-    const float t158 = t143 * t135;
-    const float t159 = t157 + t158;
-    const float t160 = t16 * t106;
-    const float t161 = t159 - t160;
-    const float t162 = t81 * t161;
+    const float g = p->g;
+    const float t105 = g * t104;
+    const float t106 = t101 + t105;
+    const float crank = u[0];
+    const float t107 = crank - t106;
+    const float t108 = t9 * t107;
+    const float t109 = m_rod * t9;
+    const float t110 = g * t109;
+    const float alpha_dot = qd[0];
+    const float t111 = alpha_dot * alpha_dot;
+    const float t112 = t111 * t99;
+    const float t113 = t110 - t112;
+    const float t114 = 0.5f * t113;
+    const float t115 = t7 * t114;
+    const float t116 = t108 + t115;
+    const float t117 = t97 + t116;
+    const float t118 = t9 * t117;
+    const float t119 = m_s * t16;
+    const float t120 = alpha_dot * t7;
+    const float t121 = alpha_dot * t120;
+    const float t122 = beta_dot * t9;
+    const float t123 = beta_dot * t122;
+    const float t124 = t121 + t123;
+    const float t125 = t9 * t124;
+    const float t126 = beta_dot * t21;
+    const float t127 = beta_dot * t126;
+    const float t128 = alpha_dot * t19;
+    const float t129 = alpha_dot * t128;
+    const float t130 = t127 - t129;
+    const float t131 = t21 * t130;
+    const float t132 = t125 + t131;
+    const float t133 = t119 * t132;
+    const float t134 = t12 * t109;
+    const float t135 = t6 * t4;
+    const float t136 = t5 * t3;
+    const float t137 = t135 - t136;
+    const float t138 = 0.5f * t137;
+    const float t139 = t134 * t138;
+    const float t140 = t7 * t74;
+    const float t141 = t139 - t140;
+    const float t142 = t130 * t141;
+    const float t143 = t133 - t142;
+    const float t144 = t118 - t143;
+    const float t145 = t92 * t144;
+    float rest = t145 - t145;
+    const float t146 = t7 * t117;
+    const float t147 = t7 * t124;
+    const float t148 = t19 * t130;
+    const float t149 = t147 - t148;
+    const float t150 = t119 * t149;
+    const float t151 = r * m_rod;
+    const float t152 = r * t151;
+    const float t153 = t6 * t138;
+    const float t154 = t153 - t4;
+    const float t155 = t152 * t154;
+    const float t156 = J_crank * t4;
+    const float t157 = t155 - t156;
+    const float t158 = l * t157;
+    const float t159 = t130 * t158;
+    const float t160 = t150 + t159;
+    const float t161 = t146 - t160;
+    const float t162 = t92 * t161;
     rest *= t162;
+    const float t163 = t132 * t158;
+    const float t164 = t149 * t141;
+    const float t165 = t163 + t164;
+    const float t166 = t16 * t117;
+    const float t167 = t165 - t166;
+    const float t168 = t92 * t167;
+    rest *= t168;
     if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    qdd[0] = t139;
-    qdd[1] = t156;
-    qdd[2] = t162;
+    qdd[0] = t145;
+    qdd[1] = t162;
+    qdd[2] = t168;
     return SLIDER_CRANK_OK;
 }
 
@@ -3462,7 +3479,7 @@ slider_crank_status slider_crank_multipliers_f(const float q[3], const float qd[
     const float t23 = t20 + t22;
     const float t24 = 1.0f + t23;
     const float t25 = t24 * t11;
-    const float t26 = t25 * 2.046363e-12f;
+    const float t26 = t25 * 2.2737368e-13f;
     if (SLIDER_CRANK_RARELY_F(!(t18 > t26))) {
         return SLIDER_CRANK_CONSTRAINT_RANK;
     }
@@ -3499,153 +3516,162 @@ slider_crank_status slider_crank_multipliers_f(const float q[3], const float qd[
     const float t53 = t31 * t52;
     const float t54 = t30 + t53;
     const float t55 = fabsf(t54);
-    const float t56 = fabsf(J_rod);
-    const float t57 = 0.5f * t56;
-    const float t58 = fabsf(m_rod);
-    const float t59 = fabsf(l);
-    const float t60 = t59 * t59;
-    const float t61 = t58 * t60;
-    const float t62 = 0.125f * t61;
-    const float t63 = t57 + t62;
-    const float t64 = t8 * t63;
-    const float t65 = fabsf(J_crank);
-    const float t66 = fabsf(r);
-    const float t67 = t66 * t66;
-    const float t68 = t58 * t67;
-    const float t69 = t65 + t68;
-    const float t70 = 0.5f * t69;
-    const float t71 = t10 * t70;
-    const float t72 = t64 + t71;
-    const float t73 = 2.0f * t72;
-    const float t74 = fabsf(m_s);
-    const float t75 = t17 * t74;
-    const float t76 = t73 + t75;
-    const float t77 = 1.4305115e-06f * t76;
-    if (SLIDER_CRANK_RARELY_F(!(t55 > t77))) {
+    const float t56 = m_rod * t31;
+    const float t57 = J_crank + t56;
+    const float t58 = 0.5f * t57;
+    const float t59 = 2.0f * t58;
+    const float t60 = fabsf(J_crank);
+    const float t61 = fabsf(m_rod);
+    const float t62 = fabsf(r);
+    const float t63 = t62 * t62;
+    const float t64 = t61 * t63;
+    const float t65 = t60 + t64;
+    const float t66 = 0.5f * t65;
+    const float t67 = 7.450581e-09f * t66;
+    const float t68 = t59 + t67;
+    const float t69 = t10 * t68;
+    const float t70 = 0.5f * J_rod;
+    const float t71 = m_rod * t28;
+    const float t72 = 0.125f * t71;
+    const float t73 = t70 + t72;
+    const float t74 = 2.0f * t73;
+    const float t75 = fabsf(J_rod);
+    const float t76 = 0.5f * t75;
+    const float t77 = fabsf(l);
+    const float t78 = t77 * t77;
+    const float t79 = t61 * t78;
+    const float t80 = 0.125f * t79;
+    const float t81 = t76 + t80;
+    const float t82 = 7.450581e-09f * t81;
+    const float t83 = t74 + t82;
+    const float t84 = t8 * t83;
+    const float t85 = fabsf(m_s);
+    const float t86 = 3.7252903e-09f * t85;
+    const float t87 = m_s + t86;
+    const float t88 = t17 * t87;
+    const float t89 = t84 + t88;
+    const float t90 = t69 + t89;
+    const float t91 = 1.4305115e-06f * t90;
+    if (SLIDER_CRANK_RARELY_F(!(t55 > t91))) {
         return SLIDER_CRANK_MASS_RANK;
     }
-    const float t78 = 1.0f / t54;
-    const float t79 = t6 * t4;
-    const float t80 = t5 * t3;
-    const float t81 = t79 - t80;
-    const float t82 = t6 * t81;
-    const float t83 = 0.5f * t82;
-    const float t84 = t83 - t4;
-    const float t85 = r * m_rod;
-    const float t86 = r * t85;
-    const float t87 = t84 * t86;
-    const float t88 = J_crank * t4;
-    const float t89 = t87 - t88;
-    const float t90 = l * t89;
+    const float t92 = 1.0f / t54;
+    const float t93 = t6 * t4;
+    const float t94 = t5 * t3;
+    const float t95 = t93 - t94;
+    const float t96 = t6 * t95;
+    const float t97 = 0.5f * t96;
+    const float t98 = t97 - t4;
+    const float t99 = r * m_rod;
+    const float t100 = r * t99;
+    const float t101 = t98 * t100;
+    const float t102 = J_crank * t4;
+    const float t103 = t101 - t102;
+    const float t104 = l * t103;
     const float s = q[2];
-    const float t91 = s - l;
+    const float t105 = s - l;
     const float k = p->k;
-    const float t92 = k * t91;
+    const float t106 = k * t105;
     const float s_dot = qd[2];
     const float d = p->d;
-    const float t93 = s_dot * d;
-    const float t94 = t92 + t93;
+    const float t107 = s_dot * d;
+    const float t108 = t106 + t107;
     const float alpha_dot = qd[0];
-    const float t95 = alpha_dot * t7;
-    const float t96 = alpha_dot * t95;
+    const float t109 = alpha_dot * t7;
+    const float t110 = alpha_dot * t109;
     const float beta_dot = qd[1];
-    const float t97 = beta_dot * t9;
-    const float t98 = beta_dot * t97;
-    const float t99 = t96 + t98;
-    const float t100 = t9 * t99;
-    const float t101 = beta_dot * t21;
-    const float t102 = beta_dot * t101;
-    const float t103 = alpha_dot * t19;
-    const float t104 = alpha_dot * t103;
-    const float t105 = t102 - t104;
-    const float t106 = t21 * t105;
-    const float t107 = t100 + t106;
-    const float t108 = t107 * t90;
-    const float t109 = t7 * t99;
-    const float t110 = t19 * t105;
-    const float t111 = t109 - t110;
-    const float t112 = t12 * t81;
-    const float t113 = m_rod * t112;
+    const float t111 = beta_dot * t9;
+    const float t112 = beta_dot * t111;
+    const float t113 = t110 + t112;
     const float t114 = t9 * t113;
-    const float t115 = 0.5f * t114;
-    const float t116 = 0.5f * J_rod;
-    const float t117 = m_rod * t28;
-    const float t118 = 0.125f * t117;
-    const float t119 = t116 + t118;
-    const float t120 = 2.0f * t119;
-    const float t121 = t7 * t120;
-    const float t122 = t115 - t121;
-    const float t123 = t111 * t122;
-    const float t124 = t108 + t123;
-    const float t125 = t78 * t124;
-    const float t126 = m_s * t125;
-    const float t127 = t94 + t126;
-    const float t128 = t90 * t127;
-    const float t129 = m_s * t16;
-    const float t130 = J_crank + t86;
-    const float t131 = 0.5f * t130;
-    const float t132 = t129 * t107;
-    const float t133 = t105 * t122;
-    const float t134 = t132 - t133;
-    const float t135 = t78 * t134;
-    const float t136 = t131 * t135;
-    const float t137 = 2.0f * t136;
-    const float t138 = beta_dot * beta_dot;
-    const float t139 = m_rod * t16;
-    const float t140 = t138 * t139;
-    const float t141 = t129 * t111;
-    const float t142 = t105 * t90;
-    const float t143 = t141 + t142;
-    const float t144 = t78 * t143;
-    const float t145 = t113 * t144;
-    const float t146 = t140 + t145;
-    const float t147 = 0.5f * t146;
+    const float t115 = beta_dot * t21;
+    const float t116 = beta_dot * t115;
+    const float t117 = alpha_dot * t19;
+    const float t118 = alpha_dot * t117;
+    const float t119 = t116 - t118;
+    const float t120 = t21 * t119;
+    const float t121 = t114 + t120;
+    const float t122 = t121 * t104;
+    const float t123 = t7 * t113;
+    const float t124 = t19 * t119;
+    const float t125 = t123 - t124;
+    const float t126 = t12 * t95;
+    const float t127 = m_rod * t126;
+    const float t128 = t9 * t127;
+    const float t129 = 0.5f * t128;
+    const float t130 = t7 * t74;
+    const float t131 = t129 - t130;
+    const float t132 = t125 * t131;
+    const float t133 = t122 + t132;
+    const float t134 = t92 * t133;
+    const float t135 = m_s * t134;
+    const float t136 = t108 + t135;
+    const float t137 = t104 * t136;
+    const float t138 = m_s * t16;
+    const float t139 = J_crank + t100;
+    const float t140 = 0.5f * t139;
+    const float t141 = 2.0f * t140;
+    const float t142 = t138 * t121;
+    const float t143 = t119 * t131;
+    const float t144 = t142 - t143;
+    const float t145 = t92 * t144;
+    const float t146 = t141 * t145;
+    const float t147 = beta_dot * beta_dot;
+    const float t148 = m_rod * t16;
+    const float t149 = t147 * t148;
+    const float t150 = t138 * t125;
+    const float t151 = t119 * t104;
+    const float t152 = t150 + t151;
+    const float t153 = t92 * t152;
+    const float t154 = t127 * t153;
+    const float t155 = t149 + t154;
+    const float t156 = 0.5f * t155;
     const float crank = u[0];
-    const float t148 = crank - t147;
+    const float t157 = crank - t156;
     const float m_crank = p->m_crank;
-    const float t149 = 0.5f * m_crank;
-    const float t150 = m_rod + t149;
-    const float t151 = t7 * t150;
+    const float t158 = 0.5f * m_crank;
+    const float t159 = m_rod + t158;
+    const float t160 = t7 * t159;
     const float g = p->g;
-    const float t152 = g * t151;
-    const float t153 = t148 - t152;
-    const float t154 = t137 + t153;
-    const float t155 = t129 * t154;
-    const float t156 = t128 + t155;
-    const float t157 = t9 * t156;
-    const float t158 = t122 * t127;
-    const float t159 = t120 * t144;
-    const float t160 = alpha_dot * alpha_dot;
-    const float t161 = t160 * t139;
-    const float t162 = m_rod * t9;
-    const float t163 = g * t162;
-    const float t164 = t161 - t163;
-    const float t165 = t113 * t135;
-    const float t166 = t164 + t165;
-    const float t167 = 0.5f * t166;
-    const float t168 = t159 - t167;
-    const float t169 = t129 * t168;
-    const float t170 = t158 + t169;
-    const float t171 = t7 * t170;
-    const float t172 = t157 + t171;
-    const float t173 = t78 * t172;
-    const float t174 = -t173;
-    float rest = t174 - t174;
-    const float t175 = t122 * t154;
-    const float t176 = t90 * t168;
-    const float t177 = t175 - t176;
-    const float t178 = t21 * t156;
-    const float t179 = t177 - t178;
-    const float t180 = t19 * t170;
-    const float t181 = t179 + t180;
-    const float t182 = t78 * t181;
+    const float t161 = g * t160;
+    const float t162 = t157 - t161;
+    const float t163 = t146 + t162;
+    const float t164 = t138 * t163;
+    const float t165 = t137 + t164;
+    const float t166 = t9 * t165;
+    const float t167 = t131 * t136;
+    const float t168 = t74 * t153;
+    const float t169 = alpha_dot * alpha_dot;
+    const float t170 = t169 * t148;
+    const float t171 = m_rod * t9;
+    const float t172 = g * t171;
+    const float t173 = t170 - t172;
+    const float t174 = t127 * t145;
+    const float t175 = t173 + t174;
+    const float t176 = 0.5f * t175;
+    const float t177 = t168 - t176;
+    const float t178 = t138 * t177;
+    const float t179 = t167 + t178;
+    const float t180 = t7 * t179;
+    const float t181 = t166 + t180;
+    const float t182 = t92 * t181;
     const float t183 = -t182;
-    rest *= t183;
+    float rest = t183 - t183;
+    const float t184 = t131 * t163;
+    const float t185 = t104 * t177;
+    const float t186 = t184 - t185;
+    const float t187 = t21 * t165;
+    const float t188 = t186 - t187;
+    const float t189 = t19 * t179;
+    const float t190 = t188 + t189;
+    const float t191 = t92 * t190;
+    const float t192 = -t191;
+    rest *= t192;
     if (SLIDER_CRANK_RARELY_F(isnan(rest) != 0)) {
         return SLIDER_CRANK_NOT_FINITE;
     }
-    lambda_B[0] = t174;
-    lambda_B[1] = t183;
+    lambda_B[0] = t183;
+    lambda_B[1] = t192;
     return SLIDER_CRANK_OK;
 }
 
