@@ -109,8 +109,9 @@ class _Limits:
             scale = scale.args[1]
         constant = scale.constant if number is None else number
         factor = Fraction(1) if constant is None else constant
-        # statuses of equal tolerance share a threshold, and with it what is computed from it
-        name = f"threshold {_own_tolerance(self._mechanics, guard)} {guard.degree} {guard.directions} {factor}"
+        # guards of equal thresholds share them, and what is computed from them
+        both = [_threshold(self._mechanics, guard, scalar) for scalar in UNIT_ROUNDOFF]
+        name = f"threshold {both} {factor}"
         self._thresholds[name] = guard, factor
         threshold = self._mechanics.graph.symbol(name)
         return threshold if scale.constant is not None else threshold * scale

@@ -33,8 +33,13 @@ def with_redundant_row(model: Model) -> Model | None:
         total = Binary("+", total, residual)
     geometric = [row for row in model.constraints if row.kind == "geometric"]
     others = [row for row in model.constraints if row.kind != "geometric"]
+    assembly = model.assembly
+    if assembly is not None and assembly.units:
+        units = (*assembly.units[: len(geometric)], assembly.units[0], *assembly.units[len(geometric) :])
+        assembly = replace(assembly, units=units)
     return replace(
         model,
+        assembly=assembly,
         name=f"{model.name}_with_a_redundant_row",
         constraints=(*geometric, ConstraintRow(ROW, "geometric", total), *others),
         published=(),

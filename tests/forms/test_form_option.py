@@ -77,8 +77,11 @@ def test_multipliers_by_the_form_asked_for_are_verified(form: str, tmp_path: Pat
     assert form in FORMS["multipliers"]
     asked = ("--form", f"multipliers={form}", "--form", f"forward_dynamics={form}")
     given = ("--outputs", "forward_dynamics,multipliers", "--only", "c", "--scalar", "float64", "--states", "8")
-    assert main([CRANK, *given, *asked, "--quiet", "--out", str(tmp_path)]) == 0
-    derivation = json.loads((tmp_path / "slider_crank" / "derivation.json").read_text())
+    # shifted equations are for a G without inverse; of the slider-crank they are 40 units off at states searched for
+    file, name = (str(tmp_path / "massless.yaml"), "massless") if form == "shifted" else (CRANK, "slider_crank")
+    (tmp_path / "massless.yaml").write_text(MASSLESS)
+    assert main([file, *given, *asked, "--quiet", "--out", str(tmp_path)]) == 0
+    derivation = json.loads((tmp_path / name / "derivation.json").read_text())
     for quantity in ("forward_dynamics", "multipliers"):
         assert derivation["kernels"][quantity]["way"] == form
         assert derivation[f"form_of_{quantity}"]["valid_at_every_regular_state"] is True

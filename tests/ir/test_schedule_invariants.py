@@ -136,11 +136,11 @@ def test_constant_quantities_cannot_fail() -> None:
 
 
 def test_thresholds_follow_the_scalar_type() -> None:
-    """8 n eps squared enters the limit of a sum of squares."""
+    """8 eps squared enters the limit of the sum of squared determinants of two rows."""
     for scalar in ("float64", "float32"):
         kernel = system(shipped("slider_crank")).kernel("nullspace_projector", scalar)
         literals = {o.value for s in kernel.statements for o in s.operands if isinstance(o, Literal)}
-        assert (8 * 3 * UNIT_ROUNDOFF[scalar]) ** 2 in literals
+        assert (8 * UNIT_ROUNDOFF[scalar]) ** 2 in literals
 
 
 def test_the_sine_and_cosine_are_straight_lines() -> None:
