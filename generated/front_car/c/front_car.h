@@ -35,7 +35,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     34      1      0      2      0
+ * minimal_coriolis_matrix              13     33      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0

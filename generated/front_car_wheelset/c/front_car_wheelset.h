@@ -36,7 +36,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   6     11      2      0      2      0
- * minimal_coriolis_matrix              17     40      2      0      2      0
+ * minimal_coriolis_matrix              17     39      2      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0

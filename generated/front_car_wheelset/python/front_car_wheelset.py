@@ -34,7 +34,7 @@ projected_coriolis_matrix            63    135     10      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
 minimal_mass_matrix                   6     11      2      0      2      0
-minimal_coriolis_matrix              17     40      2      0      2      0
+minimal_coriolis_matrix              17     39      2      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      6      1      0      2      0
@@ -1534,43 +1534,43 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t3, t4 = _sincos(phi)
         t5, t6 = _sincos(theta)
         t7 = t3 * t3
-        t19 = L * L
-        t23 = phi_dot * t6
-        t26 = theta_dot * t5
-        t28 = (-1.0) + t19
-        t31 = t4 * t4
-        t34 = m_1 + m_2
-        t20 = m_2 * t19
-        t21 = Theta_1 + t20
-        t22 = Theta_2 + t21
-        t24 = t3 * t23
-        t25 = t22 * t24
-        t27 = t22 * t26
-        t29 = t28 * t25
-        t30 = t4 * t26
-        t32 = t31 + (-2.0)
-        t33 = t22 * t32
-        t35 = t34 * t19
-        t36 = t31 * t35
-        t37 = t34 + t22
-        t38 = t7 * t37
-        t39 = t36 + t38
-        t40 = t19 * t39
-        t41 = t33 + t40
-        t42 = t30 * t41
-        t43 = t29 + t42
-        t44 = t4 * t43
-        t45 = t27 + t44
-        t46 = t4 * t45
-        t47 = t25 + t46
-        t57 = t3 * t26
-        t58 = t4 * t57
-        t59 = t23 + t58
-        t60 = t28 * t59
-        t61 = t4 * t60
-        t62 = t57 + t61
-        t63 = t4 * t62
-        t64 = t23 + t63
+        t18 = L * L
+        t22 = phi_dot * t6
+        t25 = theta_dot * t5
+        t27 = (-1.0) + t18
+        t30 = t4 * t4
+        t33 = m_1 + m_2
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = Theta_2 + t20
+        t23 = t3 * t22
+        t24 = t21 * t23
+        t26 = t21 * t25
+        t28 = t27 * t24
+        t29 = t4 * t25
+        t31 = t30 + (-2.0)
+        t32 = t21 * t31
+        t34 = t33 * t18
+        t35 = t30 * t34
+        t36 = t33 + t21
+        t37 = t7 * t36
+        t38 = t35 + t37
+        t39 = t18 * t38
+        t40 = t32 + t39
+        t41 = t29 * t40
+        t42 = t28 + t41
+        t43 = t4 * t42
+        t44 = t26 + t43
+        t45 = t4 * t44
+        t46 = t24 + t45
+        t56 = t3 * t25
+        t57 = t4 * t56
+        t58 = t22 + t57
+        t59 = t27 * t58
+        t60 = t4 * t59
+        t61 = t56 + t60
+        t62 = t4 * t61
+        t63 = t22 + t62
         t8 = L * t4
         t12 = t6 * t8
         t13 = t12 * t12
@@ -1582,22 +1582,21 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t16 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t13 > t18), 2)
-        t48 = t6 * t4
-        t49 = t14 * t48
-        t50 = t19 * t48
-        t51 = t6 * t50
-        t52 = t4 * t51
-        t53 = t49 * t52
-        t54 = t47 / t53
-        t55 = t12 * t49
-        t56 = Theta_2 / t55
-        t65 = t56 * t64
+        status = _first(status, ~np.asarray(t13 > t17), 2)
+        t47 = t6 * t4
+        t48 = t14 * t47
+        t49 = t18 * t47
+        t50 = t6 * t49
+        t51 = t4 * t50
+        t52 = t48 * t51
+        t53 = t46 / t52
+        t54 = t12 * t48
+        t55 = Theta_2 / t54
+        t64 = t55 * t63
         entries = (
-            t54,
+            t53,
             0.0,
-            t65,
+            t64,
             0.0,
         )
         return _result("minimal_coriolis_matrix", status, batch, (2, 2), entries)

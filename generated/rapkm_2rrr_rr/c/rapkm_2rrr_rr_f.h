@@ -40,7 +40,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                  73    128      1      0      6      0
- * minimal_coriolis_matrix             338    540      2      0      6      0
+ * minimal_coriolis_matrix             338    539      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix               25     56      1      0      6      0

@@ -39,7 +39,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                  73    128      1      0      6      0
- * minimal_coriolis_matrix             338    540      2      0      6      0
+ * minimal_coriolis_matrix             338    539      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                0      0      0      0      0      0
@@ -50,7 +50,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                 73    128      1      0      6      0
- * actuator_bias                       169    307      2      0      6      0
+ * actuator_bias                       169    306      2      0      6      0
  * forward_dynamics                    335    465     18      3      6      3
  * multipliers                         316    441     18      3      6      3
  * energy                               20     31      0      0      3      0

@@ -35,7 +35,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     34      1      0      2      0
+ * minimal_coriolis_matrix              13     33      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      5      1      0      2      0
@@ -46,7 +46,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
- * actuator_bias                         5     17      1      0      2      0
+ * actuator_bias                         5     16      1      0      2      0
  * forward_dynamics                     33     81      1      0      2      0
  * multipliers                          36     83      1      0      2      0
  * energy                                7     14      0      0      1      0

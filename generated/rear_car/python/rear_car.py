@@ -34,7 +34,7 @@ projected_coriolis_matrix            62    132     10      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
 minimal_mass_matrix                   3     11      1      0      2      0
-minimal_coriolis_matrix              13     34      1      0      2      0
+minimal_coriolis_matrix              13     33      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      5      1      0      2      0
@@ -45,7 +45,7 @@ inverse_dynamics                      7     15      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     1      2      0      0      1      0
 actuator_mass_matrix                  4      7      1      0      1      0
-actuator_bias                         5     17      1      0      2      0
+actuator_bias                         5     16      1      0      2      0
 forward_dynamics                     33     81      1      0      2      0
 multipliers                          36     83      1      0      2      0
 energy                                7     14      0      0      1      0
@@ -992,14 +992,13 @@ def projected_control_pseudoinverse(q, p=PARAMETERS):
         _failed_ = ~np.asarray(t8 > t10)
         if np.any(_failed_ & (status == 0)):
             t11 = t5 * t5
-            t12 = t9 * 7.888609052210118e-31
-            status = _first(status, _failed_ & ~np.asarray(t11 > t12), 2)
+            status = _first(status, _failed_ & ~np.asarray(t11 > t10), 2)
             status = _first(status, _failed_, 3)
-        t13 = t5 / t7
+        t12 = t5 / t7
         entries = (
             t4,
             t3,
-            t13,
+            t12,
             0.0,
             0.0,
             0.0,
@@ -1496,46 +1495,45 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t16 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t13 > t18), 2)
-        t19 = L * L
-        t20 = m_2 * t19
-        t21 = Theta_1 + t20
-        t22 = phi_dot * t6
-        t23 = t3 * t22
-        t24 = t21 * t23
-        t25 = theta_dot * t5
-        t26 = t21 * t25
-        t27 = (-1.0) + t19
-        t28 = t27 * t24
-        t29 = t4 * t25
-        t30 = t4 * t4
-        t31 = t30 + (-2.0)
-        t32 = t21 * t31
-        t33 = m_1 + m_2
-        t34 = t33 * t19
-        t35 = t30 * t34
-        t36 = t33 + t21
-        t37 = t7 * t36
-        t38 = t35 + t37
-        t39 = t19 * t38
-        t40 = t32 + t39
-        t41 = t29 * t40
-        t42 = t28 + t41
-        t43 = t4 * t42
-        t44 = t26 + t43
-        t45 = t4 * t44
-        t46 = t24 + t45
-        t47 = t6 * t19
+        status = _first(status, ~np.asarray(t13 > t17), 2)
+        t18 = L * L
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = phi_dot * t6
+        t22 = t3 * t21
+        t23 = t20 * t22
+        t24 = theta_dot * t5
+        t25 = t20 * t24
+        t26 = (-1.0) + t18
+        t27 = t26 * t23
+        t28 = t4 * t24
+        t29 = t4 * t4
+        t30 = t29 + (-2.0)
+        t31 = t20 * t30
+        t32 = m_1 + m_2
+        t33 = t32 * t18
+        t34 = t29 * t33
+        t35 = t32 + t20
+        t36 = t7 * t35
+        t37 = t34 + t36
+        t38 = t18 * t37
+        t39 = t31 + t38
+        t40 = t28 * t39
+        t41 = t27 + t40
+        t42 = t4 * t41
+        t43 = t25 + t42
+        t44 = t4 * t43
+        t45 = t23 + t44
+        t46 = t6 * t18
+        t47 = t6 * t46
         t48 = t6 * t47
-        t49 = t6 * t48
+        t49 = t4 * t48
         t50 = t4 * t49
         t51 = t4 * t50
-        t52 = t4 * t51
-        t53 = t14 * t52
-        t54 = t46 / t53
+        t52 = t14 * t51
+        t53 = t45 / t52
         entries = (
-            t54,
+            t53,
             0.0,
             0.0,
             0.0,
@@ -1922,19 +1920,18 @@ def actuator_mass_matrix(q, p=PARAMETERS):
         _failed_ = ~np.asarray(t5 > t7)
         if np.any(_failed_ & (status == 0)):
             t8 = t2 * t2
-            t9 = t6 * 7.888609052210118e-31
-            status = _first(status, _failed_ & ~np.asarray(t8 > t9), 2)
+            status = _first(status, _failed_ & ~np.asarray(t8 > t7), 2)
             status = _first(status, _failed_, 3)
-        t10 = m_1 + m_2
-        t11 = t2 / t4
-        t12 = L * L
-        t13 = m_2 * t12
-        t14 = Theta_1 + t13
-        t15 = t14 * t11
-        t16 = t11 * t15
-        t17 = t10 + t16
+        t9 = m_1 + m_2
+        t10 = t2 / t4
+        t11 = L * L
+        t12 = m_2 * t11
+        t13 = Theta_1 + t12
+        t14 = t13 * t10
+        t15 = t10 * t14
+        t16 = t9 + t15
         entries = (
-            t17,
+            t16,
             0.0,
             0.0,
             Theta_2,
@@ -1976,24 +1973,23 @@ def actuator_bias(q, qd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t16 * 7.888609052210118e-31
-        _failed_ = ~np.asarray(t15 > t18)
+        _failed_ = ~np.asarray(t15 > t17)
         if np.any(_failed_ & (status == 0)):
             status = _first(status, _failed_ & ~np.asarray(t7 > t17), 2)
             status = _first(status, _failed_, 3)
-        t19 = L * L
-        t20 = m_2 * t19
-        t21 = Theta_1 + t20
-        t22 = t4 * t15
-        t23 = t21 / t22
-        t24 = x_dot * t6
-        t25 = y_dot * t5
-        t26 = t24 + t25
-        t27 = phi_dot * t3
-        t28 = t26 * t27
-        t29 = t23 * t28
+        t18 = L * L
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = t4 * t15
+        t22 = t20 / t21
+        t23 = x_dot * t6
+        t24 = y_dot * t5
+        t25 = t23 + t24
+        t26 = phi_dot * t3
+        t27 = t25 * t26
+        t28 = t22 * t27
         entries = (
-            t29,
+            t28,
             0.0,
         )
         return _result("actuator_bias", status, batch, (2,), entries)

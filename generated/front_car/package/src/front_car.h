@@ -35,7 +35,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     34      1      0      2      0
+ * minimal_coriolis_matrix              13     33      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
@@ -1826,56 +1826,55 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     if (FRONT_CAR_RARELY(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = t16 * 7.888609052210118e-31;
-    if (FRONT_CAR_RARELY(!(t13 > t18))) {
+    if (FRONT_CAR_RARELY(!(t13 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const double t19 = L * L;
+    const double t18 = L * L;
     const double m_2 = p->m_2;
-    const double t20 = m_2 * t19;
+    const double t19 = m_2 * t18;
     const double Theta_1 = p->Theta_1;
-    const double t21 = Theta_1 + t20;
+    const double t20 = Theta_1 + t19;
     const double phi_dot = qd[3];
-    const double t22 = phi_dot * t6;
-    const double t23 = t3 * t22;
-    const double t24 = t21 * t23;
+    const double t21 = phi_dot * t6;
+    const double t22 = t3 * t21;
+    const double t23 = t20 * t22;
     const double theta_dot = qd[2];
-    const double t25 = theta_dot * t5;
-    const double t26 = t21 * t25;
-    const double t27 = (-1.0) + t19;
-    const double t28 = t27 * t24;
-    const double t29 = t4 * t25;
-    const double t30 = t4 * t4;
-    const double t31 = t30 + (-2.0);
-    const double t32 = t21 * t31;
+    const double t24 = theta_dot * t5;
+    const double t25 = t20 * t24;
+    const double t26 = (-1.0) + t18;
+    const double t27 = t26 * t23;
+    const double t28 = t4 * t24;
+    const double t29 = t4 * t4;
+    const double t30 = t29 + (-2.0);
+    const double t31 = t20 * t30;
     const double m_1 = p->m_1;
-    const double t33 = m_1 + m_2;
-    const double t34 = t33 * t19;
-    const double t35 = t30 * t34;
-    const double t36 = t33 + t21;
-    const double t37 = t7 * t36;
-    const double t38 = t35 + t37;
-    const double t39 = t19 * t38;
-    const double t40 = t32 + t39;
-    const double t41 = t29 * t40;
-    const double t42 = t28 + t41;
-    const double t43 = t4 * t42;
-    const double t44 = t26 + t43;
-    const double t45 = t4 * t44;
-    const double t46 = t24 + t45;
-    const double t47 = t6 * t19;
+    const double t32 = m_1 + m_2;
+    const double t33 = t32 * t18;
+    const double t34 = t29 * t33;
+    const double t35 = t32 + t20;
+    const double t36 = t7 * t35;
+    const double t37 = t34 + t36;
+    const double t38 = t18 * t37;
+    const double t39 = t31 + t38;
+    const double t40 = t28 * t39;
+    const double t41 = t27 + t40;
+    const double t42 = t4 * t41;
+    const double t43 = t25 + t42;
+    const double t44 = t4 * t43;
+    const double t45 = t23 + t44;
+    const double t46 = t6 * t18;
+    const double t47 = t6 * t46;
     const double t48 = t6 * t47;
-    const double t49 = t6 * t48;
+    const double t49 = t4 * t48;
     const double t50 = t4 * t49;
     const double t51 = t4 * t50;
-    const double t52 = t4 * t51;
-    const double t53 = t14 * t52;
-    const double t54 = t46 / t53;
-    double rest = t54 - t54;
+    const double t52 = t14 * t51;
+    const double t53 = t45 / t52;
+    double rest = t53 - t53;
     if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    C_bar[0] = t54;
+    C_bar[0] = t53;
     C_bar[1] = 0.0;
     C_bar[2] = 0.0;
     C_bar[3] = 0.0;

@@ -35,7 +35,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     34      1      0      2      0
+ * minimal_coriolis_matrix              13     33      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
@@ -1813,56 +1813,55 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t16 * 2.2737368e-13f;
-    if (FRONT_CAR_RARELY_F(!(t13 > t18))) {
+    if (FRONT_CAR_RARELY_F(!(t13 > t17))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t19 = L * L;
+    const float t18 = L * L;
     const float m_2 = p->m_2;
-    const float t20 = m_2 * t19;
+    const float t19 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t21 = Theta_1 + t20;
+    const float t20 = Theta_1 + t19;
     const float phi_dot = qd[3];
-    const float t22 = phi_dot * t6;
-    const float t23 = t3 * t22;
-    const float t24 = t21 * t23;
+    const float t21 = phi_dot * t6;
+    const float t22 = t3 * t21;
+    const float t23 = t20 * t22;
     const float theta_dot = qd[2];
-    const float t25 = theta_dot * t5;
-    const float t26 = t21 * t25;
-    const float t27 = (-1.0f) + t19;
-    const float t28 = t27 * t24;
-    const float t29 = t4 * t25;
-    const float t30 = t4 * t4;
-    const float t31 = t30 + (-2.0f);
-    const float t32 = t21 * t31;
+    const float t24 = theta_dot * t5;
+    const float t25 = t20 * t24;
+    const float t26 = (-1.0f) + t18;
+    const float t27 = t26 * t23;
+    const float t28 = t4 * t24;
+    const float t29 = t4 * t4;
+    const float t30 = t29 + (-2.0f);
+    const float t31 = t20 * t30;
     const float m_1 = p->m_1;
-    const float t33 = m_1 + m_2;
-    const float t34 = t33 * t19;
-    const float t35 = t30 * t34;
-    const float t36 = t33 + t21;
-    const float t37 = t7 * t36;
-    const float t38 = t35 + t37;
-    const float t39 = t19 * t38;
-    const float t40 = t32 + t39;
-    const float t41 = t29 * t40;
-    const float t42 = t28 + t41;
-    const float t43 = t4 * t42;
-    const float t44 = t26 + t43;
-    const float t45 = t4 * t44;
-    const float t46 = t24 + t45;
-    const float t47 = t6 * t19;
+    const float t32 = m_1 + m_2;
+    const float t33 = t32 * t18;
+    const float t34 = t29 * t33;
+    const float t35 = t32 + t20;
+    const float t36 = t7 * t35;
+    const float t37 = t34 + t36;
+    const float t38 = t18 * t37;
+    const float t39 = t31 + t38;
+    const float t40 = t28 * t39;
+    const float t41 = t27 + t40;
+    const float t42 = t4 * t41;
+    const float t43 = t25 + t42;
+    const float t44 = t4 * t43;
+    const float t45 = t23 + t44;
+    const float t46 = t6 * t18;
+    const float t47 = t6 * t46;
     const float t48 = t6 * t47;
-    const float t49 = t6 * t48;
+    const float t49 = t4 * t48;
     const float t50 = t4 * t49;
     const float t51 = t4 * t50;
-    const float t52 = t4 * t51;
-    const float t53 = t14 * t52;
-    const float t54 = t46 / t53;
-    float rest = t54 - t54;
+    const float t52 = t14 * t51;
+    const float t53 = t45 / t52;
+    float rest = t53 - t53;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    C_bar[0] = t54;
+    C_bar[0] = t53;
     C_bar[1] = 0.0f;
     C_bar[2] = 0.0f;
     C_bar[3] = 0.0f;

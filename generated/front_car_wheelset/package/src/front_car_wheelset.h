@@ -36,7 +36,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   6     11      2      0      2      0
- * minimal_coriolis_matrix              17     40      2      0      2      0
+ * minimal_coriolis_matrix              17     39      2      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
@@ -1859,52 +1859,52 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     const double t3 = sine[0];
     const double t7 = t3 * t3;
     const double L = p->L;
-    const double t19 = L * L;
+    const double t18 = L * L;
     const double phi_dot = qd[3];
     const double t6 = cosine[1];
-    const double t23 = phi_dot * t6;
+    const double t22 = phi_dot * t6;
     const double theta_dot = qd[2];
     const double t5 = sine[1];
-    const double t26 = theta_dot * t5;
-    const double t28 = (-1.0) + t19;
+    const double t25 = theta_dot * t5;
+    const double t27 = (-1.0) + t18;
     const double t4 = cosine[0];
-    const double t31 = t4 * t4;
+    const double t30 = t4 * t4;
     const double m_1 = p->m_1;
     const double m_2 = p->m_2;
-    const double t34 = m_1 + m_2;
-    const double t20 = m_2 * t19;
+    const double t33 = m_1 + m_2;
+    const double t19 = m_2 * t18;
     const double Theta_1 = p->Theta_1;
-    const double t21 = Theta_1 + t20;
+    const double t20 = Theta_1 + t19;
     const double Theta_2 = p->Theta_2;
-    const double t22 = Theta_2 + t21;
-    const double t24 = t3 * t23;
-    const double t25 = t22 * t24;
-    const double t27 = t22 * t26;
-    const double t29 = t28 * t25;
-    const double t30 = t4 * t26;
-    const double t32 = t31 + (-2.0);
-    const double t33 = t22 * t32;
-    const double t35 = t34 * t19;
-    const double t36 = t31 * t35;
-    const double t37 = t34 + t22;
-    const double t38 = t7 * t37;
-    const double t39 = t36 + t38;
-    const double t40 = t19 * t39;
-    const double t41 = t33 + t40;
-    const double t42 = t30 * t41;
-    const double t43 = t29 + t42;
-    const double t44 = t4 * t43;
-    const double t45 = t27 + t44;
-    const double t46 = t4 * t45;
-    const double t47 = t25 + t46;
-    const double t57 = t3 * t26;
-    const double t58 = t4 * t57;
-    const double t59 = t23 + t58;
-    const double t60 = t28 * t59;
-    const double t61 = t4 * t60;
-    const double t62 = t57 + t61;
-    const double t63 = t4 * t62;
-    const double t64 = t23 + t63;
+    const double t21 = Theta_2 + t20;
+    const double t23 = t3 * t22;
+    const double t24 = t21 * t23;
+    const double t26 = t21 * t25;
+    const double t28 = t27 * t24;
+    const double t29 = t4 * t25;
+    const double t31 = t30 + (-2.0);
+    const double t32 = t21 * t31;
+    const double t34 = t33 * t18;
+    const double t35 = t30 * t34;
+    const double t36 = t33 + t21;
+    const double t37 = t7 * t36;
+    const double t38 = t35 + t37;
+    const double t39 = t18 * t38;
+    const double t40 = t32 + t39;
+    const double t41 = t29 * t40;
+    const double t42 = t28 + t41;
+    const double t43 = t4 * t42;
+    const double t44 = t26 + t43;
+    const double t45 = t4 * t44;
+    const double t46 = t24 + t45;
+    const double t56 = t3 * t25;
+    const double t57 = t4 * t56;
+    const double t58 = t22 + t57;
+    const double t59 = t27 * t58;
+    const double t60 = t4 * t59;
+    const double t61 = t56 + t60;
+    const double t62 = t4 * t61;
+    const double t63 = t22 + t62;
     const double t8 = L * t4;
     const double t12 = t6 * t8;
     const double t13 = t12 * t12;
@@ -1918,28 +1918,27 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix(const doubl
     if (FRONT_CAR_WHEELSET_RARELY(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const double t18 = t16 * 7.888609052210118e-31;
-    if (FRONT_CAR_WHEELSET_RARELY(!(t13 > t18))) {
+    if (FRONT_CAR_WHEELSET_RARELY(!(t13 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const double t48 = t6 * t4;
-    const double t49 = t14 * t48;
-    const double t50 = t19 * t48;
-    const double t51 = t6 * t50;
-    const double t52 = t4 * t51;
-    const double t53 = t49 * t52;
-    const double t54 = t47 / t53;
-    double rest = t54 - t54;
-    const double t55 = t12 * t49;
-    const double t56 = Theta_2 / t55;
-    const double t65 = t56 * t64;
-    rest *= t65;
+    const double t47 = t6 * t4;
+    const double t48 = t14 * t47;
+    const double t49 = t18 * t47;
+    const double t50 = t6 * t49;
+    const double t51 = t4 * t50;
+    const double t52 = t48 * t51;
+    const double t53 = t46 / t52;
+    double rest = t53 - t53;
+    const double t54 = t12 * t48;
+    const double t55 = Theta_2 / t54;
+    const double t64 = t55 * t63;
+    rest *= t64;
     if (FRONT_CAR_WHEELSET_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_bar[0] = t54;
+    C_bar[0] = t53;
     C_bar[1] = 0.0;
-    C_bar[2] = t65;
+    C_bar[2] = t64;
     C_bar[3] = 0.0;
     return FRONT_CAR_WHEELSET_OK;
 }

@@ -36,7 +36,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   6     11      2      0      2      0
- * minimal_coriolis_matrix              17     40      2      0      2      0
+ * minimal_coriolis_matrix              17     39      2      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
@@ -1846,52 +1846,52 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     const float t3 = sine[0];
     const float t7 = t3 * t3;
     const float L = p->L;
-    const float t19 = L * L;
+    const float t18 = L * L;
     const float phi_dot = qd[3];
     const float t6 = cosine[1];
-    const float t23 = phi_dot * t6;
+    const float t22 = phi_dot * t6;
     const float theta_dot = qd[2];
     const float t5 = sine[1];
-    const float t26 = theta_dot * t5;
-    const float t28 = (-1.0f) + t19;
+    const float t25 = theta_dot * t5;
+    const float t27 = (-1.0f) + t18;
     const float t4 = cosine[0];
-    const float t31 = t4 * t4;
+    const float t30 = t4 * t4;
     const float m_1 = p->m_1;
     const float m_2 = p->m_2;
-    const float t34 = m_1 + m_2;
-    const float t20 = m_2 * t19;
+    const float t33 = m_1 + m_2;
+    const float t19 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t21 = Theta_1 + t20;
+    const float t20 = Theta_1 + t19;
     const float Theta_2 = p->Theta_2;
-    const float t22 = Theta_2 + t21;
-    const float t24 = t3 * t23;
-    const float t25 = t22 * t24;
-    const float t27 = t22 * t26;
-    const float t29 = t28 * t25;
-    const float t30 = t4 * t26;
-    const float t32 = t31 + (-2.0f);
-    const float t33 = t22 * t32;
-    const float t35 = t34 * t19;
-    const float t36 = t31 * t35;
-    const float t37 = t34 + t22;
-    const float t38 = t7 * t37;
-    const float t39 = t36 + t38;
-    const float t40 = t19 * t39;
-    const float t41 = t33 + t40;
-    const float t42 = t30 * t41;
-    const float t43 = t29 + t42;
-    const float t44 = t4 * t43;
-    const float t45 = t27 + t44;
-    const float t46 = t4 * t45;
-    const float t47 = t25 + t46;
-    const float t57 = t3 * t26;
-    const float t58 = t4 * t57;
-    const float t59 = t23 + t58;
-    const float t60 = t28 * t59;
-    const float t61 = t4 * t60;
-    const float t62 = t57 + t61;
-    const float t63 = t4 * t62;
-    const float t64 = t23 + t63;
+    const float t21 = Theta_2 + t20;
+    const float t23 = t3 * t22;
+    const float t24 = t21 * t23;
+    const float t26 = t21 * t25;
+    const float t28 = t27 * t24;
+    const float t29 = t4 * t25;
+    const float t31 = t30 + (-2.0f);
+    const float t32 = t21 * t31;
+    const float t34 = t33 * t18;
+    const float t35 = t30 * t34;
+    const float t36 = t33 + t21;
+    const float t37 = t7 * t36;
+    const float t38 = t35 + t37;
+    const float t39 = t18 * t38;
+    const float t40 = t32 + t39;
+    const float t41 = t29 * t40;
+    const float t42 = t28 + t41;
+    const float t43 = t4 * t42;
+    const float t44 = t26 + t43;
+    const float t45 = t4 * t44;
+    const float t46 = t24 + t45;
+    const float t56 = t3 * t25;
+    const float t57 = t4 * t56;
+    const float t58 = t22 + t57;
+    const float t59 = t27 * t58;
+    const float t60 = t4 * t59;
+    const float t61 = t56 + t60;
+    const float t62 = t4 * t61;
+    const float t63 = t22 + t62;
     const float t8 = L * t4;
     const float t12 = t6 * t8;
     const float t13 = t12 * t12;
@@ -1905,28 +1905,27 @@ front_car_wheelset_status front_car_wheelset_minimal_coriolis_matrix_f(const flo
     if (FRONT_CAR_WHEELSET_RARELY_F(!(t14 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t18 = t16 * 2.2737368e-13f;
-    if (FRONT_CAR_WHEELSET_RARELY_F(!(t13 > t18))) {
+    if (FRONT_CAR_WHEELSET_RARELY_F(!(t13 > t17))) {
         return FRONT_CAR_WHEELSET_CONSTRAINT_RANK;
     }
-    const float t48 = t6 * t4;
-    const float t49 = t14 * t48;
-    const float t50 = t19 * t48;
-    const float t51 = t6 * t50;
-    const float t52 = t4 * t51;
-    const float t53 = t49 * t52;
-    const float t54 = t47 / t53;
-    float rest = t54 - t54;
-    const float t55 = t12 * t49;
-    const float t56 = Theta_2 / t55;
-    const float t65 = t56 * t64;
-    rest *= t65;
+    const float t47 = t6 * t4;
+    const float t48 = t14 * t47;
+    const float t49 = t18 * t47;
+    const float t50 = t6 * t49;
+    const float t51 = t4 * t50;
+    const float t52 = t48 * t51;
+    const float t53 = t46 / t52;
+    float rest = t53 - t53;
+    const float t54 = t12 * t48;
+    const float t55 = Theta_2 / t54;
+    const float t64 = t55 * t63;
+    rest *= t64;
     if (FRONT_CAR_WHEELSET_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_WHEELSET_NOT_FINITE;
     }
-    C_bar[0] = t54;
+    C_bar[0] = t53;
     C_bar[1] = 0.0f;
-    C_bar[2] = t65;
+    C_bar[2] = t64;
     C_bar[3] = 0.0f;
     return FRONT_CAR_WHEELSET_OK;
 }

@@ -35,7 +35,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     34      1      0      2      0
+ * minimal_coriolis_matrix              13     33      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      5      1      0      2      0
@@ -46,7 +46,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
- * actuator_bias                         5     17      1      0      2      0
+ * actuator_bias                         5     16      1      0      2      0
  * forward_dynamics                     33     81      1      0      2      0
  * multipliers                          36     83      1      0      2      0
  * energy                                7     14      0      0      1      0
@@ -1255,14 +1255,13 @@ rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], cons
     const double t5 = sine[1];
     if (REAR_CAR_RARELY(!(t8 > t10))) {
         const double t11 = t5 * t5;
-        const double t12 = t9 * 7.888609052210118e-31;
-        if (!(t11 > t12)) {
+        if (!(t11 > t10)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
-    const double t13 = t5 / t7;
-    double rest = t13 - t13;
+    const double t12 = t5 / t7;
+    double rest = t12 - t12;
     const double t4 = cosine[0];
     const double t3 = sine[0];
     rest *= t4;
@@ -1272,7 +1271,7 @@ rear_car_status rear_car_projected_control_pseudoinverse(const double q[4], cons
     }
     M_tilde_pinv[0] = t4;
     M_tilde_pinv[1] = t3;
-    M_tilde_pinv[2] = t13;
+    M_tilde_pinv[2] = t12;
     M_tilde_pinv[3] = 0.0;
     M_tilde_pinv[4] = 0.0;
     M_tilde_pinv[5] = 0.0;
@@ -1805,56 +1804,55 @@ rear_car_status rear_car_minimal_coriolis_matrix(const double q[4], const double
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = t16 * 7.888609052210118e-31;
-    if (REAR_CAR_RARELY(!(t13 > t18))) {
+    if (REAR_CAR_RARELY(!(t13 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t19 = L * L;
+    const double t18 = L * L;
     const double m_2 = p->m_2;
-    const double t20 = m_2 * t19;
+    const double t19 = m_2 * t18;
     const double Theta_1 = p->Theta_1;
-    const double t21 = Theta_1 + t20;
+    const double t20 = Theta_1 + t19;
     const double phi_dot = qd[3];
-    const double t22 = phi_dot * t6;
-    const double t23 = t3 * t22;
-    const double t24 = t21 * t23;
+    const double t21 = phi_dot * t6;
+    const double t22 = t3 * t21;
+    const double t23 = t20 * t22;
     const double theta_dot = qd[2];
-    const double t25 = theta_dot * t5;
-    const double t26 = t21 * t25;
-    const double t27 = (-1.0) + t19;
-    const double t28 = t27 * t24;
-    const double t29 = t4 * t25;
-    const double t30 = t4 * t4;
-    const double t31 = t30 + (-2.0);
-    const double t32 = t21 * t31;
+    const double t24 = theta_dot * t5;
+    const double t25 = t20 * t24;
+    const double t26 = (-1.0) + t18;
+    const double t27 = t26 * t23;
+    const double t28 = t4 * t24;
+    const double t29 = t4 * t4;
+    const double t30 = t29 + (-2.0);
+    const double t31 = t20 * t30;
     const double m_1 = p->m_1;
-    const double t33 = m_1 + m_2;
-    const double t34 = t33 * t19;
-    const double t35 = t30 * t34;
-    const double t36 = t33 + t21;
-    const double t37 = t7 * t36;
-    const double t38 = t35 + t37;
-    const double t39 = t19 * t38;
-    const double t40 = t32 + t39;
-    const double t41 = t29 * t40;
-    const double t42 = t28 + t41;
-    const double t43 = t4 * t42;
-    const double t44 = t26 + t43;
-    const double t45 = t4 * t44;
-    const double t46 = t24 + t45;
-    const double t47 = t6 * t19;
+    const double t32 = m_1 + m_2;
+    const double t33 = t32 * t18;
+    const double t34 = t29 * t33;
+    const double t35 = t32 + t20;
+    const double t36 = t7 * t35;
+    const double t37 = t34 + t36;
+    const double t38 = t18 * t37;
+    const double t39 = t31 + t38;
+    const double t40 = t28 * t39;
+    const double t41 = t27 + t40;
+    const double t42 = t4 * t41;
+    const double t43 = t25 + t42;
+    const double t44 = t4 * t43;
+    const double t45 = t23 + t44;
+    const double t46 = t6 * t18;
+    const double t47 = t6 * t46;
     const double t48 = t6 * t47;
-    const double t49 = t6 * t48;
+    const double t49 = t4 * t48;
     const double t50 = t4 * t49;
     const double t51 = t4 * t50;
-    const double t52 = t4 * t51;
-    const double t53 = t14 * t52;
-    const double t54 = t46 / t53;
-    double rest = t54 - t54;
+    const double t52 = t14 * t51;
+    const double t53 = t45 / t52;
+    double rest = t53 - t53;
     if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    C_bar[0] = t54;
+    C_bar[0] = t53;
     C_bar[1] = 0.0;
     C_bar[2] = 0.0;
     C_bar[3] = 0.0;
@@ -2248,30 +2246,29 @@ rear_car_status rear_car_actuator_mass_matrix(const double q[4], const rear_car_
     const double t7 = t6 * 7.888609052210118e-31;
     if (REAR_CAR_RARELY(!(t5 > t7))) {
         const double t8 = t2 * t2;
-        const double t9 = t6 * 7.888609052210118e-31;
-        if (!(t8 > t9)) {
+        if (!(t8 > t7)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
     const double m_1 = p->m_1;
     const double m_2 = p->m_2;
-    const double t10 = m_1 + m_2;
-    const double t11 = t2 / t4;
-    const double t12 = L * L;
-    const double t13 = m_2 * t12;
+    const double t9 = m_1 + m_2;
+    const double t10 = t2 / t4;
+    const double t11 = L * L;
+    const double t12 = m_2 * t11;
     const double Theta_1 = p->Theta_1;
-    const double t14 = Theta_1 + t13;
-    const double t15 = t14 * t11;
-    const double t16 = t11 * t15;
-    const double t17 = t10 + t16;
-    double rest = t17 - t17;
+    const double t13 = Theta_1 + t12;
+    const double t14 = t13 * t10;
+    const double t15 = t10 * t14;
+    const double t16 = t9 + t15;
+    double rest = t16 - t16;
     const double Theta_2 = p->Theta_2;
     rest *= Theta_2;
     if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    G_nu[0] = t17;
+    G_nu[0] = t16;
     G_nu[1] = 0.0;
     G_nu[2] = 0.0;
     G_nu[3] = Theta_2;
@@ -2312,34 +2309,33 @@ rear_car_status rear_car_actuator_bias(const double q[4], const double qd[4], co
     if (REAR_CAR_RARELY(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = t16 * 7.888609052210118e-31;
-    if (REAR_CAR_RARELY(!(t15 > t18))) {
+    if (REAR_CAR_RARELY(!(t15 > t17))) {
         if (!(t7 > t17)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
-    const double t19 = L * L;
+    const double t18 = L * L;
     const double m_2 = p->m_2;
-    const double t20 = m_2 * t19;
+    const double t19 = m_2 * t18;
     const double Theta_1 = p->Theta_1;
-    const double t21 = Theta_1 + t20;
-    const double t22 = t4 * t15;
-    const double t23 = t21 / t22;
+    const double t20 = Theta_1 + t19;
+    const double t21 = t4 * t15;
+    const double t22 = t20 / t21;
     const double x_dot = qd[0];
-    const double t24 = x_dot * t6;
+    const double t23 = x_dot * t6;
     const double y_dot = qd[1];
-    const double t25 = y_dot * t5;
-    const double t26 = t24 + t25;
+    const double t24 = y_dot * t5;
+    const double t25 = t23 + t24;
     const double phi_dot = qd[3];
-    const double t27 = phi_dot * t3;
-    const double t28 = t26 * t27;
-    const double t29 = t23 * t28;
-    double rest = t29 - t29;
+    const double t26 = phi_dot * t3;
+    const double t27 = t25 * t26;
+    const double t28 = t22 * t27;
+    double rest = t28 - t28;
     if (REAR_CAR_RARELY(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    bias_nu[0] = t29;
+    bias_nu[0] = t28;
     bias_nu[1] = 0.0;
     return REAR_CAR_OK;
 }

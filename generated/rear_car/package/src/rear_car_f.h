@@ -35,7 +35,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     34      1      0      2      0
+ * minimal_coriolis_matrix              13     33      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      5      1      0      2      0
@@ -46,7 +46,7 @@
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     1      2      0      0      1      0
  * actuator_mass_matrix                  4      7      1      0      1      0
- * actuator_bias                         5     17      1      0      2      0
+ * actuator_bias                         5     16      1      0      2      0
  * forward_dynamics                     33     81      1      0      2      0
  * multipliers                          36     83      1      0      2      0
  * energy                                7     14      0      0      1      0
@@ -1242,14 +1242,13 @@ rear_car_status rear_car_projected_control_pseudoinverse_f(const float q[4], con
     const float t5 = sine[1];
     if (REAR_CAR_RARELY_F(!(t8 > t10))) {
         const float t11 = t5 * t5;
-        const float t12 = t9 * 2.2737368e-13f;
-        if (!(t11 > t12)) {
+        if (!(t11 > t10)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
-    const float t13 = t5 / t7;
-    float rest = t13 - t13;
+    const float t12 = t5 / t7;
+    float rest = t12 - t12;
     const float t4 = cosine[0];
     const float t3 = sine[0];
     rest *= t4;
@@ -1259,7 +1258,7 @@ rear_car_status rear_car_projected_control_pseudoinverse_f(const float q[4], con
     }
     M_tilde_pinv[0] = t4;
     M_tilde_pinv[1] = t3;
-    M_tilde_pinv[2] = t13;
+    M_tilde_pinv[2] = t12;
     M_tilde_pinv[3] = 0.0f;
     M_tilde_pinv[4] = 0.0f;
     M_tilde_pinv[5] = 0.0f;
@@ -1792,56 +1791,55 @@ rear_car_status rear_car_minimal_coriolis_matrix_f(const float q[4], const float
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t16 * 2.2737368e-13f;
-    if (REAR_CAR_RARELY_F(!(t13 > t18))) {
+    if (REAR_CAR_RARELY_F(!(t13 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t19 = L * L;
+    const float t18 = L * L;
     const float m_2 = p->m_2;
-    const float t20 = m_2 * t19;
+    const float t19 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t21 = Theta_1 + t20;
+    const float t20 = Theta_1 + t19;
     const float phi_dot = qd[3];
-    const float t22 = phi_dot * t6;
-    const float t23 = t3 * t22;
-    const float t24 = t21 * t23;
+    const float t21 = phi_dot * t6;
+    const float t22 = t3 * t21;
+    const float t23 = t20 * t22;
     const float theta_dot = qd[2];
-    const float t25 = theta_dot * t5;
-    const float t26 = t21 * t25;
-    const float t27 = (-1.0f) + t19;
-    const float t28 = t27 * t24;
-    const float t29 = t4 * t25;
-    const float t30 = t4 * t4;
-    const float t31 = t30 + (-2.0f);
-    const float t32 = t21 * t31;
+    const float t24 = theta_dot * t5;
+    const float t25 = t20 * t24;
+    const float t26 = (-1.0f) + t18;
+    const float t27 = t26 * t23;
+    const float t28 = t4 * t24;
+    const float t29 = t4 * t4;
+    const float t30 = t29 + (-2.0f);
+    const float t31 = t20 * t30;
     const float m_1 = p->m_1;
-    const float t33 = m_1 + m_2;
-    const float t34 = t33 * t19;
-    const float t35 = t30 * t34;
-    const float t36 = t33 + t21;
-    const float t37 = t7 * t36;
-    const float t38 = t35 + t37;
-    const float t39 = t19 * t38;
-    const float t40 = t32 + t39;
-    const float t41 = t29 * t40;
-    const float t42 = t28 + t41;
-    const float t43 = t4 * t42;
-    const float t44 = t26 + t43;
-    const float t45 = t4 * t44;
-    const float t46 = t24 + t45;
-    const float t47 = t6 * t19;
+    const float t32 = m_1 + m_2;
+    const float t33 = t32 * t18;
+    const float t34 = t29 * t33;
+    const float t35 = t32 + t20;
+    const float t36 = t7 * t35;
+    const float t37 = t34 + t36;
+    const float t38 = t18 * t37;
+    const float t39 = t31 + t38;
+    const float t40 = t28 * t39;
+    const float t41 = t27 + t40;
+    const float t42 = t4 * t41;
+    const float t43 = t25 + t42;
+    const float t44 = t4 * t43;
+    const float t45 = t23 + t44;
+    const float t46 = t6 * t18;
+    const float t47 = t6 * t46;
     const float t48 = t6 * t47;
-    const float t49 = t6 * t48;
+    const float t49 = t4 * t48;
     const float t50 = t4 * t49;
     const float t51 = t4 * t50;
-    const float t52 = t4 * t51;
-    const float t53 = t14 * t52;
-    const float t54 = t46 / t53;
-    float rest = t54 - t54;
+    const float t52 = t14 * t51;
+    const float t53 = t45 / t52;
+    float rest = t53 - t53;
     if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    C_bar[0] = t54;
+    C_bar[0] = t53;
     C_bar[1] = 0.0f;
     C_bar[2] = 0.0f;
     C_bar[3] = 0.0f;
@@ -2235,30 +2233,29 @@ rear_car_status rear_car_actuator_mass_matrix_f(const float q[4], const rear_car
     const float t7 = t6 * 2.2737368e-13f;
     if (REAR_CAR_RARELY_F(!(t5 > t7))) {
         const float t8 = t2 * t2;
-        const float t9 = t6 * 2.2737368e-13f;
-        if (!(t8 > t9)) {
+        if (!(t8 > t7)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
     const float m_1 = p->m_1;
     const float m_2 = p->m_2;
-    const float t10 = m_1 + m_2;
-    const float t11 = t2 / t4;
-    const float t12 = L * L;
-    const float t13 = m_2 * t12;
+    const float t9 = m_1 + m_2;
+    const float t10 = t2 / t4;
+    const float t11 = L * L;
+    const float t12 = m_2 * t11;
     const float Theta_1 = p->Theta_1;
-    const float t14 = Theta_1 + t13;
-    const float t15 = t14 * t11;
-    const float t16 = t11 * t15;
-    const float t17 = t10 + t16;
-    float rest = t17 - t17;
+    const float t13 = Theta_1 + t12;
+    const float t14 = t13 * t10;
+    const float t15 = t10 * t14;
+    const float t16 = t9 + t15;
+    float rest = t16 - t16;
     const float Theta_2 = p->Theta_2;
     rest *= Theta_2;
     if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    G_nu[0] = t17;
+    G_nu[0] = t16;
     G_nu[1] = 0.0f;
     G_nu[2] = 0.0f;
     G_nu[3] = Theta_2;
@@ -2299,34 +2296,33 @@ rear_car_status rear_car_actuator_bias_f(const float q[4], const float qd[4], co
     if (REAR_CAR_RARELY_F(!(t14 > t17))) {
         return REAR_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t16 * 2.2737368e-13f;
-    if (REAR_CAR_RARELY_F(!(t15 > t18))) {
+    if (REAR_CAR_RARELY_F(!(t15 > t17))) {
         if (!(t7 > t17)) {
             return REAR_CAR_CONSTRAINT_RANK;
         }
         return REAR_CAR_ACTUATION_RANK;
     }
-    const float t19 = L * L;
+    const float t18 = L * L;
     const float m_2 = p->m_2;
-    const float t20 = m_2 * t19;
+    const float t19 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t21 = Theta_1 + t20;
-    const float t22 = t4 * t15;
-    const float t23 = t21 / t22;
+    const float t20 = Theta_1 + t19;
+    const float t21 = t4 * t15;
+    const float t22 = t20 / t21;
     const float x_dot = qd[0];
-    const float t24 = x_dot * t6;
+    const float t23 = x_dot * t6;
     const float y_dot = qd[1];
-    const float t25 = y_dot * t5;
-    const float t26 = t24 + t25;
+    const float t24 = y_dot * t5;
+    const float t25 = t23 + t24;
     const float phi_dot = qd[3];
-    const float t27 = phi_dot * t3;
-    const float t28 = t26 * t27;
-    const float t29 = t23 * t28;
-    float rest = t29 - t29;
+    const float t26 = phi_dot * t3;
+    const float t27 = t25 * t26;
+    const float t28 = t22 * t27;
+    float rest = t28 - t28;
     if (REAR_CAR_RARELY_F(isnan(rest) != 0)) {
         return REAR_CAR_NOT_FINITE;
     }
-    bias_nu[0] = t29;
+    bias_nu[0] = t28;
     bias_nu[1] = 0.0f;
     return REAR_CAR_OK;
 }
