@@ -20,7 +20,7 @@ from symgen.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, guarded
 from symgen.processes import ToolError
 from symgen.results import PARTS, Options, Result, WrongUseError
 from symgen.signals import EndedError, signals_end_the_run
-from symgen.terminal import SPELLED, Progress, notice_line, summary_table
+from symgen.terminal import SPELLED, Progress, notice_line, summary_table, terminal_width
 from symgen.write import begin_writing, changed_folders, compare, recover_folders, write_files
 
 INTERRUPTED, READER_GONE = 130, 141  # as a shell reports these signals
@@ -264,7 +264,7 @@ def _write_files(result: Result, out: Path, quiet: bool) -> int:
     tell = _unheard if quiet else _heard
     written = write_files(out / result.model.name, result.files, tell)
     if not quiet:
-        print(summary_table(result.model.name, result.summary))
+        print(summary_table(result.model.name, result.summary, terminal_width(sys.stdout)))
         print("written:", *(f"  {path}" for path in written), "", sep="\n")
     return DONE
 
@@ -289,7 +289,7 @@ def _write_certificate(result: Result, out: Path, quiet: bool) -> int:
         return MODEL_WRONG
     written = write_files(folder, certificate)
     if not quiet:
-        print(summary_table(result.model.name, result.summary))
+        print(summary_table(result.model.name, result.summary, terminal_width(sys.stdout)))
         print("written:", *(f"  {path}" for path in written), "", sep="\n")
     return DONE
 

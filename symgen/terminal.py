@@ -6,9 +6,11 @@ import codecs
 import os
 import shutil
 import sys
+import textwrap
 import time
 import unicodedata
 from collections.abc import Sequence
+from itertools import zip_longest
 from typing import TextIO
 
 from symgen.activity import told
@@ -19,6 +21,7 @@ from symgen.results import Summary
 _ERROR_NOTE = "  * in units of what rounding the inputs and the result does to it"
 _CLEAR_LINE = "\r\x1b[K"
 USUAL_WIDTH = 80
+_MARGIN = 2 + 3  # before a table, and between two columns
 SPELLED = "symgen-spelled"
 _SPELLINGS = {"─": "-", "−": "-", "·": "*", "×": "x", "√": "sqrt", "≠": "!=", "≤": "<=", "≥": ">=", "→": "->"}
 _SPELLINGS |= {"\u0303": "~", "\u0307": "_dot", "\u0308": "_ddot"}  # accents that stand behind their letter
@@ -92,8 +95,8 @@ def _width(terminal: TextIO) -> int:
         return shutil.get_terminal_size((USUAL_WIDTH, 24)).columns
 
 
-def summary_table(name: str, summary: Summary) -> str:
-    """Sizes, largest errors, operations by quantity, and what the scene does not need."""
+def summary_table(name: str, summary: Summary, width: int | None = None) -> str:
+    """Sizes, largest errors, operations by quantity, and what the scene does not need; in so many columns if told."""
     sizes = f"n = {summary.n}, r = {summary.r}, δ = {summary.delta}, m = {summary.m}"
     sections = [f"{name}   {sizes}"]
     if summary.operations:
@@ -103,8 +106,25 @@ def summary_table(name: str, summary: Summary) -> str:
         errors = [(e.target, f"{e.error:.2g}", f"{e.tolerance:g}", e.quantity) for e in summary.errors]
         sections.append(columns(("largest error*", "found", "allowed", "in"), errors, "<>><") + "\n" + _ERROR_NOTE)
     if summary.skipped:
-        sections.append(columns(("not needed", "because"), summary.skipped, "<<"))
+        skipped = summary.skipped if width is None else _folded(summary.skipped, width - _MARGIN)
+        sections.append(columns(("not needed", "because"), skipped, "<<"))
     return "\n\n".join(sections) + "\n"
+
+
+def _folded(rows: Sequence[tuple[str, str]], width: int) -> list[tuple[str, str]]:
+    """Rows of two sentences over several lines, which together have so many columns; long names stay whole."""
+    left = min(max(len(what) for what, _ in rows), 2 * width // 5)
+    found: list[tuple[str, str]] = []
+    for what, why in rows:
+        parts = textwrap.wrap(what, left, break_long_words=False)
+        reasons = textwrap.wrap(why, width - left, break_long_words=False)
+        found += zip_longest(parts, reasons, fillvalue="")
+    return found
+
+
+def terminal_width(stream: TextIO) -> int | None:
+    """The columns of the terminal that a stream leads to; None where it leads elsewhere."""
+    return _width(stream) if stream.isatty() else None
 
 
 def notice_line(file: str, notice: Notice) -> str:

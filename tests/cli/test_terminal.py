@@ -6,7 +6,8 @@ import io
 
 import pytest
 
-from symgen.terminal import SPELLED, Progress
+from symgen.results import Summary
+from symgen.terminal import SPELLED, Progress, summary_table
 
 
 class Terminal(io.StringIO):
@@ -61,3 +62,12 @@ def test_a_narrow_terminal_does_not_wrap(monkeypatch: pytest.MonkeyPatch) -> Non
 )
 def test_missing_characters_are_spelled(text: str, ascii_text: str) -> None:
     assert text.encode("ascii", errors=SPELLED).decode() == ascii_text
+
+
+def test_sentences_fit_the_terminal_and_lose_no_word() -> None:
+    long = "δ = 1 for 4 coordinates: one direction, the cross product of the rows"
+    skipped = (("(B Bᵀ)⁻¹ of bucket_eye_x, bucket_eye_z, link_length", long), ("multipliers", "none"))
+    summary = Summary(4, 3, 1, 1, skipped, ())
+    narrow, wide = summary_table("digger", summary, 60), summary_table("digger", summary)
+    assert max(map(len, narrow.splitlines())) <= 60 < max(map(len, wide.splitlines()))
+    assert sorted(narrow.replace("─", "").split()) == sorted(wide.replace("─", "").split())
