@@ -57,14 +57,15 @@ def beside_lengths(status: Status, pivots: Sequence[Scalar], lengths: Sequence[S
 def multiplied(status: Status, pivots: Sequence[Scalar], lengths: Sequence[Scalar]) -> tuple[Guard, ...]:
     """The guard of squared pivots where a step loses again what the steps before have lost.
 
-    What one direction of several loses ordinarily does not count: else many of them would be taken for a lost one.
+    What one direction of several loses ordinarily hardly counts: else many of them would be taken for a lost one.  Of a
+    share s it is 6 s / (1 + 5 s), and no smaller of two: compilers make jumps of such a choice.
     """
     guards = beside_lengths(status, pivots, lengths)
     if len(guards) < 2:
         return guards
     graph = pivots[0].graph
-    shares = (pivot / length for pivot, length in zip(pivots, lengths, strict=True))
-    kept = [graph.function("min", (graph.one, POORER * share)) for share in shares if not share.is_one]
+    pairs = [(pivot, length) for pivot, length in zip(pivots, lengths, strict=True) if pivot is not length]
+    kept = [POORER * pivot / (length + (POORER - 1) * pivot) for pivot, length in pairs]
     return (Guard(status, graph.product(kept), 2, scale=graph.one),)
 
 
