@@ -41,8 +41,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     323    394      2      0     16      0
- * forward_dynamics    1272   1520     49      1     16      1
- * multipliers         1129   1372     49      1     16      1
+ * forward_dynamics    1273   1521     49      1     16      0
+ * multipliers         1130   1373     49      1     16      0
  * singularity          191    175     34      3     16      0
  * (changes of sign are not counted)
  *

@@ -89,7 +89,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t295, t411, t445, t479, t513, t547, t581, t615, t649, t683, t717, t751, t785, t819, t853, t875, t1412, t1571, t1524. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t295, t411, t445, t479, t513, t547, t581, t615, t649, t683, t717, t751, t785, t819, t853, t875, t1412, t1574, t1524. */
 void eva_forward_dynamics(void) {
     double q[16];
     double qd[16];
@@ -157,7 +157,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t295, t411, t445, t479, t513, t547, t581, t615, t649, t683, t717, t751, t785, t819, t853, t875, t1412, t1571, t1524. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t295, t411, t445, t479, t513, t547, t581, t615, t649, t683, t717, t751, t785, t819, t853, t875, t1412, t1574, t1524. */
 void eva_multipliers(void) {
     double q[16];
     double qd[16];

@@ -73,8 +73,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     675    810      2      0     32      0
- * forward_dynamics    2652   3104     97      1     32      1
- * multipliers         2349   2796     97      1     32      1
+ * forward_dynamics    2653   3105     97      1     32      0
+ * multipliers         2350   2797     97      1     32      0
  * singularity          401    351     66      3     32      0
  * (changes of sign are not counted)
  *

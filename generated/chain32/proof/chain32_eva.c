@@ -137,7 +137,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t813, t847, t881, t915, t949, t983, t1017, t1051, t1085, t1119, t1153, t1187, t1221, t1255, t1289, t1323, t1357, t1391, t1425, t1459, t1493, t1527, t1561, t1595, t1629, t1663, t1697, t1731, t1765, t1799, t1821, t2934, t3253, t3158. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t813, t847, t881, t915, t949, t983, t1017, t1051, t1085, t1119, t1153, t1187, t1221, t1255, t1289, t1323, t1357, t1391, t1425, t1459, t1493, t1527, t1561, t1595, t1629, t1663, t1697, t1731, t1765, t1799, t1821, t2934, t3256, t3158. */
 void eva_forward_dynamics(void) {
     double q[32];
     double qd[32];
@@ -253,7 +253,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t813, t847, t881, t915, t949, t983, t1017, t1051, t1085, t1119, t1153, t1187, t1221, t1255, t1289, t1323, t1357, t1391, t1425, t1459, t1493, t1527, t1561, t1595, t1629, t1663, t1697, t1731, t1765, t1799, t1821, t2934, t3253, t3158. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t601, t813, t847, t881, t915, t949, t983, t1017, t1051, t1085, t1119, t1153, t1187, t1221, t1255, t1289, t1323, t1357, t1391, t1425, t1459, t1493, t1527, t1561, t1595, t1629, t1663, t1697, t1731, t1765, t1799, t1821, t2934, t3256, t3158. */
 void eva_multipliers(void) {
     double q[32];
     double qd[32];

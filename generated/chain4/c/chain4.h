@@ -18,7 +18,7 @@
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      59     82      2      0      4      0
  * forward_dynamics     198    311      1      0      4      0
- * multipliers          217    302     13      1      4      1
+ * multipliers          218    303     13      1      4      0
  * singularity           26     35      9      2      4      0
  * (changes of sign are not counted)
  *

@@ -85,7 +85,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t67, t111, t145, t167, t272, t311, t300. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t67, t111, t145, t167, t272, t314, t300. */
 void eva_multipliers(void) {
     float q[4];
     float qd[4];

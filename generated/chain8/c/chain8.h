@@ -25,8 +25,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     147    186      2      0      8      0
- * forward_dynamics     584    728     25      1      8      1
- * multipliers          598    758     36      1      8      1
+ * forward_dynamics     585    729     25      1      8      0
+ * multipliers          599    759     36      1      8      0
  * singularity           85     87     18      3      8      0
  * (changes of sign are not counted)
  *

@@ -65,7 +65,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t211, t245, t279, t313, t347, t381, t403, t652, t731, t708. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t211, t245, t279, t313, t347, t381, t403, t652, t734, t708. */
 void eva_forward_dynamics(void) {
     float q[8];
     float qd[8];
@@ -109,7 +109,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t211, t245, t279, t313, t347, t381, t519, t564, t609, t654, t699, t815, t840, t919, t896. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t143, t211, t245, t279, t313, t347, t381, t519, t564, t609, t654, t699, t815, t840, t922, t896. */
 void eva_multipliers(void) {
     float q[8];
     float qd[8];

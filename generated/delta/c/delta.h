@@ -18,8 +18,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      52     67      1      0      3      0
- * forward_dynamics     247    356     10      2      3      2
- * multipliers          234    337     10      2      3      2
+ * forward_dynamics     249    358     10      2      3      0
+ * multipliers          236    339     10      2      3      0
  * singularity           58    105     13      3      3      0
  * (changes of sign are not counted)
  *

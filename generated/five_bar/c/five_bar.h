@@ -16,8 +16,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      31     39      1      0      3      2
- * forward_dynamics     150    243      6      1      4      3
- * multipliers          138    227      6      1      4      3
+ * forward_dynamics     151    244      6      1      4      2
+ * multipliers          139    228      6      1      4      2
  * singularity           37     57      9      2      4      0
  * (changes of sign are not counted)
  *

@@ -61,7 +61,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t61, t130, t174, t165. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t61, t130, t177, t165. */
 void eva_forward_dynamics(void) {
     float q[4];
     float qd[4];
@@ -86,7 +86,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t61, t130, t174, t165. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t61, t130, t177, t165. */
 void eva_multipliers(void) {
     float q[4];
     float qd[4];

@@ -123,7 +123,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t83, t105, t111, t185, t303, t442, t456, t469, t670, t930, t1226, t1240, t1258, t1629, t2056, t2544, t2558, t2579, t3155, t3812, t4521, t4535, t4559, t4971, t5866, t6836, t6850, t6877, t7763, t7992, t8007, t8014, t8032, t8047, t8054, t8066, t8078, t8083, t8095, t8107, t8125, t8140, t8144, t8156, t8168, t8177, t7977. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t83, t105, t111, t185, t303, t442, t456, t469, t670, t930, t1226, t1240, t1258, t1629, t2056, t2544, t2558, t2579, t3155, t3812, t4521, t4535, t4559, t4971, t5866, t6836, t6850, t6877, t7763, t7995, t8011, t8019, t8038, t8054, t8062, t8075, t8088, t8094, t8107, t8120, t8139, t8155, t8160, t8173, t8186, t8196, t7977. */
 void eva_forward_dynamics(void) {
     double q[24];
     double qd[24];

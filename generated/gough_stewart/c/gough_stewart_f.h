@@ -29,8 +29,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     261    354      8      3      5      0
- * forward_dynamics    1583   2298     46      5      5      5
- * multipliers         1529   2230     46      5      5      5
+ * forward_dynamics    1588   2303     46      5      5      0
+ * multipliers         1534   2235     46      5      5      0
  * singularity          681    991     49     12      5      0
  * (changes of sign are not counted)
  *

@@ -96,7 +96,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1013, t1061, t1130, t1239, t1374, t1551, t1772, t1883, t1897, t1911, t1925, t1939, t1872. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1013, t1061, t1130, t1239, t1374, t1551, t1772, t1886, t1901, t1916, t1931, t1946, t1872. */
 void eva_forward_dynamics(void) {
     static const double low_9[] = {-0x1.999999999999ap-2, -0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3};
     static const double high_9[] = {-0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3, 0x1.999999999999ap-2};
@@ -166,7 +166,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1013, t1061, t1130, t1239, t1374, t1551, t1772, t1883, t1897, t1911, t1925, t1939, t1872. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1013, t1061, t1130, t1239, t1374, t1551, t1772, t1886, t1901, t1916, t1931, t1946, t1872. */
 void eva_multipliers(void) {
     static const double low_9[] = {-0x1.999999999999ap-2, -0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3};
     static const double high_9[] = {-0x1.999999999999ap-3, 0x0.0p+0, 0x1.999999999999ap-3, 0x1.999999999999ap-2};

@@ -96,7 +96,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1013, t1061, t1130, t1239, t1374, t1551, t1772, t1883, t1897, t1911, t1925, t1939, t1872. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1013, t1061, t1130, t1239, t1374, t1551, t1772, t1886, t1901, t1916, t1931, t1946, t1872. */
 void eva_forward_dynamics(void) {
     static const float low_9[] = {-0x1.99999ap-2f, -0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f};
     static const float high_9[] = {-0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f, 0x1.99999ap-2f};
@@ -166,7 +166,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t1013, t1061, t1130, t1239, t1374, t1551, t1772, t1883, t1897, t1911, t1925, t1939, t1872. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t1013, t1061, t1130, t1239, t1374, t1551, t1772, t1886, t1901, t1916, t1931, t1946, t1872. */
 void eva_multipliers(void) {
     static const float low_9[] = {-0x1.99999ap-2f, -0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f};
     static const float high_9[] = {-0x1.99999ap-3f, 0x0.0p+0f, 0x1.99999ap-3f, 0x1.99999ap-2f};

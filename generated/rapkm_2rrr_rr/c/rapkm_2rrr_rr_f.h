@@ -49,8 +49,8 @@
  * projected_configuration             217    234     16      8     12      0
  * inverse_dynamics                     51     76      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    336    465     18      3      6      3
- * multipliers                         317    441     18      3      6      3
+ * forward_dynamics                    339    468     18      3      6      0
+ * multipliers                         320    444     18      3      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          53     91     17      4      6      0
  * (changes of sign are not counted)

@@ -19,8 +19,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      53     83      3      0      5      0
- * forward_dynamics     357    516     17      3      6      3
- * multipliers          338    487     17      3      6      3
+ * forward_dynamics     360    519     17      3      6      0
+ * multipliers          341    490     17      3      6      0
  * singularity           53     91     17      4      6      0
  * (changes of sign are not counted)
  *

@@ -66,7 +66,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t200, t251, t289, t326, t388, t453, t462, t466, t442. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t200, t251, t289, t326, t388, t456, t466, t471, t442. */
 void eva_forward_dynamics(void) {
     double q[6];
     double qd[6];
@@ -109,7 +109,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t200, t289, t326, t251, t388, t453, t462, t466, t442. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t200, t289, t326, t251, t388, t456, t466, t471, t442. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];

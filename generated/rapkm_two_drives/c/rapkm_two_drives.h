@@ -51,8 +51,8 @@
  * actuator_velocity                     0      0      0      0      0      0
  * actuator_mass_matrix                 73    128      1      0      6      0
  * actuator_bias                       169    306      2      0      6      0
- * forward_dynamics                    335    465     18      3      6      3
- * multipliers                         316    441     18      3      6      3
+ * forward_dynamics                    338    468     18      3      6      0
+ * multipliers                         319    444     18      3      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          53     90     17      4      6      0
  * (changes of sign are not counted)

@@ -1218,7 +1218,7 @@ void eva_actuator_bias(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t227, t236, t261, t209, t293, t351, t304, t352, t429, t423. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t227, t236, t261, t209, t293, t352, t307, t356, t434, t425. */
 void eva_forward_dynamics(void) {
     double q[6];
     double qd[6];
@@ -1260,7 +1260,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t227, t236, t261, t304, t293, t209, t352, t351, t429, t423. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t227, t236, t261, t307, t293, t209, t356, t352, t434, t425. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];

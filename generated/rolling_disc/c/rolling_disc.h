@@ -19,8 +19,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      15     32      2      0      2      0
- * forward_dynamics     150    219     11      2      3      2
- * multipliers          134    201     10      2      3      2
+ * forward_dynamics     152    221     11      2      3      0
+ * multipliers          136    203     10      2      3      0
  * singularity           27     63     12      3      2      0
  * (changes of sign are not counted)
  *

@@ -22,8 +22,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      69    113      3      0      9      0
- * forward_dynamics     741    995     23      5      7      5
- * multipliers          711    954     23      5      7      5
+ * forward_dynamics     746   1000     23      5      7      0
+ * multipliers          716    959     23      5      7      0
  * singularity          156    227     30     11      7      0
  * (changes of sign are not counted)
  *

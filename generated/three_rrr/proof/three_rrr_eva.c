@@ -72,7 +72,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t154, t240, t362, t406, t467, t519, t432, t570, t707, t441, t851, t944, t953, t968, t980, t989, t932. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t154, t240, t362, t406, t467, t519, t432, t570, t707, t441, t851, t947, t957, t973, t986, t996, t932. */
 void eva_forward_dynamics(void) {
     double q[9];
     double qd[9];
@@ -118,7 +118,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t154, t240, t362, t406, t467, t519, t432, t570, t707, t441, t851, t944, t953, t968, t980, t989, t932. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t154, t240, t362, t406, t467, t519, t432, t570, t707, t441, t851, t947, t957, t973, t986, t996, t932. */
 void eva_multipliers(void) {
     double q[9];
     double qd[9];

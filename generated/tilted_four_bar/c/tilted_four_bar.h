@@ -14,8 +14,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      60    108      1      0      3      0
- * forward_dynamics     235    404     16      0      3      4
- * multipliers          225    396     16      0      3      4
+ * forward_dynamics     237    406     18      0      3      2
+ * multipliers          227    398     18      0      3      2
  * singularity           35     62     14      3      3      0
  * (changes of sign are not counted)
  *

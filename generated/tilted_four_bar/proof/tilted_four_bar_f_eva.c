@@ -50,7 +50,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t389, t417, t453, t554. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t135, t256, t393, t421, t457, t558. */
 void eva_forward_dynamics(void) {
     float q[3];
     float qd[3];
@@ -78,7 +78,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t292, t441, t316, t506. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t135, t256, t296, t445, t320, t510. */
 void eva_multipliers(void) {
     float q[3];
     float qd[3];
