@@ -68,6 +68,34 @@ points: {tip: {frame: d, at: [0.6, 0, 0]}, wall: {at: [1, 0.4, 0.1]}}
 loops: {held: {type: distance, between: [tip, wall], length: 1.1}}
 inputs: {u: {joint: b_1}, v: {joint: c_1}}
 """
+# a hinge at a place of the world: rows along the axes of a frame beside rows of the model
+HUNG = """model: hung
+gravity: [0, 0, -9.81]
+frames:
+  wall: {translation: [0.4, 0.1, 0.2], rotation: [[y, 0.6]]}
+joints:
+  base: {type: floating, coordinates: [x, y, z, e_0, e_1, e_2, e_3]}
+  arm: {type: cylindrical, parent: base, at: [0, 0.2, 0], axis: [1, 0, 1], coordinates: [s, a]}
+bodies:
+  base: {mass: 3, inertia: {xx: 0.04, yy: 0.02, zz: 0.05}}
+  arm: {mass: 0.5, com: [0, 0, 0.3], inertia: {xx: 0.02, yy: 0.01, zz: 0.02}}
+loops: {hinge: {type: revolute, between: [arm, wall]}}
+inputs: {u: {torque_on: base, direction: [0, 0, 1]}}
+"""
+# a hinge that is held on its own axis: a row that no motion changes, beside a quaternion
+ALWAYS = """model: always
+gravity: [0, 0, -9.81]
+parameters: {l: {value: 0.7}}
+joints:
+  base: {type: floating, coordinates: [x, y, z, e_0, e_1, e_2, e_3]}
+  lid: {type: revolute, parent: base, at: [0, l, 0], axis: y, coordinate: a}
+frames: {pin: {parent: lid, translation: [0, -0.7, 0]}}
+bodies:
+  base: {mass: 3, inertia: {xx: 0.04, yy: 0.02, zz: 0.05}}
+  lid: {mass: 0.5, com: [0.2, 0, 0.3], inertia: {xx: 0.02, yy: 0.01, zz: 0.02}}
+loops: {held: {type: spherical, between: [base, pin]}}
+inputs: {u: {joint: a}}
+"""
 QUANTITIES = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 
@@ -98,6 +126,21 @@ def test_rows_that_depend_on_each_other(text: str, form: str) -> None:
     one, other = (Evaluator([x for quantity in found for x in quantity.outputs]) for found in (by_frames, dense))
     for point in points(model):
         assert one(point) == pytest.approx(other(point), rel=1e-9, abs=1e-8)
+
+
+@pytest.mark.parametrize("form", [BY_FRAMES, BY_BODIES])
+@pytest.mark.parametrize("text", [HUNG, ALWAYS], ids=["hung", "always"])
+def test_rows_of_loops_beside_quaternions(text: str, form: str) -> None:
+    """As verification asks for, at its states."""
+    model = load_text(text, "loop.yaml")
+    quantities = ("forward_dynamics", "multipliers")
+    expected = Expected(model, quantities, 8, lambda _: None)
+    ways = Alternatives(model, genericity(Mechanics(model)), None)
+    for quantity in quantities:
+        way = ways.named(quantity, form)
+        assert way is not None
+        program = schedule(way.mechanics, [way.derived], ("float64",))["float64"]
+        assert measured(program.kernels[0], program.sincos, "float64", expected)[1] is None
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)

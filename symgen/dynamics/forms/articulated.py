@@ -73,7 +73,7 @@ class _Loops(Problem):
         motions = frame_motions(mechanics.bodies, mechanics.qd, q_ddot, weight) if self._loops else {}
         held = [i for loop, _ in self._loops if motions.keys() >= set(loop.frames) for i in loop.rows.values()]
         if len(held) < self.r:
-            given = zip(self.rows, super().bias, strict=True)
+            given = zip(self.rows, mechanics.constraint_acceleration_bias(mechanics.qd), strict=True)
             return self._turned(tuple(a + dot(self.graph, row, q_ddot) for row, a in given), inward=True)
         # nothing else is worked out: the first way to a function is the one that stands in the graph
         found = dict[int, Scalar]()

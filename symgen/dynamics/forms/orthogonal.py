@@ -173,6 +173,8 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
 
         How rows follow from each other is read off B, as what L^-1 adds to long rows may leave nothing of short ones.
         """
+        if not self._choices:
+            return (self._graph.zero,) * len(rows)
         base, shares = self._by_chosen(rows)
         ones = (self._graph.one,) * len(rows)
         return WeightedGramSchmidt(self._graph, shares, ones).shortest(base.combined(multipliers))
