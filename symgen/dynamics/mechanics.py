@@ -15,7 +15,7 @@ from symgen.graph.calculus import derivative_along, gradient
 from symgen.graph.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.translate import translate
-from symgen.graph.traverse import cost, substitute
+from symgen.graph.traverse import cost, reached, substitute
 from symgen.model.components import components_in, definitions_before_frames
 from symgen.model.expression import Expression
 from symgen.model.model import Model
@@ -138,15 +138,32 @@ class Mechanics:
         return tuple(tuple(rows[min(i, j)][max(i, j)] for j in range(self.n)) for i in range(self.n))
 
     @cached_property
+    def _mass_slopes(self) -> tuple[dict[tuple[int, int], Scalar], ...]:
+        """The entries of dG/dq^k that are not zero, i <= j, for every k; rows of many machines have few."""
+        graph, n = self.graph, self.n
+        upper = {(i, j): x for i in range(n) for j in range(i, n) if (x := self.mass_matrix[i][j]).op != "const"}
+        moved: dict[Scalar, list[tuple[int, int]]] = {}
+        for place, entry in upper.items():
+            for node in reached([entry]):
+                if node.op == "symbol":
+                    moved.setdefault(node, []).append(place)
+        slopes = []
+        for q in self.q:
+            places = moved.get(q, [])
+            found = derivative_along(graph, [upper[place] for place in places], {q: graph.one})
+            slopes.append({place: x for place, x in zip(places, found, strict=True) if not x.is_zero})
+        return tuple(slopes)
+
+    @cached_property
     def mass_matrix_gradient(self) -> tuple[Matrix, ...]:
         """dG/dq^k for every k."""
-        graph, n = self.graph, self.n
-        upper = [self.mass_matrix[i][j] for i in range(n) for j in range(i, n)]
+        zeros = (self.graph.zero,) * self.n
         gradients = []
-        for k in range(n):
-            flat = iter(derivative_along(graph, upper, {self.q[k]: graph.one}))
-            entries = {(i, j): next(flat) for i in range(n) for j in range(i, n)}
-            gradients.append(tuple(tuple(entries[min(i, j), max(i, j)] for j in range(n)) for i in range(n)))
+        for slopes in self._mass_slopes:
+            rows = {i: list(zeros) for place in slopes for i in place}
+            for (i, j), slope in slopes.items():
+                rows[i][j] = rows[j][i] = slope
+            gradients.append(tuple(tuple(rows[i]) if i in rows else zeros for i in range(self.n)))
         return tuple(gradients)
 
     def coriolis_matrix(self, velocity: Vector) -> Matrix:
@@ -210,18 +227,27 @@ class Mechanics:
         direct = [p - t for p, t in zip(rates, gradient(graph, self.kinetic_energy, self.q), strict=True)]
         half = graph.const(1) / 2
         squared: list[Scalar] = []
-        for i in range(self.n):
+        d = self.mass_matrix_gradient
+        for i, pairs in enumerate(self._products_of_rates()):
             total = graph.zero
-            for j in range(self.n):
-                for k in range(j, self.n):
-                    d = self.mass_matrix_gradient
-                    christoffel = d[k][i][j] + d[j][i][k] - d[i][j][k]
-                    weight = half if j == k else graph.one
-                    total = total + christoffel * weight * (self.qd[j] * self.qd[k])
+            for j, k in pairs:
+                christoffel = d[k][i][j] + d[j][i][k] - d[i][j][k]
+                weight = half if j == k else graph.one
+                total = total + christoffel * weight * (self.qd[j] * self.qd[k])
             squared.append(total)
         linear = matvec(graph, self.mass_matrix, acceleration)
         collected = [a + b for a, b in zip(linear, squared, strict=True)]
         return tuple(min((direct, collected), key=lambda force: cost(force).weight))
+
+    def _products_of_rates(self) -> list[list[tuple[int, int]]]:
+        """For every i the pairs j <= k of rates that may load it: the others have no Christoffel symbol."""
+        pairs: list[set[tuple[int, int]]] = [set() for _ in self.q]
+        for k, slopes in enumerate(self._mass_slopes):
+            for i, j in slopes:
+                pairs[k].add((i, j))
+                pairs[i].add((min(j, k), max(j, k)))
+                pairs[j].add((min(i, k), max(i, k)))
+        return [sorted(these) for these in pairs]
 
     def _inertial_force_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
         """The same without the energies of the bodies, whose differentiation would undo the recursion."""

@@ -207,6 +207,8 @@ class Reflections:
     def _reflect(self, reflector: tuple[int, Vector, Scalar], x: Vector) -> Vector:
         k, v, factor = reflector
         share = dot(self.graph, v, x[k:]) * factor
+        if share.is_zero:
+            return x
         return (*x[:k], *(entry - share * component for entry, component in zip(x[k:], v, strict=True)))
 
 

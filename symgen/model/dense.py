@@ -104,7 +104,8 @@ def _extend(basis: Rows, vector: list[float], relative: float) -> None:
     for _ in range(2):
         for unit in basis:
             along = sum(map(mul, unit, vector))
-            vector = [a - along * b for a, b in zip(vector, unit, strict=True)]
+            if along:
+                vector = [a - along * b for a, b in zip(vector, unit, strict=True)]
     norm = math.sqrt(sum(a * a for a in vector))
     if norm > relative:
         basis.append([a / norm for a in vector])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TypeAlias
 
 import yaml
@@ -201,16 +202,17 @@ def _span(event: yaml.Event) -> Span:
 
 def _raw_offset(raw: str, value: str, offset: int) -> int:
     """Where `value[offset]` stands in the source: folding changes white space only, so the other characters align."""
-    header = raw.find("\n") + 1 if raw[:1] in "|>" else 0
+    places = _visible(raw)
     visible = len("".join(value[:offset].split()))
-    position = max(header, 1 if raw[:1] in "\"'" else 0)
-    while position < len(raw):
-        if not raw[position].isspace():
-            if visible == 0:
-                return position
-            visible -= 1
-        position += 1
-    return max(0, len(raw) - 1)
+    return places[visible] if visible < len(places) else max(0, len(raw) - 1)
+
+
+@lru_cache(maxsize=2)
+def _visible(raw: str) -> tuple[int, ...]:
+    """Where the characters of a text stand that are no white space; one text is asked for each of its names."""
+    header = raw.find("\n") + 1 if raw[:1] in "|>" else 0
+    first = max(header, 1 if raw[:1] in "\"'" else 0)
+    return tuple(place for place in range(first, len(raw)) if not raw[place].isspace())
 
 
 def _syntax_mistake(text: str, error: yaml.YAMLError) -> Mistake:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from decimal import Decimal
+from functools import partial
 from itertools import pairwise
 
 from counted import calls
@@ -79,3 +80,12 @@ def test_twice_the_loops_are_a_few_times_the_work() -> None:
 
     few, many = (calls(lambda n=n: looked_for(n), 20_000_000) for n in (3, 6))  # type: ignore[misc]
     assert many <= 3 * few
+
+
+def test_forces_of_twice_the_loops_are_a_few_times_the_work() -> None:
+    def forces(model: Model) -> None:
+        mechanics = Mechanics(model)
+        assert not any(force.is_zero for force in mechanics.balance)
+
+    few, many = (calls(partial(forces, sliders(n)), 20_000_000) for n in (6, 12))
+    assert many <= 2.6 * few
