@@ -1,4 +1,4 @@
-"""Expressions as polynomials in the rates, with coefficients in floats at one configuration.
+"""Expressions as polynomials in the rates, with coefficients in floats or other numbers at one configuration.
 
 Enough to decide whether T is quadratic and a constraint linear in the rates: each coefficient is carried with the sum
 of the magnitudes it is made of, so that "zero" has a scale.
@@ -13,7 +13,7 @@ from typing import TypeAlias
 from symgen.diagnostics import Span
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.mechanism import is_component
-from symgen.model.walk import FUNCTIONS, power
+from symgen.model.numbers import FLOATS, Numbers
 
 Monomial: TypeAlias = tuple[str, ...]
 Polynomial: TypeAlias = dict[Monomial, tuple[float, float]]
@@ -43,7 +43,9 @@ class Expansion:
         rates: frozenset[str],
         definitions: Mapping[str, Expression],
         components: Callable[[str], Polynomial] | None = None,
+        numbers: Numbers = FLOATS,
     ) -> None:
+        self._numbers = numbers
         self._values, self._rates, self._definitions, self._components = values, rates, definitions, components
         self._expanded: dict[str, Polynomial | Exception] = {}
 
@@ -51,9 +53,9 @@ class Expansion:
         """The polynomial; NotPolynomialError, or ArithmeticError and ValueError outside the domain."""
         match expression:
             case Number(value=value):
-                return _constant(float(value))
+                return _constant(self._numbers.rational(value))
             case Pi():
-                return _constant(math.pi)
+                return _constant(self._numbers.pi)
             case Name(name=name):
                 return self._name(name)
             case Negation(operand=operand):
@@ -71,7 +73,7 @@ class Expansion:
             case Power(base=base, exponent=exponent):
                 polynomial = self.of(base)
                 if not _has_rates(polynomial):
-                    return _constant(power(_value(polynomial), exponent))
+                    return _constant(self._numbers.power(_value(polynomial), exponent))
                 if exponent.denominator != 1 or exponent < 0:
                     raise NotPolynomialError(f"has a rate to the power {exponent}", expression.span)
                 result = polynomial if exponent > 0 else _constant(1.0)
@@ -80,7 +82,7 @@ class Expansion:
                 return result
             case Call(function=function, arguments=arguments):
                 numbers = [self._number(argument, f"takes `{function}` of a rate") for argument in arguments]
-                return _constant(FUNCTIONS[function](*numbers))
+                return _constant(self._numbers.functions[function](*numbers))
 
     def _name(self, name: str) -> Polynomial:
         if name in self._rates:

@@ -1,4 +1,4 @@
-"""Small dense linear algebra in floats, for checks that must not import a numerical library."""
+"""Small dense linear algebra in floats or other real numbers, for checks that must not import a numerical library."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import TypeAlias
 
 Rows: TypeAlias = list[list[float]]
 
+RELATIVE = 1e-9  # what is nothing beside 1
 
-def rank(rows: Rows, relative: float = 1e-9) -> int:
+def rank(rows: Rows, relative: float = RELATIVE) -> int:
     """The rank by elimination with complete pivoting, of the rows scaled to norm one."""
     work = _unit_rows(rows)
     found = 0
@@ -28,7 +29,7 @@ def rank(rows: Rows, relative: float = 1e-9) -> int:
     return found
 
 
-def null_space(rows: Rows, n: int, relative: float = 1e-9) -> Rows:
+def null_space(rows: Rows, n: int, relative: float = RELATIVE) -> Rows:
     """An orthonormal basis of the vectors x with rows x = 0, by Gram-Schmidt, each twice."""
     basis: Rows = []
     for row in _unit_rows(rows):
@@ -65,13 +66,13 @@ def solve_definite(matrix: Rows, right: list[float]) -> list[float] | None:
     return solution
 
 
-def is_positive(matrix: Rows, relative: float = 1e-9) -> tuple[bool, bool]:
+def is_positive(matrix: Rows, relative: float = RELATIVE) -> tuple[bool, bool]:
     """Whether a symmetric matrix is positive semidefinite, and whether it is positive definite.
 
     By pivots on the diagonal, of the matrix scaled to ones there, so that units do not matter.
     """
     n = len(matrix)
-    scale = [math.sqrt(matrix[i][i]) if matrix[i][i] > 0 else 0.0 for i in range(n)]
+    scale = [root(matrix[i][i]) if matrix[i][i] > 0 else 0.0 for i in range(n)]
     largest = max((abs(value) for row in matrix for value in row), default=0.0)
     for i in range(n):
         if scale[i] == 0 and any(abs(value) > relative * largest for value in matrix[i]):
@@ -97,7 +98,7 @@ def is_positive(matrix: Rows, relative: float = 1e-9) -> tuple[bool, bool]:
 
 def _unit_rows(rows: Rows) -> Rows:
     """The rows scaled to norm one."""
-    return [[value / norm for value in row] for row in rows if (norm := math.sqrt(sum(v * v for v in row))) > 0]
+    return [[value / norm for value in row] for row in rows if (norm := root(sum(v * v for v in row))) > 0]
 
 
 def _extend(basis: Rows, vector: list[float], relative: float) -> None:
@@ -106,6 +107,11 @@ def _extend(basis: Rows, vector: list[float], relative: float) -> None:
             along = sum(map(mul, unit, vector))
             if along:
                 vector = [a - along * b for a, b in zip(vector, unit, strict=True)]
-    norm = math.sqrt(sum(a * a for a in vector))
+    norm = root(sum(a * a for a in vector))
     if norm > relative:
         basis.append([a / norm for a in vector])
+
+
+def root(x: float) -> float:
+    """The square root in the kind of numbers that x is."""
+    return math.sqrt(x) if isinstance(x, (float, int)) else x**0.5

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.assembly import Assembly, Place
-from symgen.model.body_checks import inertia_span
 from symgen.model.branches import Open
-from symgen.model.dense import Rows, is_positive, null_space, rank
+from symgen.model.dense import Rows, rank
 from symgen.model.expression import Binary, Expression, Power
+from symgen.model.masses import check_masses
 from symgen.model.mechanics import Mechanics
 from symgen.model.model import Coordinate
 from symgen.model.names import counted, shown_names
@@ -19,13 +19,6 @@ from symgen.model.walk import evaluate
 # Configurations at which masses are looked at.
 SAMPLES = 5
 FURTHER = 40
-USUAL = 3
-
-# An energy this small beside its terms is none.
-NO_ENERGY = 1e-12
-
-# Components of a motion this small are none.
-HELD = 1e-7
 
 MOST_SHOWN = 6
 
@@ -64,7 +57,8 @@ def check_motion(
         )
         return
     regular = [(list(place.q), mechanics.jacobian(place.q)) for place in found.places[:SAMPLES]]
-    yield from _check_masses(mechanics, [*regular, *_further(mechanics, found)], spans["kinetic_energy"])
+    places = [q for q, _ in regular] + _further(mechanics, found)
+    yield from check_masses(mechanics, places, spans["kinetic_energy"])
     yield from _held(mechanics, found, spans["constraints"])
     yield from _far_start(mechanics, found, declared, spans["configuration"])
     yield from _other_branches(mechanics, found, spans["configuration"])
@@ -72,15 +66,12 @@ def check_motion(
         yield from _check_independent(mechanics, regular, independent, n - rank, spans["independent_velocities"])
 
 
-def _further(mechanics: Mechanics, found: Assembly) -> Iterator[tuple[list[float], Rows]]:
+def _further(mechanics: Mechanics, found: Assembly) -> list[list[float]]:
     """More configurations for bodies of which only the sum may have a positive energy."""
     if not mechanics.unsound:
-        return
-    places = [list(place.q) for place in found.places[SAMPLES:]]
-    if not mechanics.geometric:
-        places += [q for q, _ in mechanics.anywhere(FURTHER)]
-    for q in places:
-        yield q, mechanics.jacobian(q)
+        return []
+    anywhere = [] if mechanics.geometric else [q for q, _ in mechanics.anywhere(FURTHER)]
+    return [*(list(place.q) for place in found.places[SAMPLES:]), *anywhere]
 
 
 def _no_configuration(mechanics: Mechanics, found: Open | None, span: Span | None) -> Mistake:
@@ -166,120 +157,6 @@ def _shown(mechanics: Mechanics, place: Place) -> str:
     pairs = zip(mechanics.coordinates, place.q, strict=True)
     shown = [f"{c.name} = {value:.3g}" for c, value in pairs][:MOST_SHOWN]
     return ", ".join(shown) + (", ..." if len(place.q) > MOST_SHOWN else "")
-
-
-def _check_masses(
-    mechanics: Mechanics, regular: list[tuple[list[float], Rows]], span: Span | None
-) -> Iterator[Mistake | Notice]:
-    """G must be positive definite along the constraints; across them it may be anything, which is told."""
-    definite_somewhere = negative_across = False
-    still: set[str] = set()
-    usual = _usual_mass(mechanics)
-    for q, jacobian in regular:
-        try:
-            mass = mechanics.mass_matrix(q)
-        except (ArithmeticError, ValueError):
-            continue
-        where = ", ".join(f"{c.name} = {value:.4g}" for c, value in zip(mechanics.coordinates, q, strict=True))
-        along, definite = is_positive(_along(mass, usual, jacobian))
-        if not mechanics.mass_is_sure and not along:
-            yield _negative_energy(mechanics, where, span)
-            return
-        if not mechanics.mass_is_sure and not negative_across and not is_positive(mass)[0]:
-            negative_across = True
-            negative = f"the kinetic energy is negative for some velocities at {where}"
-            yield Notice(f"{negative}; the constraints allow none of them", span)
-        definite_somewhere = definite_somewhere or definite
-        if definite_somewhere and mechanics.mass_is_sure:
-            break
-        if not definite_somewhere:
-            negligible = [[NO_ENERGY**2 * x for x in row] for row in usual]
-            still |= _without_mass(mechanics, jacobian, _above(mass, negligible))
-    if not definite_somewhere:
-        names = [f"`{c.name}`" for c in mechanics.coordinates if c.name in still]
-        alone = len(names) == 1
-        if not names:
-            yield Mistake(
-                "the accelerations cannot be told: some of the masses vanish beside others in double precision",
-                "check the units of masses and inertias; what weighs that little may have none",
-                span,
-            )
-            return
-        moving = f"{names[0]} does" if alone else f"{', '.join(names)} move together"
-        each = not alone and all(_alone(mechanics, regular, name) for name in still)
-        if each:
-            moving = f"{', '.join(names[:-1])} or {names[-1]} does"
-        which = "it" if alone else "each" if each else "one of them"
-        yield Mistake(
-            f"the accelerations are undetermined: no mass moves where {moving}, which the constraints allow",
-            f"give {which} a mass or inertia in `kinetic_energy` or `bodies`",
-            span,
-        )
-
-
-def _usual_mass(mechanics: Mechanics) -> Rows:
-    """The largest size of each entry of G at a few configurations, admissible or not."""
-    n = len(mechanics.coordinates)
-    largest = [[0.0] * n for _ in range(n)]
-    for q, _ in mechanics.anywhere(USUAL):
-        try:
-            found = mechanics.mass_matrix(q)
-        except (ArithmeticError, ValueError):
-            continue
-        largest = [[max(a, abs(b)) for a, b in zip(*rows, strict=True)] for rows in zip(largest, found, strict=True)]
-    return largest
-
-
-def _along(mass: Rows, usual: Rows, jacobian: Rows) -> Rows:
-    """W^T G W for an orthonormal basis W of the velocities that the constraints allow; what rounding leaves is 0.
-
-    Rounding in G itself is of second order where the places of masses cancel.
-    """
-    basis = null_space(jacobian, len(mass))
-    bounds = [
-        [max(NO_ENERGY * abs(a), NO_ENERGY**2 * b) for a, b in zip(*rows, strict=True)]
-        for rows in zip(mass, usual, strict=True)
-    ]
-    sizes = [[abs(a) for a in vector] for vector in basis]
-    values, least = _reduced(mass, basis), _reduced(bounds, sizes)
-    return _above(values, least)
-
-
-def _above(values: Rows, least: Rows) -> Rows:
-    """The values, with 0 for those no larger than these."""
-    pairs = zip(values, least, strict=True)
-    return [[x if abs(x) > low else 0.0 for x, low in zip(*rows, strict=True)] for rows in pairs]
-
-
-def _reduced(matrix: Rows, basis: Rows) -> Rows:
-    images = [[sum(a * b for a, b in zip(row, vector, strict=True)) for row in matrix] for vector in basis]
-    return [[sum(a * b for a, b in zip(image, vector, strict=True)) for vector in basis] for image in images]
-
-
-def _negative_energy(mechanics: Mechanics, where: str, span: Span | None) -> Mistake:
-    """The mistake at the inertia of a body that has a negative moment, or at the energy."""
-    if not mechanics.unsound:
-        remedy = "check the signs of its terms, and masses and inertias with their default values"
-        return Mistake(f"the kinetic energy is negative for some velocities at {where}", remedy, span)
-    body = mechanics.unsound[0]
-    return Mistake(
-        f"the kinetic energy is negative for some velocities at {where}: the negative principal moment of "
-        f"`{body.name}` is not made up for by other bodies",
-        "check signs: xy, xz, yz are elements of the tensor, the negatives of CAD's products of inertia",
-        inertia_span(body) or span,
-    )
-
-
-def _alone(mechanics: Mechanics, regular: list[tuple[list[float], Rows]], name: str) -> bool:
-    """Whether the coordinate moves by itself, and no mass with it."""
-    index = [c.name for c in mechanics.coordinates].index(name)
-    return all(not any(row[index] for row in b) and not any(mechanics.mass_matrix(q)[index]) for q, b in regular)
-
-
-def _without_mass(mechanics: Mechanics, jacobian: Rows, mass: Rows) -> set[str]:
-    """The coordinates that take part in an admissible motion of no mass."""
-    motions = null_space([*jacobian, *(row for row in mass if any(row))], len(mass))
-    return {c.name for i, c in enumerate(mechanics.coordinates) if any(abs(motion[i]) > HELD for motion in motions)}
 
 
 def _held(mechanics: Mechanics, found: Assembly, span: Span | None) -> Iterator[Notice]:

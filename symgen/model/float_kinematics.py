@@ -1,8 +1,7 @@
-"""Frames and points in floats at one configuration, for the checks made while loading."""
+"""Frames and points in floats, or other numbers, at one configuration, for the checks made while loading."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from typing import TypeAlias
 
@@ -15,8 +14,6 @@ from symgen.model.triples import Rates, Triple, minus
 
 Form: TypeAlias = dict[int, float]
 """Coefficients of the rates by the number of the coordinate."""
-
-_FUNCTIONS = {"sin": math.sin, "cos": math.cos, "sqrt": math.sqrt}
 
 
 class Floats:
@@ -35,11 +32,11 @@ class Floats:
 
     def number(self, value: int) -> float:
         """A whole number."""
-        return float(value)
+        return self._gradients.numbers.rational(value)
 
     def function(self, name: str, operand: float) -> float:
         """sin, cos or sqrt."""
-        return _FUNCTIONS[name](operand)
+        return self._gradients.numbers.functions[name](operand)
 
     def combination(self, terms: Iterable[tuple[float, Form]]) -> Form:
         """Sum of products."""

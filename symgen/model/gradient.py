@@ -1,30 +1,31 @@
-"""Values with their gradients in the coordinates, in floats: forward differentiation, sparse."""
+"""Values with their gradients in the coordinates, in floats or other numbers: forward differentiation, sparse."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.mechanism import is_component
-from symgen.model.walk import FUNCTIONS, power
+from symgen.model.numbers import FLOATS, Numbers
 
 Dual: TypeAlias = tuple[float, dict[int, float]]
 
-_DERIVATIVES: dict[str, Callable[[float], float]] = {
-    "sin": math.cos,
-    "cos": lambda x: -math.sin(x),
-    "tan": lambda x: 1 + math.tan(x) ** 2,
-    "asin": lambda x: 1 / math.sqrt(1 - x * x),
-    "acos": lambda x: -1 / math.sqrt(1 - x * x),
-    "atan": lambda x: 1 / (1 + x * x),
-    "sqrt": lambda x: 0.5 / math.sqrt(x),
-    "exp": math.exp,
-    "log": lambda x: 1 / x,
-    "sinh": math.cosh,
-    "cosh": math.sinh,
-    "tanh": lambda x: 1 - math.tanh(x) ** 2,
+_Functions: TypeAlias = Mapping[str, Callable[..., float]]
+
+_DERIVATIVES: dict[str, Callable[[_Functions, float], float]] = {
+    "sin": lambda f, x: f["cos"](x),
+    "cos": lambda f, x: -f["sin"](x),
+    "tan": lambda f, x: 1 + f["tan"](x) ** 2,
+    "asin": lambda f, x: 1 / f["sqrt"](1 - x * x),
+    "acos": lambda f, x: -1 / f["sqrt"](1 - x * x),
+    "atan": lambda _, x: 1 / (1 + x * x),
+    "sqrt": lambda f, x: 0.5 / f["sqrt"](x),
+    "exp": lambda f, x: f["exp"](x),
+    "log": lambda _, x: 1 / x,
+    "sinh": lambda f, x: f["cosh"](x),
+    "cosh": lambda f, x: f["sinh"](x),
+    "tanh": lambda f, x: 1 - f["tanh"](x) ** 2,
 }
 
 
@@ -40,8 +41,9 @@ class Gradients:
         index: Mapping[str, int],
         definitions: Mapping[str, Expression],
         components: Callable[[str], Dual] | None = None,
+        numbers: Numbers = FLOATS,
     ) -> None:
-        self.index = index
+        self.index, self.numbers = index, numbers
         self._values, self._definitions, self._components = values, definitions, components
         self._known: dict[str, Dual | Exception] = {}
 
@@ -49,9 +51,9 @@ class Gradients:
         """Value and gradient; ArithmeticError or ValueError outside the domain."""
         match expression:
             case Number(value=literal):
-                return literal.numerator / literal.denominator, {}  # as Fraction does it, many times
+                return self.numbers.rational(literal), {}
             case Pi():
-                return math.pi, {}
+                return self.numbers.pi, {}
             case Name(name=name):
                 return self._name(name)
             case Negation(operand=operand):
@@ -61,16 +63,20 @@ class Gradients:
                 return _binary(operator, self.of(left), self.of(right))
             case Power(base=base, exponent=exponent):
                 value, gradient = self.of(base)
+                power = self.numbers.power
                 if not gradient:
                     return power(value, exponent), {}
-                return power(value, exponent), _scaled(gradient, float(exponent) * power(value, exponent - 1))
+                slope = self.numbers.rational(exponent) * power(value, exponent - 1)
+                return power(value, exponent), _scaled(gradient, slope)
             case Call(function="atan2", arguments=(first, second)):
                 (y, dy), (x, dx) = self.of(first), self.of(second)
                 square = x * x + y * y
-                return math.atan2(y, x), _combined(dy, x / square, dx, -y / square)
+                return self.numbers.functions["atan2"](y, x), _combined(dy, x / square, dx, -y / square)
             case Call(function=function, arguments=arguments):
                 value, gradient = self.of(arguments[0])
-                return FUNCTIONS[function](value), _scaled(gradient, _DERIVATIVES[function](value)) if gradient else {}
+                known = self.numbers.functions
+                slope = _DERIVATIVES[function](known, value) if gradient else 0.0
+                return known[function](value), _scaled(gradient, slope)
 
     def _name(self, name: str) -> Dual:
         if name in self.index:

@@ -1,4 +1,4 @@
-"""A model seen numerically at one configuration: g, B, G in floats, for the checks made while loading."""
+"""A model seen numerically at one configuration: g, B, G in floats or other numbers, for checks while loading."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from symgen.model.float_kinematics import FloatKinematics
 from symgen.model.gradient import Gradients
 from symgen.model.mechanism import NO_MECHANISM, Body, Mechanism, component
 from symgen.model.model import ConstraintRow, Coordinate, Definition, Input, Parameter
+from symgen.model.numbers import FLOATS, Numbers
 from symgen.model.sparse import Row
 from symgen.model.walk import evaluate, exact_value
 
@@ -25,7 +26,7 @@ RESIDUAL = 1e-11
 
 
 class Mechanics:
-    """The parts of a model that say how it moves, evaluated in floats."""
+    """The parts of a model that say how it moves, evaluated in floats unless `within` other numbers."""
 
     def __init__(
         self,
@@ -47,6 +48,7 @@ class Mechanics:
         self.parameters = parameters
         self._expanded: dict[int, tuple[Expression, list[Polynomial]]] = {}
         self.defaults = default_values(parameters)
+        self.numbers = FLOATS
 
     def having(
         self,
@@ -67,6 +69,18 @@ class Mechanics:
         other.defaults = defaults
         return other
 
+    def within(self, numbers: Numbers) -> Mechanics:
+        """The same with its default parameters, evaluated in other numbers."""
+        other = self.having(self.defaults)
+        other.numbers, values = numbers, dict[str, float]()
+        for parameter in self.parameters:
+            try:
+                values[parameter.name] = numbers.evaluate(parameter.value, values)
+            except (ArithmeticError, ValueError):
+                values[parameter.name] = self.defaults[parameter.name]
+        other.defaults = values
+        return other
+
     def expansion(self, q: Sequence[float], parameters: dict[str, float]) -> Expansion:
         """Polynomials in the rates at a configuration."""
         values = {**parameters, **self._named(q)}
@@ -79,7 +93,7 @@ class Mechanics:
             value = kinematics.value(name)
             return {(): (value, abs(value))}
 
-        return Expansion(values, self._rates, self._definitions, polynomial)
+        return Expansion(values, self._rates, self._definitions, polynomial, self.numbers)
 
     def polynomials(self, expression: Expression) -> list[Polynomial]:
         """The expression in the rates at a few random points of its domain; NotPolynomialError where it is none."""
@@ -140,7 +154,7 @@ class Mechanics:
     def residuals(self, q: Sequence[float], numbers: Sequence[int]) -> tuple[list[float], list[Row]]:
         """Values and gradients of the geometric rows with these numbers."""
         values = {**self.defaults, **self._named(q)}
-        gradients = Gradients(values, self._index, self._definitions, self._kinematics(values).place)
+        gradients = Gradients(values, self._index, self._definitions, self._kinematics(values).place, self.numbers)
         found = [gradients.of(self.geometric[i].expression) for i in numbers]
         return [value for value, _ in found], [gradient for _, gradient in found]
 
@@ -185,7 +199,7 @@ class Mechanics:
 
     def _kinematics(self, values: dict[str, float]) -> FloatKinematics:
         # frames use definitions, definitions may use points: those that frames use are evaluated without components
-        return FloatKinematics(self.mechanism, Gradients(values, self._index, self._definitions))
+        return FloatKinematics(self.mechanism, Gradients(values, self._index, self._definitions, numbers=self.numbers))
 
     def _named(self, q: Sequence[float]) -> dict[str, float]:
         return {coordinate.name: value for coordinate, value in zip(self.coordinates, q, strict=True)}
