@@ -14,6 +14,7 @@ from functools import cached_property
 from symgen.dynamics.allocation import InputAllocation
 from symgen.dynamics.forms.absolute import in_absolute_angles, motion_brought_back
 from symgen.dynamics.forms.definiteness import positive_definite
+from symgen.dynamics.forms.held_lengths import completed_multipliers
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.motions import MotionName, candidates, cheapest, few_minors, motion
@@ -144,9 +145,10 @@ class Derivation:
             return motion(name, self.mechanics, self.space, self.inertia)
         own, rank = self.mechanics, self.generic.rank
         apart = own.apart() if own.change is not None else in_absolute_angles(own.model) or own.apart()
-        problem = Problem(apart, ())
+        problem, completed = Problem(apart, ()), completed_multipliers(apart)
         made = schur_qr(problem, rank) if name == "schur_qr" else minor_motion(problem).motion
         # symbols of absolute angles stay where these are the coordinates of this derivation
+        made = replace(made, multipliers=completed(made.multipliers))
         made = motion_brought_back(self.graph, apart if own.change is None else None, made)
         # `schur_qr` measures ranks itself where rows are many, or depend on each other
         measured = name == "schur_qr" and self.r > min(rank, LONGEST_PRODUCT)

@@ -6,6 +6,7 @@ because several quantities are evaluated along a projected velocity rather than 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 
 from symgen.dynamics.bodies import Bodies, Vector3
@@ -184,12 +185,21 @@ class Mechanics:
     @cached_property
     def applied_force(self) -> Vector:
         """Q_a(q, q_dot), on the right-hand side."""
-        forces = {f.coordinate: translate(self.graph, f.expression, self.names) for f in self.model.applied_forces}
-        given = self._components(tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates))
-        for force in self.model.forces:
-            magnitude = translate(self.graph, force.magnitude, self.names)
-            given = tuple(x + magnitude * y for x, y in zip(given, self._worked_on(force.velocity), strict=True))
+        (_, given), *others = self._applied
+        for magnitude, column in others:
+            given = tuple(x + magnitude * y for x, y in zip(given, column, strict=True))
         return given
+
+    @cached_property
+    def _applied(self) -> list[tuple[Scalar, Vector]]:
+        """What acts on the coordinates themselves, and the magnitude of each force with what a unit of it does."""
+        forces = {f.coordinate: translate(self.graph, f.expression, self.names) for f in self.model.applied_forces}
+        direct = self._components(tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates))
+        others = (
+            (translate(self.graph, force.magnitude, self.names), self._worked_on(force.velocity))
+            for force in self.model.forces
+        )
+        return [(self.graph.one, direct), *others]
 
     def applied_force_at(self, velocity: Vector) -> Vector:
         """Q_a along another velocity."""
@@ -359,6 +369,16 @@ class Mechanics:
         driven = matvec(self.graph, self.control_matrix, self.u)
         slopes = gradient(self.graph, self._written_potential, self.q)
         return tuple(u + a - f for u, a, f in zip(driven, self.applied_force, slopes, strict=True))
+
+    def given_along(self, direction: Mapping[int, Scalar]) -> Scalar:
+        """The component of `given_force` along a direction in the coordinates.
+
+        Input by input and force by force, because it is exactly 0 of each of them that does no work there.
+        """
+        slopes: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
+        parts = [*zip(self.u, self.inputs, strict=True), *self._applied, (self.graph.const(-1), slopes)]
+        along = ((x, self.graph.sum(column[j] * d for j, d in direction.items())) for x, column in parts)
+        return self.graph.sum(x * component for x, component in along if not component.is_zero)
 
     @cached_property
     def bias_force(self) -> Vector:

@@ -9,8 +9,13 @@ import pytest
 from symgen.dynamics.articulated import ArticulatedFactor
 from symgen.dynamics.compared import quantities_by
 from symgen.dynamics.forms.articulated import articulated
+from symgen.dynamics.forms.held_lengths import completed_multipliers
+from symgen.dynamics.forms.motion import Problem
+from symgen.dynamics.forms.projected_motion import nullspace
 from symgen.dynamics.genericity import genericity, parameter_values
+from symgen.dynamics.inertia import BasisInertia
 from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.select import derive_quantities
 from symgen.graph.evaluate import Evaluator
 from symgen.model.load import load_text
@@ -108,6 +113,75 @@ def test_what_holds_a_length_is_free_of_force() -> None:
     assert driven is not None
     assert [x.is_zero for x in found[1].multipliers] == [True, True]
     assert [x.is_zero for x in driven[1].multipliers] == [True, False]
+
+
+# the coordinate of the rail moves two frames, so that there are no articulated inertias
+RAIL = """model: rail
+parameters: {{k: 30, J: 0.02}}
+gravity: [0, 0, -9.81]
+coordinates: {{s: , e_0: , e_1: , e_2: , e_3: }}
+frames:
+  cart: {{translation: [s, {away}, 0]}}
+  wheel: {{translation: [0, 0.3, 0], rotation: [[y, s/0.2]]}}
+  pod: {{parent: cart, rotation: {{quaternion: [e_0, e_1, e_2, e_3]}}}}
+bodies:
+  cart: {{mass: 3}}
+  wheel: {{mass: 1, inertia: {{yy: J}}}}
+  pod: {{mass: 2, com: [0, 0.1, -0.4], inertia: {{xx: 0.03, yy: 0.04, zz: 0.02}}}}
+points: {{nose: {{frame: pod, at: [0.2, 0, 0]}}}}
+constraints: {{geometric: {{unit: e_0**2 + e_1**2 + e_2**2 + e_3**2 - 1{row}}}}}
+inputs:
+  drive: {{joint: s}}
+  push: {{point: nose, direction: [0, 1, 0]}}
+forces:
+  wind: {{point: nose, direction: [1, 0, 0], magnitude: "-k*nose.vx"}}
+{more}
+outputs: [forward_dynamics, multipliers]
+"""
+ODD = "applied_forces: {e_2: -0.3*e_1_dot}"
+FOLLOWED = ", follows: s - 0.5*e_3 + 0.2*e_1"
+
+
+def rail(row: str = "", more: str = "", away: str = "0") -> Model:
+    """A pod in a ball joint on a cart."""
+    return load_text(RAIL.format(row=row, more=more, away=away), "rail.yaml")
+
+
+@pytest.mark.parametrize("model", [rail(), rail(more=ODD), rail(FOLLOWED, ODD), MODELS["felt"], MODELS["craft"]])
+def test_lengths_are_completed_as_the_equations_have_it(model: Model) -> None:
+    """Beside the multipliers of a null space, in which forces of bodies cancel."""
+    mechanics = Mechanics(model)
+    graph, rows = mechanics.graph, mechanics.constraint_jacobian
+    space = reflected(graph, rows, mechanics.n, len(rows))
+    plain = nullspace(Problem(mechanics, space.guards), space, BasisInertia(space, mechanics.mass_matrix))
+    completed = completed_multipliers(mechanics)
+    values = Evaluator([*plain.multipliers, *completed(plain.multipliers)])
+    source = random.Random(7)
+    for _ in range(4):
+        point = dict(parameter_values(mechanics))
+        for name in (x for c in model.coordinates for x in (c.name, c.rate)):
+            point[name] = source.uniform(0.2, 0.9)
+        point |= {control.name: source.uniform(-1, 1) for control in model.inputs}
+        found = values(point)
+        assert found[: len(rows)] == pytest.approx(found[len(rows) :], rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["nullspace", "shifted", "kkt"])
+def test_every_form_knows_that_no_force_stretches_a_quaternion(name: str) -> None:
+    def unit(model: Model) -> bool:
+        (made,) = (x for x in quantities_by(model, genericity(Mechanics(model)), name)[1] if x.name == "multipliers")
+        return made.outputs[0].is_zero
+
+    assert unit(rail())
+    assert not unit(rail(more=ODD))
+
+
+def test_a_quaternion_that_moves_more_than_an_attitude_is_no_attitude() -> None:
+    """A mass feels its length then, be it by a place or by a rotor."""
+    defined, rotor = rail(more="definitions: {d: e_0/2}", away="d"), rail(more="rotor_inertias: {e_1: J}")
+    for model in (rail(away="e_0"), defined, rotor):
+        symbol = Mechanics(model).graph.symbol("x")
+        assert completed_multipliers(Mechanics(model))((symbol,)) == (symbol,)
 
 
 def test_chains_of_ball_joints_go_from_body_to_body() -> None:

@@ -123,6 +123,7 @@ class BodyEquations:
                 columns[i], self._forces[i] = column, (self._forces[i][0], load)
             loops.append((loop, frame))
         self._problem = _Loops(mechanics, guards, loops)
+        self._completed = held.multipliers(mechanics)
         self._apart = LengthsApart(self._problem, factor, columns, held, rank)
         self.guards = self._apart.guards
 
@@ -141,7 +142,7 @@ class BodyEquations:
                 return self._less(given, loads, q_ddot, multipliers), problem.bias_at(q_ddot)
 
             found = self._refined(force, problem.bias, left_over)
-        return Motion(found[0], problem.of_the_model(found[1]), self.guards)
+        return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
 
     def answered(self, asked: Vector) -> Vector:
         """x with G x + B^T lambda = 0, B x = `asked`, of rows that are not `turned`."""

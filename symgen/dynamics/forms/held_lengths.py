@@ -7,16 +7,21 @@ multiplier is exactly 0, which no sum over forces of bodies gives in floating-po
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from symgen.dynamics.forms.motion import Problem
 from symgen.dynamics.forms.refinement import Solution
 from symgen.dynamics.forms.schur import Elimination, Factor
 from symgen.dynamics.guards import Guard
-from symgen.dynamics.quaternion_joints import QuaternionJoint
+from symgen.dynamics.mechanics import Mechanics
+from symgen.dynamics.quaternion_joints import QuaternionJoint, quaternion_joint
 from symgen.graph.matrix import Matrix, Vector, dot
 from symgen.graph.scalar import Graph
 from symgen.ir.kernel import Status
+from symgen.model.expression import Expression, Number
+from symgen.model.mechanism import Frame, Quaternion
+from symgen.model.walk import names_in
 from symgen.records import dataclass
 
 
@@ -39,6 +44,27 @@ class HeldLengths:
         """The rows that are left of so many."""
         return [i for i in range(count) if i not in self.rows]
 
+    def multipliers(self, mechanics: Mechanics) -> Callable[[Vector], Vector]:
+        """What gives multipliers the components of rows that hold lengths, from those of the others.
+
+        To be called before anything is solved: what is exactly 0 must stand in the graph first.
+        """
+        rows = mechanics.constraint_jacobian
+        found = []
+        for joint, i, slope in zip(self.joints, self.rows, self.slopes, strict=True):
+            force = mechanics.given_along(dict(zip(joint.parts, joint.values, strict=True)))
+            felt = {k: joint.along_length([rows[k][j] for j in joint.parts]) for k in self.others(len(rows))}
+            found.append((i, force, {k: x for k, x in felt.items() if not x.is_zero}, slope))
+
+        def completed(given: Vector) -> Vector:
+            values = list(given)
+            for i, force, felt, slope in found:
+                taken = self.graph.sum(x * given[k] for k, x in felt.items())
+                values[i] = (force - taken) / slope
+            return tuple(values)
+
+        return completed
+
     def apart(self, rows: Matrix) -> bool:
         """Whether the other rows do not know the lengths of the quaternions, as none does that asks for attitudes."""
         others = [rows[i] for i in self.others(len(rows))]
@@ -54,6 +80,43 @@ def held_lengths(joints: Sequence[QuaternionJoint], rows: Matrix, graph: Graph) 
     pairs = zip(joints, known, strict=True)
     slopes = tuple(joint.along_length([rows[i][j] for j in joint.parts]) for joint, i in pairs)
     return HeldLengths(graph, tuple(joints), known, slopes)
+
+
+def completed_multipliers(mechanics: Mechanics) -> Callable[[Vector], Vector]:
+    """What completes multipliers of any form by those of rows that hold lengths, see `HeldLengths.multipliers`.
+
+    Only where nothing but the attitudes of frames depends on a quaternion: then bodies do no work on its length.
+    """
+    energy, mechanism = mechanics.model.kinetic_energy, mechanics.model.mechanism
+    turned = [frame for frame in mechanism.frames if isinstance(frame.rotation, Quaternion)]
+    if not turned or not isinstance(energy, Number) or energy.value != 0:
+        return lambda given: given
+    within: dict[str, set[str]] = {}
+    for definition in mechanics.model.definitions:
+        within[definition.name] = set(_names((definition.value,), within))
+    used = Counter(name for frame in mechanism.frames for name in set(_names(_placing(frame), within)))
+    used.update(rotor.coordinate for rotor in mechanism.rotor_inertias)
+    anything: dict[int, Vector] = dict.fromkeys(range(mechanics.n), ())
+    found = (quaternion_joint(mechanics.bodies, frame.name, anything) for frame in turned)
+    names = [c.name for c in mechanics.model.coordinates]
+    joints = [joint for joint in found if joint is not None and all(used[names[j]] == 1 for j in joint.parts)]
+    rows = mechanics.constraint_jacobian
+    held = held_lengths([joint for joint in joints if any(map(joint.holds_length, rows))], rows, mechanics.graph)
+    return held.multipliers(mechanics) if held is not None else lambda given: given
+
+
+def _placing(frame: Frame) -> tuple[Expression, ...]:
+    rotation = frame.rotation
+    turns = rotation.parts if isinstance(rotation, Quaternion) else tuple(turn.angle for turn in rotation)
+    return (*frame.translation, *turns)
+
+
+def _names(expressions: Sequence[Expression], within: Mapping[str, set[str]]) -> Iterator[str]:
+    """The names in expressions, and those that definitions among them are made of."""
+    for expression in expressions:
+        for name in names_in(expression):
+            yield name.name
+            yield from within.get(name.name, ())
 
 
 class _Rest(Problem):

@@ -14,6 +14,7 @@ from math import comb
 from typing import Literal, TypeAlias
 
 from symgen.dynamics.forms.definiteness import positive_definite
+from symgen.dynamics.forms.held_lengths import completed_multipliers
 from symgen.dynamics.forms.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.dynamics.forms.motion import Motion, Problem
 from symgen.dynamics.forms.projected_motion import kkt, nullspace, shifted
@@ -81,7 +82,9 @@ def motion(
     name: MotionName, mechanics: Mechanics, space: NullSpace, inertia: ConstrainedInertia | None = None
 ) -> Motion:
     """One form along a null space; `nullspace` needs the constrained inverse of G that belongs to it."""
-    return replace(_motion(name, Problem(mechanics, space.guards), space, inertia), name=name)
+    completed = completed_multipliers(mechanics)
+    made = _motion(name, Problem(mechanics, space.guards), space, inertia)
+    return replace(made, multipliers=completed(made.multipliers), name=name)
 
 
 def _motion(name: MotionName, problem: Problem, space: NullSpace, inertia: ConstrainedInertia | None) -> Motion:
