@@ -56,6 +56,7 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
             "delta_diff": generic.delta,
             "alpha": generic.alpha,
         },
+        **({"parameters_as_numbers": [name for name, _ in model.taken]} if model.taken else {}),
         "actuation": structure.actuation,
         "blocks": [
             {

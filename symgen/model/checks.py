@@ -6,10 +6,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.as_numbers import with_numbers
 from symgen.model.assembly import Assembly
 from symgen.model.body_checks import check_bodies
 from symgen.model.branches import branches
-from symgen.model.empty_rows import check_empty_rows
+from symgen.model.empty_rows import check_empty_rows, parameters_that_count
 from symgen.model.expression import Expression
 from symgen.model.feasibility import check_motion
 from symgen.model.mechanics import Mechanics
@@ -55,14 +56,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     """
     if not model.coordinates:
         return model
-    written = mechanics = Mechanics(
-        model.coordinates,
-        model.parameters,
-        model.definitions,
-        model.constraints,
-        model.kinetic_energy,
-        model.mechanism,
-    )
+    written = mechanics = _mechanics(model)
     before = len(scope.mistakes)
     # where frames hang on themselves nothing can be said about their motion
     turning = mechanics.turning() if whole else {}
@@ -87,6 +81,11 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     not_linear = [mistake for row in rolling for mistake in check_nonholonomic(mechanics, row)]
     _add(scope, not_linear)
     if not not_linear and (whole or not model.mechanism.frames):
+        numbers = parameters_that_count(mechanics)
+        if numbers:
+            before_numbers, model = model, with_numbers(model, numbers, mechanics.defaults)
+            _add(scope, _told_of_numbers(before_numbers, model))
+            written = mechanics = _mechanics(model)
         rows, told = check_empty_rows(mechanics)
         _add(scope, told)
         model = replace(model, constraints=rows)
@@ -105,6 +104,29 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
             _add(scope, _told_of_tied(model, found.tied))
             return replace(model, assembly=found)
     return model
+
+
+def _mechanics(model: Model) -> Mechanics:
+    return Mechanics(
+        model.coordinates,
+        model.parameters,
+        model.definitions,
+        model.constraints,
+        model.kinetic_energy,
+        model.mechanism,
+    )
+
+
+def _told_of_numbers(before: Model, model: Model) -> Iterator[Notice]:
+    """Parameters that kernels cannot be given at run time."""
+    for name, value in model.taken:
+        (parameter,) = (p for p in before.parameters if p.name == name)
+        despite = " in spite of its range" if parameter.range is not None else ""
+        yield Notice(
+            f"`{name}` is taken as the number {float(value):.6g}{despite} and is no parameter of the kernels: with "
+            "other values there would be more constraints, a model with another default is a machine of its own",
+            parameter.span,
+        )
 
 
 def _told_of_tied(model: Model, tied: Iterable[str]) -> Iterator[Notice]:

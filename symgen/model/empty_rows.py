@@ -52,8 +52,59 @@ class _Rows:
         return self._shaken.within(i, VALUE)
 
 
+def parameters_that_count(mechanics: Mechanics) -> tuple[str, ...]:
+    """Parameters for whose default values alone rows are empty, in the order of the file.
+
+    With others there would be one more constraint, so that kernels for both cannot be one: these take the numbers.
+    A gap that no motion changes in length is none of them, since there is no machine then.
+    """
+    usual = _Rows(mechanics) if mechanics.constraints else None
+    if usual is None or not usual.known:
+        return ()
+    rows = mechanics.constraints
+    holding = [i for i in range(len(rows)) if usual.is_empty(i) and usual.holds(i)]
+    loops = [[j for j in holding if rows[j].span == rows[i].span] for i in holding]
+    counting = [i for i, loop in zip(holding, loops, strict=True) if not _stays_open(mechanics, loop)]
+    named = set[str]()
+    while (found := _other_parameters(mechanics, counting, named)) is not None:
+        named.add(found)
+    return tuple(parameter.name for parameter in mechanics.parameters if parameter.name in named)
+
+
+def _other_parameters(mechanics: Mechanics, counting: Sequence[int], but: set[str]) -> str | None:
+    """The first parameter that keeps a row from being empty, with all that it takes besides; None where none does."""
+    for values in _draws(mechanics, but, OTHERS) if counting else ():
+        drawn = _Rows(mechanics.having(values))
+        row = next((i for i in counting if not drawn.is_empty(i)), None)
+        if row is None:
+            continue
+        needed = []
+        for name, default in mechanics.defaults.items():
+            without = _Rows(mechanics.having({**values, name: default}))
+            if values[name] != default and without.known and not without.is_empty(row):
+                values[name] = default
+            elif values[name] != default:
+                needed.append(name)
+        return needed[0] if needed else None
+    return None
+
+
+def _draws(mechanics: Mechanics, but: set[str], count: int) -> Iterator[dict[str, float]]:
+    """Random parameters for which the rows are known, with some at their defaults."""
+    for _, parameters in mechanics.anywhere(ATTEMPTS):
+        values = {**parameters, **{name: mechanics.defaults[name] for name in but}}
+        if _Rows(mechanics.having(values)).known:
+            yield values
+            count -= 1
+        if not count:
+            return
+
+
 def check_empty_rows(mechanics: Mechanics) -> tuple[tuple[ConstraintRow, ...], list[Mistake | Notice]]:
-    """The rows, those that hold nothing as 0 = 0, and what is to be told of them."""
+    """The rows, those that hold nothing as 0 = 0, and what is to be told of them.
+
+    `parameters_that_count` are numbers here.
+    """
     rows = mechanics.constraints
     usual = _Rows(mechanics) if rows else None
     if usual is None or not usual.known:
@@ -61,7 +112,7 @@ def check_empty_rows(mechanics: Mechanics) -> tuple[tuple[ConstraintRow, ...], l
     empty = [i for i in range(len(rows)) if usual.is_empty(i)]
     if not empty:
         return rows, []
-    others = list(_with_other_parameters(mechanics))
+    others = [_Rows(mechanics.having(values)) for values in _draws(mechanics, set(), OTHERS)]
     told: list[Mistake | Notice] = []
     idle: dict[Span | None, list[str]] = {}
     fitting: dict[Span | None, list[str]] = {}
@@ -77,10 +128,6 @@ def check_empty_rows(mechanics: Mechanics) -> tuple[tuple[ConstraintRow, ...], l
                     row.span,
                 )
             )
-        elif not all(other.is_empty(i) for other in others) and not _stays_open(
-            mechanics, [j for j in empty if rows[j].span == row.span]
-        ):
-            told.append(_vanishing(mechanics, row))
         else:
             taken[i] = replace(row, expression=ZERO)
             group = idle if all(other.holds(i) for other in others) else fitting
@@ -129,32 +176,3 @@ def _says_nothing(names: Sequence[str], rows: Sequence[ConstraintRow]) -> str:
     where = "configurations" if kinds == {"geometric"} else "motions"
     verb = ("is", "says") if len(names) == 1 else ("are", "say")
     return f"{_the_constraints(names)} {verb[0]} zero for all {where} and {verb[1]} nothing"
-
-
-def _vanishing(mechanics: Mechanics, row: ConstraintRow) -> Mistake:
-    """A row whose rank is another for almost all values of the parameters."""
-    index = mechanics.constraints.index(row)
-    named = [
-        name
-        for name, changed in _each_changed(mechanics)
-        if (seen := _Rows(changed)).known and not seen.is_empty(index)
-    ]
-    by = shown_names(named) if named else "several parameters together"
-    return Mistake(
-        f"the constraint `{row.name}` does not depend on the configuration for the default values of the parameters, "
-        f"for others it does: {by} would change the number of constraints",
-        "give defaults for which it counts, or write numbers in place of these parameters",
-        row.span,
-    )
-
-
-def _with_other_parameters(mechanics: Mechanics) -> Iterator[_Rows]:
-    seen = (_Rows(mechanics.having(parameters)) for _, parameters in mechanics.anywhere(ATTEMPTS))
-    yield from islice((rows for rows in seen if rows.known), OTHERS)
-
-
-def _each_changed(mechanics: Mechanics) -> Iterator[tuple[str, Mechanics]]:
-    """The mechanics with one parameter changed."""
-    for _, parameters in mechanics.anywhere(1):
-        for name, value in parameters.items():
-            yield name, mechanics.having({**mechanics.defaults, name: value})

@@ -202,6 +202,7 @@ class Model:
 
     T and U are the energies written in the file plus those of `mechanism`; `assembly` is what loading found out about
     its configurations.  `row_units` are set where rows stand here times 2 to these powers (`dynamics/row_units`).
+    `taken` are parameters of the file that are numbers here (`as_numbers`).
     """
 
     name: str
@@ -231,6 +232,7 @@ class Model:
     trig_range: Literal["normal", "wide"] = "normal"
     assembly: Assembly | None = None
     row_units: tuple[int, ...] = ()
+    taken: tuple[tuple[str, Fraction], ...] = ()
 
     @property
     def c_name(self) -> str:

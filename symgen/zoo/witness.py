@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -81,6 +81,7 @@ class Witness:
         self._start = {**told, **(start or {})}
         self._balls = Balls()
         self._rows: Sequence[int] = range(len(self._system.rows))
+        self._runtime: list[bool] = []
 
     def check(self, folder: Path, count: int = STATES) -> Checked:
         """Everything generated in a folder; nothing is compared where no state is found."""
@@ -93,7 +94,9 @@ class Witness:
         if other is not None and other > SAME:
             findings.append(Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}"))
         largest = 0.0
-        members = (*self._system.parameters, *self._allocation())
+        numbers = self._told(folder).get("parameters_as_numbers", ())
+        members = [name for name in (*self._system.parameters, *self._allocation()) if name not in numbers]
+        self._runtime = [name in members for name in (*self._system.parameters, *self._allocation())]
         self._rows = self._rows_of(folder)
         for target in targets(folder, blocks["model"]):
             if members and len(target.parameters) != len(members):
@@ -122,9 +125,14 @@ class Witness:
             values[name] = value
         return values
 
+    @staticmethod
+    def _told(folder: Path) -> dict[str, Any]:
+        told: dict[str, Any] = json.loads((folder / "derivation.json").read_bytes())
+        return told
+
     def _rows_of(self, folder: Path) -> Sequence[int]:
         """The rows that the files have multipliers of: those that hold in every configuration are left out there."""
-        told = json.loads((folder / "derivation.json").read_bytes())
+        told = self._told(folder)
         names = {name for block in told["blocks"] for name in block["rows"]}
         kept = [index for index, row in enumerate(self._system.rows) if row.name in names]
         return kept if len(kept) == told["sizes"]["r"] else range(len(self._system.rows))
@@ -143,7 +151,8 @@ class Witness:
             truth = self._truth(quantity, given, ranks)
             if truth is None:
                 return 0.0, None
-            answer = target.call(quantity, given, len(truth.value))
+            members = tuple(x for x, used in zip(given.parameters, self._runtime, strict=True) if used)
+            answer = target.call(quantity, replace(given, parameters=members), len(truth.value))
             where = f"{target.name}, {quantity}"
             exact = [float(x.mid()) for x in truth.value]
             if answer.status:

@@ -83,18 +83,74 @@ def test_a_bend_that_no_motion_straightens_is_tied() -> None:
     assert model.assembly.tied == ("twist",)
 
 
-def test_a_row_that_counts_for_other_parameters_is_told_by_them() -> None:
-    """With k there is one more constraint, which some configurations satisfy: kernels for both cannot be one."""
-    text = """model: latch
-coordinates: {a: {unit: rad}, b: {unit: rad}}
-parameters: {k: {value: 0}, l: {value: 2}}
-kinetic_energy: l*(a_dot**2 + b_dot**2)
+LATCH = """model: latch
+coordinates: {{a: {{unit: rad}}, b: {{unit: rad}}, c: {{unit: rad}}}}
+parameters: {{{parameters}}}
+kinetic_energy: l*(a_dot**2 + b_dot**2 + J*c_dot**2)
 constraints:
   geometric:
-    latch: k*(cos(a) - l*sin(b))
+    latch: {row}
+    other: sin(c) - l*cos(a)/9
+inputs: {{drive: {{acts_on: {{b: J}}}}}}
+paths:
+  swing: {{duration: 1, definitions: {{s: J*t}}, conditions: {{one: a - s - l, two: b - s}}}}
 """
-    with pytest.raises(ModelError, match=r"latch.yaml:7:12: .*`latch` .*: `k` would change the number of constraints"):
-        load_text(text, "latch.yaml")
+
+
+def _latch(parameters: str, row: str) -> Model:
+    return load_text(LATCH.format(parameters=parameters, row=row), "latch.yaml")
+
+
+@pytest.mark.parametrize(
+    ("parameters", "row", "taken"),
+    [
+        ("l: 2, J: 3, k: 0", "k*(cos(a) - l*sin(b))", {"k": 0}),
+        ("l: 2, J: 3, k: {value: 0, range: [-1, 1]}", "k*(cos(a) - l*sin(b))", {"k": 0}),
+        ("l: 2, J: {value: l}", "(l - J)*(cos(a) - sin(b))", {"l": 2, "J": 2}),
+        ("l: 2, J: 3, k: 0, e: 0", "k*e*(cos(a) - sin(b))", {"k": 0}),
+        ("l: 2, J: 3, k: {value: l - J + 1}, e: 7", "k*e*(cos(a) - sin(b))", {"k": 0}),
+        ("l: 2, J: 3, k: 0, e: 0", "k*sin(a) + e*sin(b)", {"k": 0, "e": 0}),
+    ],
+)
+def test_what_would_make_an_empty_row_count_is_a_number(parameters: str, row: str, taken: dict[str, int]) -> None:
+    """Kernels for one more constraint are others: no kernel can be given such a value, in whatever it stands."""
+    model = _latch(parameters, row)
+    assert dict(model.taken) == taken
+    assert _rows(model) == {"latch": True, "other": False}
+    assert not {parameter.name for parameter in model.parameters} & taken.keys()
+    left = repr((model.parameters, model.kinetic_energy, model.constraints, model.inputs, model.paths))
+    assert not any(f"Name(name='{name}')" in left for name in taken)
+    told = [notice.message for notice in model.notices if "taken as the number" in notice.message]
+    assert len(told) == len(taken)
+    assert ("in spite of its range" in told[0]) == ("range" in parameters)
+
+
+def test_an_offset_of_nothing_in_a_plane_of_a_frame_that_cannot_turn() -> None:
+    """With an offset the plane would not close at the angle that its axis asks for."""
+    model = load_text(
+        """model: plane
+parameters: {h: {value: 0}, l: {value: 0.5}, g: {value: 9.81}}
+gravity: [0, 0, -g]
+frames:
+  dock: {parent: lid, translation: [0, -0.4, 0], rotation: [[[0, -1, 0], 2.1]]}
+joints:
+  arm: {type: revolute, at: [0.2, 0, 0], axis: [1, 0, 1], coordinate: a}
+  lid: {type: revolute, parent: arm, at: [h, l, 0], axis: y, coordinate: b}
+bodies:
+  arm: {mass: 2, com: [h/2, l/2, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}
+  lid: {mass: 1, com: [h, 0.1, 0.1], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}
+loops:
+  flat: {type: planar, between: [arm, dock], axis: x}
+inputs: {drive: {joint: a}}
+configuration: {a: 0.3, b: 2.1}
+""",
+        "plane.yaml",
+    )
+    assert dict(model.taken) == {"h": 0}
+    assert [parameter.name for parameter in model.parameters] == ["l", "g"]
+    assert model.assembly is not None
+    assert model.assembly.ranks.constraints == 1
+    assert _rows(model)["flat_x"]
 
 
 def test_rows_in_any_units_are_rows() -> None:
