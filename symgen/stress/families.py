@@ -13,7 +13,7 @@ from symgen.stress.dimensions import parameter_dimensions
 from symgen.stress.zeros import BITS as PLACE_BITS
 from symgen.stress.zeros import Place, places
 from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_manifold import onto_manifold
+from symgen.verify.reference_closing import onto_manifold
 from symgen.verify.reference_tape import ball, precision
 from symgen.verify.states import sample_states
 

@@ -15,7 +15,7 @@ from symgen.records import dataclass
 from symgen.stress.dimensions import Dimension, parameter_dimensions
 from symgen.stress.families import Search
 from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_manifold import onto_manifold
+from symgen.verify.reference_closing import onto_manifold
 from symgen.verify.reference_tape import ball, precision
 from symgen.verify.states import sample_states
 

@@ -11,8 +11,9 @@ from flint import arb, arb_mat
 
 from symgen.stress.determinants import Trouble
 from symgen.verify.reference import Reference
+from symgen.verify.reference_closing import onto_manifold
 from symgen.verify.reference_linear import column, identity, norm, solve
-from symgen.verify.reference_manifold import onto_manifold, starts
+from symgen.verify.reference_manifold import starts
 from symgen.verify.reference_system import default_parameters
 from symgen.verify.reference_tape import precision
 

@@ -18,7 +18,7 @@ from flint import arb
 from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Literal, Operand
 from symgen.verify.expected import Expected
 from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_manifold import onto_manifold
+from symgen.verify.reference_closing import onto_manifold
 from symgen.verify.reference_system import ParameterValues
 from symgen.verify.reference_tape import ball, precision
 

@@ -17,6 +17,8 @@ import numpy as np
 
 from symgen.verify.lanes import Lanes
 from symgen.verify.reference import Reference, State
+from symgen.verify.reference_manifold import Ranks
+from symgen.verify.reference_system import System
 from symgen.verify.reference_tape import Replay
 from symgen.verify.regular import REGULAR
 from symgen.verify.states import Sample
@@ -74,7 +76,7 @@ class Surroundings:
     """What lies near the samples of a verification."""
 
     def __init__(self, reference: Reference, samples: Sequence[Sample]) -> None:
-        self._system, self._ranks = reference.system, reference.ranks
+        self._system, self._parts = reference.system, _ranked(reference.system, reference.ranks)
         self._literals = [float(x) for x in reference.literals()]
         states = [sample.state for sample in samples]
         parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u")}
@@ -106,73 +108,139 @@ class Surroundings:
             parts[name] = kept * parts[name] + share * _shifts(dice, parts[name]) * width
         admissible = np.arange(count) // len(self.samples) % 2 == 0 if afresh else start.admissible
         with np.errstate(all="ignore"):
-            return self._settled(Nearby(parts, admissible, start.origins))
+            return self._settled(Nearby(parts, admissible, start.origins), start.parts["q"])
 
-    def _settled(self, states: Nearby) -> Nearby:
-        """Brought onto V, rates and accelerations too where they are to be."""
+    def _settled(self, states: Nearby, start: Lanes) -> Nearby:
+        """Brought onto V, rates and accelerations too where they are to be.
+
+        Of machines side by side those that a step leads nowhere stay where they were.
+        """
         parts, p = dict(states.parts), states.parts["p"]
-        q, good = self._onto_manifold(parts["q"], p)
+        q, shut = self._onto_manifold(parts["q"], p)
         slack = 0.01 * (self._high - self._low)
-        good &= ((q >= self._low - slack) & (q <= self._high + slack)).all(axis=1)
-        rows, control = self._matrices(q, p)
-        good &= np.isfinite(rows).all(axis=(1, 2)) & np.isfinite(control).all(axis=(1, 2))
-        rows[~good], control[~good] = 0.0, 0.0
-        good &= self._is_regular(rows, control)
+        inside = (q >= self._low - slack) & (q <= self._high + slack)
+        good = np.ones(len(q), dtype=bool)
+        for part, blocks in zip(self._parts, self._matrices(q, p), strict=True):
+            these = list(part.coordinates)
+            led = inside[:, these].all(axis=1) & shut[:, these].all(axis=1) & self._is_regular(part, *blocks)
+            if len(self._parts) == 1:
+                good = led
+            else:
+                q[:, these] = np.where(led[:, None], q[:, these], start[:, these])
         parts["q"] = q
         if self._system.r:
             on = states.admissible[:, None]
-            lengths = _lengths(rows)
-            unit = rows / lengths
-            inverse = np.linalg.pinv(unit, rcond=DEPENDENT)
-            qd = parts["qd"] - _times(inverse, _times(unit, parts["qd"]))
-            ahead, behind = (self._matrices(q + side * DIFFERENCE * qd, p)[0] for side in (1, -1))
-            drift = np.nan_to_num(_times((ahead - behind) / (2 * DIFFERENCE) / lengths, qd))
-            qdd = parts["qdd"] - _times(inverse, _times(unit, parts["qdd"]) + drift)
+            rows = [made for made, _ in self._matrices(q, p)]
+            for made in rows:
+                good &= np.isfinite(made).all(axis=(1, 2))
+            lengths = [_lengths(made) for made in rows]
+            units = [_finite(made / length) for made, length in zip(rows, lengths, strict=True)]
+            inverses = [np.linalg.pinv(unit, rcond=DEPENDENT) for unit in units]
+            qd, qdd = parts["qd"].copy(), parts["qdd"].copy()
+            for part, unit, inverse in zip(self._parts, units, inverses, strict=True):
+                these = list(part.coordinates)
+                qd[:, these] -= _times(inverse, _times(unit, qd[:, these]))
+            sides = (self._matrices(q + side * DIFFERENCE * qd, p) for side in (1, -1))
+            for part, length, unit, inverse, (ahead, _), (behind, _) in zip(
+                self._parts, lengths, units, inverses, *sides, strict=True
+            ):
+                these = list(part.coordinates)
+                drift = np.nan_to_num(_times((ahead - behind) / (2 * DIFFERENCE) / length, qd[:, these]))
+                qdd[:, these] -= _times(inverse, _times(unit, qdd[:, these]) + drift)
             parts["qd"], parts["qdd"] = np.where(on, qd, parts["qd"]), np.where(on, qdd, parts["qdd"])
         return Nearby(parts, states.admissible, states.origins).only(good)
 
     def _onto_manifold(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
-        """The places where Newton's method ends, and whether that is on V."""
-        r = self._system.r_geometric
-        good = np.ones(len(q), dtype=bool)
+        """The places where Newton's method ends, and whether the loops of each coordinate are closed there."""
+        r, n = self._system.r_geometric, self._system.n
+        q = q.copy()
+        shut = np.ones(q.shape, dtype=bool)
         for _ in range(NEWTON_STEPS if r else 0):
-            values = self._run(self._system.geometry_replay, q, p)
-            good &= np.isfinite(values).all(axis=1)
-            values[~good] = 0.0
-            rows = values[:, r:].reshape(len(q), r, -1)
-            lengths = _lengths(rows)
-            gaps = values[:, :r] / lengths[:, :, 0]
-            closed = np.abs(gaps).max(axis=1) <= CLOSED
-            if closed.all():
+            made = self._run(self._system.geometry_replay, q, p)
+            steps = []
+            for loop in self._system.loops:
+                these = list(loop.coordinates)
+                rows = _block(made, [[r + i * n + j for j in these] for i in loop.rows])
+                gaps = _block(made, [[i] for i in loop.rows])[:, :, 0]
+                finite = np.isfinite(rows).all(axis=(1, 2)) & np.isfinite(gaps).all(axis=1)
+                rows[~finite], gaps[~finite] = 0.0, 0.0
+                lengths = _lengths(rows)
+                gaps = gaps / lengths[:, :, 0]
+                near = np.abs(gaps).max(axis=1) <= CLOSED
+                shut[:, these] = (finite & near)[:, None]
+                if not near.all():
+                    steps.append((these, _times(np.linalg.pinv(rows / lengths, rcond=DEPENDENT), gaps)))
+            if not steps:
                 break
-            q = q - _times(np.linalg.pinv(rows / lengths, rcond=DEPENDENT), gaps)
-        return q, good & closed if r else good
+            for these, step in steps:
+                q[:, these] -= step
+        return q, shut
 
-    def _is_regular(self, rows: Lanes, control: Lanes) -> Lanes:
+    def _is_regular(self, part: _Ranked, rows: Lanes, control: Lanes) -> Lanes:
         """Whether rows, and inputs along what the rows leave free, are as far from dependent as regular states are."""
-        rank, reached = self._ranks.constraints, self._ranks.actuation
+        good: Lanes = np.isfinite(rows).all(axis=(1, 2)) & np.isfinite(control).all(axis=(1, 2))
+        rows, control = rows.copy(), control.copy()
+        rows[~good], control[~good] = 0.0, 0.0
         count, r, n = rows.shape
-        good, free = np.ones(count, dtype=bool), np.broadcast_to(np.eye(n), (count, n, n))
+        free = np.broadcast_to(np.eye(n), (count, n, n))
         if r:
             sizes, directions = np.linalg.svd(rows / _lengths(rows))[1:]
+            rank = part.constraints
             good &= sizes[:, rank - 1] >= REGULAR * sizes[:, 0] if rank else True
             free = directions[:, rank:]
-        if reached:
+        if part.actuation:
             columns = np.swapaxes(control, 1, 2)
             moved = free @ np.swapaxes(columns / _lengths(columns), 1, 2)
-            good &= np.linalg.svd(moved, compute_uv=False)[:, reached - 1] >= REGULAR
+            good &= np.linalg.svd(moved, compute_uv=False)[:, part.actuation - 1] >= REGULAR
         return good
 
-    def _matrices(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
-        """B and M."""
+    def _matrices(self, q: Lanes, p: Lanes) -> list[tuple[Lanes, Lanes]]:
+        """B and M of each part."""
         n, m, r = self._system.n, self._system.m, self._system.r
-        values = self._run(self._system.matrices_replay, q, p)
-        return values[:, : r * n].reshape(len(q), r, n), values[:, r * n :].reshape(len(q), n, m)
+        made = self._run(self._system.matrices_replay, q, p)
+        return [
+            (
+                _block(made, [[i * n + j for j in part.coordinates] for i in part.rows], len(part.coordinates)),
+                _block(made, [[r * n + j * m + k for k in part.inputs] for j in part.coordinates], len(part.inputs)),
+            )
+            for part in self._parts
+        ]
 
-    def _run(self, replay: Replay, q: Lanes, p: Lanes) -> Lanes:
-        """The outputs of a replay in columns; none of those that are run here reads rates."""
+    def _run(self, replay: Replay, q: Lanes, p: Lanes) -> list[Lanes]:
+        """The outputs of a replay; none of those that are run here reads rates."""
         made = replay.run([*q.T, *([None] * self._system.n), *p.T, *self._literals], _FUNCTIONS)
-        return np.stack([np.broadcast_to(x, len(q)) for x in made], axis=1) if made else np.empty((len(q), 0))
+        return [np.broadcast_to(x, len(q)) for x in made] or [np.zeros(len(q))]
+
+
+@dataclass(frozen=True)
+class _Ranked:
+    """A part of the system with the ranks of its rows and of its inputs along what these leave free."""
+
+    coordinates: Sequence[int]
+    rows: Sequence[int]
+    inputs: Sequence[int]
+    constraints: int
+    actuation: int
+
+
+def _ranked(system: System, ranks: Ranks) -> list[_Ranked]:
+    """The parts of a system; all of it where it is not known which parts lack ranks."""
+    if len(ranks.of_parts) != len(system.parts):
+        return [_Ranked(range(system.n), range(system.r), range(system.m), ranks.constraints, ranks.actuation)]
+    pairs = zip(system.parts, ranks.of_parts, strict=True)
+    return [_Ranked(part.coordinates, part.rows, part.inputs, *own) for part, own in pairs]
+
+
+def _block(made: Sequence[Lanes], places: Sequence[Sequence[int]], columns: int = 1) -> Lanes:
+    """A matrix at each state, of numbers by their places; without rows it still has columns."""
+    count = len(made[0])
+    if not places or not places[0]:
+        return np.zeros((count, len(places), columns if not places else 0))
+    return np.stack([np.stack([made[k] for k in row], axis=1) for row in places], axis=1)
+
+
+def _finite(values: Lanes) -> Lanes:
+    return np.where(np.isfinite(values), values, 0.0)
 
 
 def _rows(values: Sequence[Sequence[Any]]) -> Lanes:

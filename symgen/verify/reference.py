@@ -7,7 +7,8 @@ nothing with the derivation of kernels.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeAlias
@@ -18,6 +19,7 @@ from symgen.model.model import Model
 from symgen.verify.reference_evaluation import Evaluation
 from symgen.verify.reference_linear import square
 from symgen.verify.reference_manifold import Ranks, generic_ranks
+from symgen.verify.reference_measures import measures_of_parts
 from symgen.verify.reference_quantities import QUANTITIES, offered
 from symgen.verify.reference_system import System
 from symgen.verify.reference_tape import ball, precision
@@ -97,10 +99,20 @@ class Reference:
 
         `literals` replace the values of the model's literals.
         """
+        with precision(bits), self._ranks_may_drop():
+            evaluation = self.evaluation(state, literals)
+            return {name: QUANTITIES[name](evaluation) for name in quantities}
+
+    def measured(self, state: State, quantities: Sequence[str], bits: int) -> tuple[dict[str, Any], list[Any]]:
+        """Like `matrices`, and both measures of each part of the system, as balls."""
+        with precision(bits), self._ranks_may_drop():
+            evaluation = self.evaluation(state)
+            return {name: QUANTITIES[name](evaluation) for name in quantities}, measures_of_parts(evaluation)
+
+    @contextmanager
+    def _ranks_may_drop(self) -> Iterator[None]:
         try:
-            with precision(bits):
-                evaluation = self.evaluation(state, literals)
-                return {name: QUANTITIES[name](evaluation) for name in quantities}
+            yield
         except ZeroDivisionError as fault:
             raise ReferenceValueError(f"{self.model.name}: a rank drops at this state") from fault
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from flint import arb_mat
@@ -10,6 +11,7 @@ from flint import arb_mat
 from symgen.model.expression import Expression
 from symgen.model.mechanism import Mechanism
 from symgen.verify.reference_frames import Frames
+from symgen.verify.reference_parts import Part, placed
 from symgen.verify.reference_tape import Register
 from symgen.verify.reference_taylor import CONSTANT
 from symgen.verify.reference_translation import Translation
@@ -18,19 +20,67 @@ BLOCK = 6  # rows of the Jacobian of a body
 WEIGHTS = 10  # its mass and the entries of its inertia
 
 
+@dataclass(frozen=True)
+class BodyJacobian:
+    """Velocities of centres in world axes and turning rates in body axes by the rates, 6 rows a body.
+
+    Bodies of machines side by side do not feel the coordinates of the others: a matrix for each part.
+    """
+
+    parts: Sequence[Part]
+    pieces: Sequence[Any]
+    n: int
+
+    def mass(self, weights: Sequence[Any]) -> Any:
+        """G (n x n) of all bodies, by their masses and inertias."""
+        found = []
+        for part, rows in zip(self.parts, self.pieces, strict=True):
+            own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
+            found.append((part.coordinates, part.coordinates, rows.transpose() * _weighted(rows, own)))
+        return placed(self.n, self.n, found)
+
+    def force(self, wrenches: Sequence[Any]) -> Any:
+        """What forces on the centres and torques in body axes load the coordinates with (n x 1)."""
+        found = []
+        for part, rows in zip(self.parts, self.pieces, strict=True):
+            own = [x for k in part.bodies for x in wrenches[BLOCK * k : BLOCK * (k + 1)]]
+            found.append((part.coordinates, (0,), rows.transpose() * arb_mat(len(own), 1, own)))
+        return placed(self.n, 1, found)
+
+
 class BodyReplay:
     """Registers of the Jacobian and the weights of every body, from frames to first order in the coordinates."""
 
     def __init__(self, mechanism: Mechanism, frames: Frames, plain: Translation, n: int) -> None:
-        zero = plain.algebra.tape.zero
-        self.jacobian: list[Register] = []
+        self._zero = plain.algebra.tape.zero
+        self._n = n
+        self._rows: list[list[dict[int, Register]]] = []
         self.weights: list[Register] = []
         for body in mechanism.bodies:
-            for place in frames.center(body):
-                self.jacobian += [place.get(((j,), ()), zero) for j in range(n)]
-            for rate in frames.turning(body):
-                self.jacobian += [rate.get(((), (j,)), zero) for j in range(n)]
+            centre = [{j: place[(j,), ()] for j in range(n) if ((j,), ()) in place} for place in frames.center(body)]
+            turning = [{j: rate[(), (j,)] for j in range(n) if ((), (j,)) in rate} for rate in frames.turning(body)]
+            self._rows.append([*centre, *turning])
             self.weights += constants(plain, [body.mass, *(entry for row in body.inertia.rows for entry in row)])
+
+    def moved(self) -> list[set[int]]:
+        """The coordinates that move each body."""
+        return [{j for row in rows for j, x in row.items() if x != self._zero} for rows in self._rows]
+
+    def needed(self, parts: Sequence[Part]) -> list[Register]:
+        """The Jacobians of the bodies of each part by its coordinates, row by row."""
+        zero = self._zero
+        return [
+            row.get(j, zero) for part in parts for k in part.bodies for row in self._rows[k] for j in part.coordinates
+        ]
+
+    def at(self, parts: Sequence[Part], values: Sequence[Any]) -> BodyJacobian:
+        """The Jacobian from the values of what is needed."""
+        pieces, start = [], 0
+        for part in parts:
+            rows, columns = BLOCK * len(part.bodies), len(part.coordinates)
+            pieces.append(arb_mat(rows, columns, values[start : start + rows * columns]))
+            start += rows * columns
+        return BodyJacobian(parts, pieces, self._n)
 
 
 def constants(plain: Translation, expressions: Sequence[Expression]) -> list[Register]:
@@ -39,7 +89,7 @@ def constants(plain: Translation, expressions: Sequence[Expression]) -> list[Reg
     return [plain.polynomial(expression).get(CONSTANT, zero) for expression in expressions]
 
 
-def weighted(rows: Any, weights: Sequence[Any]) -> Any:
+def _weighted(rows: Any, weights: Sequence[Any]) -> Any:
     """Velocities of centres times masses and turning rates times inertias, for each column of `rows`."""
     columns = rows.ncols()
     table = rows.tolist()

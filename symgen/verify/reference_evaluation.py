@@ -14,16 +14,16 @@ from typing import Any, TypeAlias
 
 from flint import arb_mat, ctx
 
+from symgen.verify.reference_blocks import pseudoinverse_of_parts, right_pseudoinverse_of_parts
 from symgen.verify.reference_linear import (
     column,
     columns_of,
     identity,
-    pseudoinverse,
-    right_pseudoinverse,
     rows_of,
     solve,
 )
 from symgen.verify.reference_manifold import Ranks
+from symgen.verify.reference_parts import piece, placed
 from symgen.verify.reference_system import Configuration, System
 from symgen.verify.reference_tape import precision
 from symgen.verify.reference_translation import literal_values
@@ -95,7 +95,7 @@ class Evaluation:
         """
         rank = self.ranks.constraints
         try:
-            return right_pseudoinverse(self.at.constraints, rank)
+            return right_pseudoinverse_of_parts(self.at.constraints, rank, self.system.parts)
         except ZeroDivisionError:
             if rank == self.system.r:
                 raise
@@ -105,13 +105,25 @@ class Evaluation:
                 literals = literal_values(self.system.literals) if self.own_literals else self.literals
                 constraints, _ = self.system.matrices(self.q, self.parameters, literals)
                 with suppress(ZeroDivisionError):
-                    return right_pseudoinverse(constraints, rank)
+                    return right_pseudoinverse_of_parts(constraints, rank, self.system.parts)
         raise ZeroDivisionError("the constraints may be of lower rank")
 
     @cached_property
     def projector_off(self) -> Any:
         """P = B+B."""
-        return self.inverse * self.at.constraints
+        inverse, constraints = self.inverse, self.at.constraints
+        return placed(
+            self.system.n,
+            self.system.n,
+            (
+                (
+                    part.coordinates,
+                    part.coordinates,
+                    piece(inverse, part.coordinates, part.rows) * piece(constraints, part.rows, part.coordinates),
+                )
+                for part in self.system.parts
+            ),
+        )
 
     @cached_property
     def projector(self) -> Any:
@@ -174,8 +186,15 @@ class Evaluation:
     @cached_property
     def weighted(self) -> Any:
         """Z (symmetric): N_BG = Z G."""
-        inner = self.projector * self.at.mass * self.projector + self.projector_off
-        return self.projector * solve(inner, self.projector)
+        found = []
+        for part in self.system.heavy:
+            mass, projector, off = (
+                piece(matrix, part.coordinates, part.coordinates)
+                for matrix in (self.at.mass, self.projector, self.projector_off)
+            )
+            inverse = projector * solve(projector * mass * projector + off, projector)
+            found.append((part.coordinates, part.coordinates, inverse))
+        return placed(self.system.n, self.system.n, found)
 
     @cached_property
     def projected_control(self) -> Any:
@@ -187,9 +206,14 @@ class Evaluation:
         """M~+ (27), (28), at the generic degree of actuation."""
         full = self.ranks.actuation == self.system.n - self.ranks.constraints < self.system.m
         if full:  # range(N M) = ker B: (M~ M~' + P) is regular
-            gram = self.projected_control * self.projected_control.transpose() + self.projector_off
-            return solve(gram, self.projected_control).transpose()
-        return pseudoinverse(self.projected_control, self.ranks.actuation)
+            found = []
+            for part in self.system.parts:
+                control = piece(self.projected_control, part.coordinates, part.inputs)
+                off = piece(self.projector_off, part.coordinates, part.coordinates)
+                inverse = solve(control * control.transpose() + off, control).transpose()
+                found.append((part.inputs, part.coordinates, inverse))
+            return placed(self.system.m, self.system.n, found)
+        return pseudoinverse_of_parts(self.projected_control, self.ranks.actuation, self.system.parts)
 
     @cached_property
     def accelerations(self) -> Any:

@@ -7,7 +7,8 @@ ZeroDivisionError.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 from math import hypot
 from typing import Any
 
@@ -16,7 +17,10 @@ from flint import arb, arb_mat, ctx
 
 def identity(n: int) -> Any:
     """The n x n identity."""
-    return arb_mat(n, n, [int(i == j) for i in range(n) for j in range(n)])
+    matrix = arb_mat(n, n)
+    for i in range(n):
+        matrix[i, i] = 1
+    return matrix
 
 
 def column(values: Sequence[Any]) -> Any:
@@ -82,18 +86,34 @@ def right_pseudoinverse(matrix: Any, rank: int) -> Any:
     if rank == r:
         return solve(gram, matrix).transpose()
     minors = sums_of_minors(gram)
-    gradient = identity(r)
-    for size in range(1, rank):
-        gradient = identity(r) * minors[size] - gram * gradient
-    total = minors[rank]
-    # rows in units far apart lose digits with the power of their sizes: half of the working precision is to be left
+    *_, gradient = gradients_of_minors(gram, minors, rank)
+    check_total(minors[rank])
+    return matrix.transpose() * gradient * (1 / minors[rank])
+
+
+def gradients_of_minors(gram: Any, minors: Sequence[Any], most: int) -> Iterator[Any]:
+    """The derivatives of the sums of the principal minors of the sizes from 1 to `most` by the matrix."""
+    one = identity(gram.nrows())
+    gradient = one
+    for size in range(1, most + 1):
+        yield gradient
+        if size < most:
+            gradient = one * minors[size] - gram * gradient
+
+
+def check_total(total: Any) -> None:
+    """ZeroDivisionError where a sum of minors may vanish.
+
+    Rows in units far apart lose digits with the power of their sizes: half of the working precision is to be left.
+    """
     if total.rel_accuracy_bits() < ctx.prec // 2:
         raise ZeroDivisionError("the matrix may be of lower rank")
-    return matrix.transpose() * gradient * (1 / total)
 
 
 def sums_of_minors(gram: Any) -> list[Any]:
     """The sums of the principal minors of each size from 0 on, as coefficients of the characteristic polynomial."""
+    if not gram.nrows():
+        return [arb(1)]
     coefficients = list(gram.charpoly())[::-1]
     return [-value if size % 2 else value for size, value in enumerate(coefficients)]
 
@@ -114,19 +134,26 @@ def pseudoinverse(matrix: Any, rank: int) -> Any:
 
 
 def independent_columns(matrix: Any, rank: int) -> list[int]:
-    """`rank` columns by pivoting on the largest remaining one (modified Gram-Schmidt on midpoints)."""
-    columns = [[arb(entry.mid()) for entry in row] for row in matrix.transpose().tolist()]
-    chosen: list[int] = []
-    for _ in range(rank):
-        squares = [sum((x * x for x in c), arb(0)) for c in columns]
-        pivot = max((j for j in range(len(columns)) if j not in chosen), key=lambda j: float(squares[j].mid()))
-        chosen.append(pivot)
-        direction = columns[pivot]
-        for j, other in enumerate(columns):
-            if j not in chosen:
-                share = (sum((x * y for x, y in zip(direction, other, strict=True)), arb(0)) / squares[pivot]).mid()
-                columns[j] = [arb((y - share * x).mid()) for x, y in zip(direction, other, strict=True)]
-    return sorted(chosen)
+    """`rank` columns by pivoting on the largest remaining one."""
+    chosen = sorted(column for _, column in islice(pivots(matrix), rank))
+    if len(chosen) < rank:
+        raise ZeroDivisionError("the matrix is of lower rank")
+    return chosen
+
+
+def pivots(matrix: Any) -> Iterator[tuple[float, int]]:
+    """Columns by what is left of their squares, the largest first (modified Gram-Schmidt on midpoints), down to 0."""
+    left = {j: [arb(entry.mid()) for entry in row] for j, row in enumerate(matrix.transpose().tolist())}
+    while left:
+        squares = {j: sum((x * x for x in c), arb(0)) for j, c in left.items()}
+        pivot = max(left, key=lambda j: float(squares[j].mid()))
+        if not float(squares[pivot].mid()):
+            return
+        yield float(squares[pivot].mid()), pivot
+        direction = left.pop(pivot)
+        for j, other in left.items():
+            share = (sum((x * y for x, y in zip(direction, other, strict=True)), arb(0)) / squares[pivot]).mid()
+            left[j] = [arb((y - share * x).mid()) for x, y in zip(direction, other, strict=True)]
 
 
 RANK_NOISE = -100
@@ -144,25 +171,35 @@ def independent_rows(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SI
 
     None when a pivot falls between (the point is too close to a singularity to tell).
     """
-    rows = [[arb(entry.mid()) for entry in row] for row in matrix.tolist()]
-    sizes = [max((float(abs(entry)) for entry in row), default=0.0) for row in rows]
+    rows = [{j: arb(x.mid()) for j, x in enumerate(row) if x.mid() != 0} for row in matrix.tolist()]
+    sizes = [max((float(abs(entry)) for entry in row.values()), default=0.0) for row in rows]
     largest = max(sizes, default=0.0)
     left = {
-        i: [entry / size for entry in row]
+        i: {j: entry / size for j, entry in row.items()}
         for i, (row, size) in enumerate(zip(rows, sizes, strict=True))
         if size > largest * 2.0**noise
     }
+    # rows of many machines have few entries: only those that an elimination touches are looked at again
+    heads = {i: _largest(row) for i, row in left.items()}
     chosen: list[int] = []
     while left:
-        size, i, j = max((float(abs(entry).mid()), i, j) for i, row in left.items() for j, entry in enumerate(row))
+        size, i, j = max((size, i, j) for i, (size, j) in heads.items())
         if size < 2.0**noise:
             break
         if size < 2.0**signal:
             return None
         pivot = left.pop(i)
-        left = {
-            k: [arb((x - row[j] / pivot[j] * y).mid()) for x, y in zip(row, pivot, strict=True)]
-            for k, row in left.items()
-        }
+        del heads[i]
+        for k, row in left.items():
+            if j in row:
+                share = row[j] / pivot[j]
+                for place, y in pivot.items():
+                    row[place] = arb((row.get(place, arb(0)) - share * y).mid())
+                heads[k] = _largest(row)
         chosen.append(i)
     return sorted(chosen)
+
+
+def _largest(row: Mapping[int, Any]) -> tuple[float, int]:
+    """The size of the largest entry, and where it stands."""
+    return max(((float(abs(entry).mid()), j) for j, entry in row.items()), default=(0.0, 0))

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import frexp, inf
+from dataclasses import dataclass, field
 from typing import Any
 
 from flint import arb_mat
 
+from symgen.verify.reference_closing import onto_manifold, powers
 from symgen.verify.reference_linear import (
     RANK_NOISE,
     RANK_SIGNAL,
-    column,
-    identity,
     independent_rows,
-    norm,
     numerical_rank,
     right_pseudoinverse,
     rows_of,
-    solve,
 )
+from symgen.verify.reference_parts import piece, placed
 from symgen.verify.reference_system import System, default_parameters
 from symgen.verify.reference_tape import precision
 from symgen.verify.reference_translation import literal_values
@@ -29,11 +26,7 @@ from symgen.verify.reference_translation import literal_values
 RANK_BITS = 256
 RANK_STARTS = 24
 RANK_POINTS = 6
-MOST_STEPS = 60
-MOST_SLOW_STEPS = 6
-MOST_DAMPING = 1e6
-# What rounded lengths leave open of a closed loop, relative to the rows' lengths; thresholds for ranks there.
-ROUNDED = 1e-13
+# Thresholds for ranks where lengths are rounded.
 ROUNDED_NOISE, ROUNDED_SIGNAL = -36, -20
 
 
@@ -42,97 +35,14 @@ class Ranks:
     """Generic ranks: of B, of its geometric rows, and of F'M (the degree of actuation).
 
     `rounded` says that loops close up to rounding only: an overconstrained linkage whose lengths are rounded numbers.
+    `of_parts` are the ranks of B and of F'M of each part of the system, where they are known.
     """
 
     constraints: int
     geometric: int
     actuation: int
     rounded: bool = False
-
-
-def onto_manifold(
-    system: System,
-    start: Sequence[Any],
-    parameters: Sequence[Any],
-    literals: Sequence[Any],
-    tolerance: float = 1e-30,
-    rounded: bool = False,
-) -> list[Any] | None:
-    """A point with |g| <= `tolerance` near `start`, by Levenberg-Marquardt; None when it does not converge.
-
-    Steps are numbers, not bounds: only where they end is |g| looked at.  Rows may depend on each other: the damping
-    falls with |g|, so that the step has least norm and convergence stays superlinear where dg/dq keeps its rank on V.
-    Where loops are `rounded`, what rounding leaves of |g| is near enough.  Rows count in powers of 2 of their usual
-    size, so that a row in other units is the same row.
-    """
-    q = column(start)
-    if system.r_geometric == 0:
-        return list(q.entries())
-    residual, jacobian = system.geometry(q.entries(), parameters, literals)
-    units = _units(system, jacobian)
-    residual, jacobian = units * residual, units * jacobian
-    size = norm(residual)
-    damping = 1e-3
-    slow = 0
-    for _ in range(MOST_STEPS):
-        if size <= tolerance:
-            break
-        step = _step(residual.mid(), jacobian.mid(), damping)
-        if step is None:
-            damping *= 10
-            continue
-        trial = (q - step).mid()
-        residual_trial, jacobian_trial = (units * x for x in system.geometry(trial.entries(), parameters, literals))
-        size_trial = norm(residual_trial)
-        slow = slow + 1 if not size_trial <= 0.9 * size else 0
-        if slow > MOST_SLOW_STEPS or damping > MOST_DAMPING:
-            break
-        if size_trial < size:
-            q, residual, jacobian = trial, residual_trial, jacobian_trial
-            damping = max(damping * min(0.03, size_trial / size), 1e-25)
-            size = size_trial
-        else:
-            damping *= 10
-    near = ROUNDED * norm(jacobian) * max(1.0, norm(q)) if rounded else 0.0
-    return [entry.mid() for entry in q.entries()] if size <= max(tolerance, near) else None
-
-
-def _step(residual: Any, jacobian: Any, damping: float) -> Any:
-    """J' (J J' + shift)^-1 g (n x 1); None where rounding leaves the matrix singular, so that more damping is due."""
-    gram = (jacobian * jacobian.transpose()).mid()
-    shift = damping * max(float(gram.trace()) / gram.nrows(), 1e-30)
-    try:
-        return jacobian.transpose() * solve(gram + identity(gram.nrows()) * shift, residual)
-    except ZeroDivisionError:
-        return None
-
-
-def admissible(
-    system: System, q: Sequence[Any], shift: Sequence[float], parameters: Sequence[Any], literals: Sequence[Any]
-) -> list[Any]:
-    """The part of a shift that leaves the geometric rows as they are to first order; rows may depend on each other."""
-    jacobian = system.geometry(column(q).entries(), parameters, literals)[1].mid()
-    units = _units(system, jacobian)
-    moved = column(shift)
-    step = _step(units * jacobian * moved, units * jacobian, 1e-25)
-    return list((moved if step is None else moved - step).mid().entries())
-
-
-def _units(system: System, jacobian: Any) -> Any:
-    """Diagonal of factors that bring rows to ordinary size.
-
-    Where loading found what rows usually are that counts: of some nothing but rounding is left on V.
-    """
-    if system.model.assembly is not None and system.model.assembly.units:
-        return _powers(system.model.assembly.units[: system.r_geometric])
-    sizes = [max((abs(float(entry)) for entry in row), default=0.0) for row in jacobian.tolist()]
-    return _powers([-frexp(size)[1] if 0 < size < inf else 0 for size in sizes])
-
-
-def _powers(exponents: Sequence[int]) -> Any:
-    """Powers of 2 on a diagonal."""
-    count = len(exponents)
-    return arb_mat(count, count, [2.0 ** exponents[i] if i == j else 0 for i in range(count) for j in range(count)])
+    of_parts: tuple[tuple[int, int], ...] = field(default=(), compare=False)
 
 
 def generic_ranks(system: System) -> Ranks | None:
@@ -163,7 +73,8 @@ def _found_ranks(system: System, rounded: bool) -> Ranks | None:
         return None
     constraints = max(ranks.constraints for ranks in found)
     regular = [ranks for ranks in found if ranks.constraints == constraints]
-    return Ranks(constraints, max(r.geometric for r in regular), max(r.actuation for r in regular), rounded)
+    best = max(regular, key=lambda ranks: ranks.actuation)
+    return Ranks(constraints, max(r.geometric for r in regular), best.actuation, rounded, best.of_parts)
 
 
 def exceeds(
@@ -199,27 +110,41 @@ def _ranks_at(
 ) -> Ranks | None:
     """Ranks at one point of V; the degree of actuation is rank [B; M'] minus rank B."""
     noise, signal = (ROUNDED_NOISE, ROUNDED_SIGNAL) if rounded else (RANK_NOISE, RANK_SIGNAL)
-    at = system.configuration(q, parameters, literals)
+    constraints, control = system.matrices(q, parameters, literals)
     # beside rows in units of their own others would count as what rounding leaves of none
-    known = system.model.assembly
-    constraints = at.constraints if known is None else _powers(known.units) * at.constraints
+    if system.model.assembly is not None:
+        constraints = powers(system.model.assembly.units) * constraints
     rows = independent_rows(constraints, noise, signal)
     geometric = numerical_rank(rows_of(constraints, range(system.r_geometric)), noise, signal)
     if rows is None or geometric is None:
         return None
-    # on V they span all rows: the sums over all subsets of rows in other units lose far more digits
-    basis = rows_of(constraints, rows)
     try:
-        projected = at.control - right_pseudoinverse(basis, len(rows)) * (basis * at.control)
+        projected = _projected(system, constraints, control, rows)
     except ZeroDivisionError:
         return None
     # an input that only loads the constraints leaves rounding alone, which is no direction of motion
-    sizes = [_size(at.control, j) for j in range(system.m)]
+    sizes = [_size(control, j) for j in range(system.m)]
     moving = [j for j in range(system.m) if _size(projected, j) > sizes[j] * 2.0**noise]
     # units of inputs are no measure of each other
     entries = [projected[i, j] / sizes[j] for i in range(system.n) for j in moving]
-    actuation = numerical_rank(arb_mat(system.n, len(moving), entries), noise, signal) if moving else 0
-    return None if actuation is None else Ranks(len(rows), geometric, actuation)
+    reached = independent_rows(arb_mat(system.n, len(moving), entries), noise, signal) if moving else []
+    if reached is None:
+        return None
+    of_parts = (
+        (len({*rows} & {*part.rows}), len({*reached} & {*part.coordinates})) for part in system.parts
+    )
+    return Ranks(len(rows), geometric, len(reached), rounded, tuple(of_parts))
+
+
+def _projected(system: System, constraints: Any, control: Any, rows: Sequence[int]) -> Any:
+    """N M by rows that span all: on V, where sums over all subsets of rows in other units lose far more digits."""
+    found = []
+    for part in system.parts:
+        own = piece(control, part.coordinates, part.inputs)
+        basis = piece(constraints, [i for i in part.rows if i in rows], part.coordinates)
+        held = right_pseudoinverse(basis, basis.nrows()) * (basis * own)
+        found.append((part.coordinates, part.inputs, own - held))
+    return placed(system.n, system.m, found)
 
 
 def _size(matrix: Any, column: int) -> float:

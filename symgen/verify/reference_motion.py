@@ -17,7 +17,7 @@ from flint import arb_mat
 from symgen.model.expression import Number, Pi
 from symgen.model.mechanism import Body, component
 from symgen.model.model import Model
-from symgen.verify.reference_bodies import constants
+from symgen.verify.reference_bodies import BodyJacobian, constants
 from symgen.verify.reference_frames import Frames
 from symgen.verify.reference_tape import Register, Tape, replay_of
 from symgen.verify.reference_taylor import CONSTANT, Monomial, Polynomial, Taylor
@@ -49,7 +49,7 @@ class Motion:
         velocity: Sequence[Any],
         parameters: Sequence[Any],
         literals: Sequence[Any],
-        jacobian: Any,
+        jacobian: BodyJacobian,
     ) -> tuple[Any, Any]:
         """C v (n x 1) and B_dot v (r x 1); `jacobian` is that of the bodies at q."""
         values = self._replay.run([*q, *velocity, *parameters, *literals])
@@ -57,7 +57,7 @@ class Motion:
         force = arb_mat(n, 1, values[r : r + n])
         wrenches = values[r + n :]
         if wrenches:
-            force = force + jacobian.transpose() * arb_mat(len(wrenches), 1, wrenches)
+            force = force + jacobian.force(wrenches)
         return force, arb_mat(r, 1, values[:r])
 
     def _constraint_bias(self, index: int) -> Register:

@@ -20,10 +20,11 @@ from flint import arb_mat
 from symgen.model.expression import Expression
 from symgen.model.mechanism import component
 from symgen.model.model import Model
-from symgen.verify.reference_bodies import BodyReplay, weighted
+from symgen.verify.reference_bodies import BodyJacobian, BodyReplay
 from symgen.verify.reference_frames import Frames
 from symgen.verify.reference_gradients import Gradients
 from symgen.verify.reference_motion import Motion
+from symgen.verify.reference_parts import parts, touched
 from symgen.verify.reference_tape import Register, Replay, Tape, ball, replay_of
 from symgen.verify.reference_taylor import CONSTANT, Polynomial, Taylor
 from symgen.verify.reference_translation import Translation, literals_of, translation, uses_components
@@ -70,7 +71,7 @@ class Configuration:
     residual: Any  # r_g x 1
     control: Any  # n x m
     potential_gradient: Any  # n x 1
-    jacobian: Any  # 6 rows a body x n: velocities of centres in world axes, turning rates in body axes
+    jacobian: BodyJacobian
     weights: Any  # 10 a body x 1: its mass and the entries of its inertia
 
     @cached_property
@@ -78,7 +79,7 @@ class Configuration:
         """G (n x n)."""
         if not self.weights.nrows():
             return self.written_mass
-        return self.written_mass + self.jacobian.transpose() * weighted(self.jacobian, self.weights.entries())
+        return self.written_mass + self.jacobian.mass(self.weights.entries())
 
 
 class System:
@@ -105,11 +106,11 @@ class System:
             [residual for _, residual in rows[: self.r_geometric]],
             self._control(),
             [potential.get(((k,), ()), zero) for k in range(n)],
-            self._bodies.jacobian,
             self._bodies.weights,
         ]
-        count = len(model.mechanism.bodies)
-        self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (6 * count, n), (10 * count, 1))
+        self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (len(blocks[5]), 1))
+        self._set_parts(blocks)
+        blocks.append(self._bodies.needed(self.heavy))
         self._configuration = replay_of(self._tape, [x for block in blocks for x in block])
         self.geometry_replay = replay_of(self._tape, [*blocks[2], *blocks[1][: self.r_geometric * n]])
         self.matrices_replay = replay_of(self._tape, [*blocks[1], *blocks[3]])
@@ -123,7 +124,22 @@ class System:
             end = start + rows * columns
             matrices.append(arb_mat(rows, columns, values[start:end]))
             start = end
-        return Configuration(*matrices)
+        mass, constraints, residual, control, gradient, weights = matrices
+        bodies = self._bodies.at(self.heavy, values[start:])
+        return Configuration(mass, constraints, residual, control, gradient, bodies, weights)
+
+    def _set_parts(self, blocks: Sequence[Sequence[Register]]) -> None:
+        """What nothing couples: by geometric rows (`loops`), by rows and inputs (`parts`), by masses too (`heavy`)."""
+        n, zero = self.n, self._tape.zero
+        mass, constraints, _, control, *_ = blocks
+        rows = touched(constraints, n, zero)
+        inputs = [[k for k in range(n) if control[k * self.m + j] != zero] for j in range(self.m)]
+        pairs = [(i, j) for i, these in enumerate(touched(mass, n, zero)) for j in these]
+        bodies = self._bodies.moved()
+        found = parts(n, rows[: self.r_geometric])
+        self.loops = tuple(part for part in found if part.rows)
+        self.parts = parts(n, rows, inputs)
+        self.heavy = parts(n, rows, inputs, bodies, pairs)
 
     def matrices(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
         """B (r x n) and M (n x m) at q."""

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, pi, sqrt
 from typing import Any
 
 from symgen.model.names import shown_names
 from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_manifold import admissible, exceeds, onto_manifold, starts
+from symgen.verify.reference_closing import admissible, closed
+from symgen.verify.reference_manifold import exceeds, starts
+from symgen.verify.reference_parts import Part
 from symgen.verify.reference_system import ParameterValues, default_parameters
 from symgen.verify.reference_tape import ball
 
@@ -30,6 +32,8 @@ TYPICAL_POINTS = 8
 PROJECTED = ("admissible_velocity", "admissible_acceleration")
 # Steps along V, in widths of the ranges.
 LONGEST_STEP, SHORTEST_STEP = 0.2, 1e-5
+# Starts of the parts of a system that lead elsewhere than to regular states, while the others stay.
+ATTEMPTS = 12
 CLOSED, BRANCH, TURNED = "do not close", "lie on other branches", "lie turns outside of the ranges"
 VALUE, SINGULAR = "have no value", "are singular"
 
@@ -46,7 +50,7 @@ class Regular:
 
 @dataclass(frozen=True, slots=True)
 class _Sizes:
-    """What tells how far from singular a configuration is: both measures, and the length of each row of B."""
+    """What tells how far from singular a configuration is: both measures of each part, the length of each row of B."""
 
     measures: Sequence[float]
     rows: Sequence[float]
@@ -69,9 +73,13 @@ class Search:
         tied = () if self._known is None else self._known.tied
         ranged = [p.name for p in reference.model.parameters if p.range is not None and p.name not in tied]
         self._varied = ParameterValues(reference.model, ranged)
+        self._owners: Sequence[Part] = ()
         self._least = self._limits()
         self._kept = {True: 0, False: 0}
         self._met: list[_Sizes] = []
+        # where the last start led, and coordinates of the parts that are not to stay there
+        self._reached: list[Any] = []
+        self._wanting: set[int] = set()
         self._ends: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
 
@@ -126,20 +134,51 @@ class Search:
             yield found[1:]
 
     def _found(self, start: Sequence[Any], exact: Sequence[Any]) -> tuple[list[Any], Regular, bool] | None:
-        """The point of V that a start leads to, the state there, and whether it lies in the ranges."""
+        """The point of V that a start leads to, the state there, and whether it lies in the ranges.
+
+        Where parts of the system lead elsewhere these are started anew while the others stay: that all of many
+        machines lead to a regular state at once is rare.
+        """
+        for left in reversed(range(ATTEMPTS if len(self._system.parts) > 1 else 1)):
+            self._wanting.clear()
+            found = self._led_to(start, exact, left > 0)
+            if found is not None or not self._wanting:
+                return found
+            anew = [self._generator.uniform(*map(float, c.range)) for c in self._reference.model.coordinates]
+            start = [y if j in self._wanting else x for j, (x, y) in enumerate(zip(self._reached, anew, strict=True))]
+        return None
+
+    def _wants(self, coordinates: Iterable[int]) -> None:
+        """The parts of these coordinates are not to stay where they are."""
+        these = set(coordinates)
+        for part in self._system.parts:
+            if not these.isdisjoint(part.coordinates):
+                self._wanting.update(part.coordinates)
+
+    def _led_to(
+        self, start: Sequence[Any], exact: Sequence[Any], again: bool
+    ) -> tuple[list[Any], Regular, bool] | None:
+        """The same of one start; what lies out of the ranges is looked at where parts are not started again."""
         reference = self._reference
         # lengths that others follow from are rounded afterwards: a linkage may close for their exact values alone
-        q = onto_manifold(self._system, start, exact, self._literals, rounded=reference.ranks.rounded)
-        if q is None:
+        q, still_open = closed(self._system, start, exact, self._literals, rounded=reference.ranks.rounded)
+        self._reached = q
+        if still_open:
             self._ends[CLOSED] += 1
+            self._wants(j for part in still_open for j in part.coordinates)
             return None
         if exceeds(self._system, reference.ranks, q, exact, self._literals):
             self._ends[BRANCH] += 1
             return None
-        if self._turned_away(q):
+        if away := self._turned_away(q):
             self._ends[TURNED] += 1
+            self._wants(away)
             return None
-        in_range = self._in_ranges(q)
+        outside = self._outside(q)
+        if outside and again:
+            self._wants(outside)
+            return None
+        in_range = not outside
         # what lies outside is rarely needed
         needed = measured(reference) if in_range else ()
         found = self._regular(
@@ -168,16 +207,22 @@ class Search:
             # of rows that depend on each other some have no gradient anywhere on V, and are no drop of rank there
             here = self._row_lengths(on_it, parameters)
             rows = [0.0 if there < REGULAR * x else x for there, x in zip(here, rows, strict=True)]
-        usual = REGULAR ** max(1.0, (reference.model.n - reference.ranks.constraints) / 2)
+        free = [reference.model.n - reference.ranks.constraints]
+        if known_apart := len(reference.ranks.of_parts) == len(self._system.parts):
+            pairs = zip(self._system.parts, reference.ranks.of_parts, strict=True)
+            free = [len(part.coordinates) - constraints for part, (constraints, _) in pairs]
+        self._owners = self._system.parts if known_apart else ()
+        usual = [REGULAR ** max(1.0, count / 2) for count in free for _ in range(2)]
         found = []
         for q in on_it:
             try:
-                state = _at_rest(reference, q, parameters)
-                found.append(floats(reference.matrices(state, ["singularity"], SAMPLING_BITS)["singularity"]))
+                measures = reference.measured(_at_rest(reference, q, parameters), (), SAMPLING_BITS)[1]
+                found.append([float(x) for x in measures])
             except ReferenceValueError:
                 continue
         largest = [max((x for x in column if isfinite(x)), default=1.0) for column in zip(*found, strict=True)]
-        return _Sizes([min(usual, x / 10) for x in largest or (1.0, 1.0)], [REGULAR * x for x in rows])
+        pairs_of_limits = zip(usual, largest or [1.0] * len(usual), strict=True)
+        return _Sizes([min(low, x / 10) for low, x in pairs_of_limits], [REGULAR * x for x in rows])
 
     def _row_lengths(self, points: Sequence[Sequence[float]], parameters: Sequence[float]) -> list[float]:
         """The largest length of each row of B over some points, on V or off it."""
@@ -243,36 +288,46 @@ class Search:
         """What is needed of a state; None where it is not regular, which is counted."""
         model = self._reference.model
         try:
-            values = values_at(self._reference, state, ("singularity", "constraint_jacobian", *needed))
+            found, measures = self._reference.measured(
+                state, ("singularity", "constraint_jacobian", *needed), SAMPLING_BITS
+            )
         except ReferenceValueError:
             self._ends[VALUE] += 1
             return None
-        sizes = _Sizes(values["singularity"], _lengths(values["constraint_jacobian"], model.n))
+        values = _values(found)
+        sizes = _Sizes([float(x) for x in measures], _lengths(values["constraint_jacobian"], model.n))
         if sizes.finite:
             self._met.append(sizes)
         # the measures compare directions of rows only; a row that all but vanishes is a drop of rank, too
         small = [i for i, low in enumerate(self._least.rows) if not inf > sizes.rows[i] >= low]
-        if small or not all(inf > x >= low for x, low in zip(sizes.measures, self._least.measures, strict=True)):
+        pairs = zip(sizes.measures, self._least.measures, strict=True)
+        low_measures = [place for place, (x, low) in enumerate(pairs) if not inf > x >= low]
+        if small or low_measures:
             self._ends[SINGULAR] += 1
             self._lost.update(model.constraints[i].name for i in small)
+            for place, part in enumerate(self._owners):
+                if not {2 * place, 2 * place + 1}.isdisjoint(low_measures) or not {*small}.isdisjoint(part.rows):
+                    self._wanting.update(part.coordinates)
             return None
         return values
 
-    def _in_ranges(self, q: Sequence[Any]) -> bool:
-        """Whether every coordinate lies in its range, but for a hundredth of its width."""
-        for x, coordinate in zip(q, self._reference.model.coordinates, strict=True):
+    def _outside(self, q: Sequence[Any]) -> list[int]:
+        """The coordinates out of their ranges, by more than a hundredth of their width."""
+        found = []
+        for j, (x, coordinate) in enumerate(zip(q, self._reference.model.coordinates, strict=True)):
             low, high = map(float, coordinate.range)
             slack = 0.01 * (high - low)
             if not low - slack <= x <= high + slack:
-                return False
-        return True
+                found.append(j)
+        return found
 
-    def _turned_away(self, q: Sequence[Any]) -> bool:
-        """Whether an angle is turns outside of its range, where one step after another leads and nothing new is met."""
-        return any(
-            c.is_angle and not float(c.range[0]) - TURNS * 2 * pi <= x <= float(c.range[1]) + TURNS * 2 * pi
-            for x, c in zip(q, self._reference.model.coordinates, strict=True)
-        )
+    def _turned_away(self, q: Sequence[Any]) -> list[int]:
+        """The angles turns outside of their ranges, where one step after another leads and nothing new is met."""
+        return [
+            j
+            for j, (x, c) in enumerate(zip(q, self._reference.model.coordinates, strict=True))
+            if c.is_angle and not float(c.range[0]) - TURNS * 2 * pi <= x <= float(c.range[1]) + TURNS * 2 * pi
+        ]
 
 
 def measured(reference: Reference) -> tuple[str, ...]:
@@ -282,7 +337,10 @@ def measured(reference: Reference) -> tuple[str, ...]:
 
 def values_at(reference: Reference, state: State, names: Sequence[str]) -> dict[str, tuple[float, ...]]:
     """Row-major entries of quantities, to the digits that sampling needs."""
-    found = reference.matrices(state, names, SAMPLING_BITS)
+    return _values(reference.matrices(state, names, SAMPLING_BITS))
+
+
+def _values(found: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
     return {name: (_rates if name in PROJECTED else floats)(matrix) for name, matrix in found.items()}
 
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 from math import hypot, isfinite
 
 from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_manifold import exceeds, onto_manifold
+from symgen.verify.reference_closing import onto_manifold
+from symgen.verify.reference_manifold import exceeds
 from symgen.verify.reference_system import ParameterValues
 from symgen.verify.reference_tape import precision
 from symgen.verify.regular import PROJECTED, REGULAR, SAMPLING_BITS, floats, settled, values_at
