@@ -7,6 +7,7 @@ from symgen.draft import Draft
 from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.select import ARTICULATED, MOTIONS
 from symgen.emit.operations import count_operations
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.results import Options
 
 # Operations of q_ddot or of lambda.
@@ -15,7 +16,13 @@ LONG_MOTION = 3000
 
 def dense_motions(draft: Draft, options: Options) -> tuple[Notice, ...]:
     """A notice for long kernels that factor the whole mass matrix: what they cost, why, and what would change it."""
-    counts = {kernel.name: count_operations(kernel.statements).total for kernel in draft.program.kernels}
+    # of what works with pairs of numbers the steps: it is the form that is long
+    counts = {
+        kernel.name: len(kernel.statements)
+        if works_with_pairs(kernel)
+        else count_operations(kernel.statements).total
+        for kernel in draft.program.kernels
+    }
     choices = [choice for choice in draft.derivations.choices if choice.quantity in MOTIONS]
     # articulated inertias that were counted and lost are no loss, and a form that was asked for is what was wanted
     dense = [c for c in choices if c.form != BY_FRAMES and ARTICULATED not in dict(c.costs)]

@@ -32,7 +32,7 @@ def derivation_json(model: Model, derivations: Derivations, structure: Structure
             "shape": list(kernel.shape),
             "way": choice.way,
             **({"form": choice.form} if choice.form else {}),
-            **({"rounding_errors_carried": dict(choice.compensated)} if choice.compensated else {}),
+            **({"twice_the_digits": list(choice.wide)} if choice.wide else {}),
             "counted_cost": dict(choice.costs),
             "operations": _operations(kernel),
             "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),

@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from symgen.verify.certificate import LeftOut
 
 
-CARRIED = ", rounding errors carried along"
-
-
 @dataclass(frozen=True, slots=True)
 class Draft:
     """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way."""
@@ -47,7 +44,7 @@ class Draft:
         """The way a quantity takes, and its form where that says more."""
         choice = self.choice(quantity)
         way = f"{choice.form} along {choice.way}" if choice.form not in ("", choice.way) else choice.way
-        return way + CARRIED * bool(choice.compensated)
+        return way + choice.digits
 
     def taken(self, quantity: str) -> Alternative:
         """The way a quantity takes, as it stands."""
@@ -63,16 +60,21 @@ class Draft:
 
     def kernels_along(self, alternative: Alternative, scalars: Sequence[Scalar]) -> dict[Scalar, Kernel]:
         """The kernels of a quantity along another way."""
-        programs = schedule(alternative.mechanics, [alternative.derived], scalars)
+        wide = set(alternative.choice.wide).intersection(scalars)
+        # thresholds of pairs of float32 lie between those of both types
+        made = tuple(dict.fromkeys((*scalars, "float64"))) if wide else scalars
+        programs = schedule(alternative.mechanics, [alternative.derived], made)
         if self.trig == "libm":
             programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
         kernels = {scalar: program.kernels[0] for scalar, program in programs.items()}
-        if not (marks := alternative.choice.compensated):
+        if not wide:
             return kernels
-        from symgen.ir.compensated import compensated, marked  # few models need it
+        from symgen.ir.wide import widened, with_sharp_thresholds  # few models need it
 
-        carrying = {s: compensated(kernels[s], s, marked(kernels[s], bits)) for s, bits in marks if s in kernels}
-        return {**kernels, **carrying}
+        found = {scalar: kernels[scalar] for scalar in scalars}
+        if "float32" in wide:
+            found["float32"] = with_sharp_thresholds(kernels["float32"], kernels["float64"])
+        return {scalar: widened(one, scalar) if scalar in wide else one for scalar, one in found.items()}
 
     def along(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Draft:
         """The draft with a quantity along another way, by kernels of `kernels_along`."""

@@ -2,26 +2,25 @@
 
 Another way is held against the same states by interpretation before anything is printed or compiled; the files that
 come of it are then verified like any others.  A way that needs most of what is allowed at these states will need more
-at others: it is taken only where no other way keeps a margin.  Where none does, one that loses digits carries along
-what rounding takes of them.  Where no way passes in float32, float64 stays.
+at others: it is taken only where no other way keeps a margin.  Where none does, one that loses digits works with twice
+as many.  Where no way passes in float32, float64 stays.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, TypeAlias
 
 from symgen.diagnostics import SymgenBug
-from symgen.draft import CARRIED, Draft
+from symgen.draft import Draft
 from symgen.dynamics.alternatives import TIERS, Alternative, Alternatives
 from symgen.dynamics.catalogue import scalars
-from symgen.dynamics.select import Rejection
+from symgen.dynamics.select import Choice, Rejection
 from symgen.garbage import let_go, let_go_and_keep
 from symgen.graph.traverse import cost
-from symgen.ir.compensated import mark
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.records import dataclass
 from symgen.results import AUTO, Options
@@ -30,7 +29,6 @@ from symgen.verify.comparison import INACCURATE
 from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import measured
-from symgen.verify.rounding import losing
 from symgen.verify.searched import Search
 from symgen.verify.tolerance import FACTOR
 
@@ -40,9 +38,9 @@ TOO_LONG = "not tried: it takes many times as long to derive"
 MARGIN = FACTOR / 2
 # What keeping a margin may cost, in operations.
 MARGIN_WORTH = Fraction(1, 2)
-# Ways that are tried once more with their rounding errors, and the statements that may come of one.
-CARRYING = 3
-LONGEST = 20_000
+# Ways that are tried once more with twice the digits, and what the longest one counts: an operation is a call then.
+WIDENED = 3
+LONGEST = 40_000
 Kernels: TypeAlias = Mapping[Scalar, Kernel]
 
 
@@ -71,7 +69,7 @@ class Fallback:
         self._kernels: defaultdict[str, list[Kernels]] = defaultdict(list)
         self._weighed: set[str] = set()
         self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
-        self._carried: set[str] = set()
+        self._widened: set[str] = set()
 
     def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
         """The draft with other ways for what is rejected, or for what keeps no margin; None where nothing is better."""
@@ -101,14 +99,15 @@ class Fallback:
                 self._progress(f"verifying: where {quantity} is worst")
                 self._searched[quantity] = kernels
                 judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
-                if judged and (faults := self._at_worst(draft, judged, kernels["float64"])):
+                if judged and (faults := self._at_worst(draft, judged, _plain(draft.choice(quantity), kernels))):
                     found[quantity] = tuple(faults)
         return found
 
-    def _at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel, carried: Collection[str] = ()) -> list[Fault]:
-        """What is wrong with kernels where they are worst, those with errors of `carried` targets of the plain one."""
+    def _at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel | None) -> list[Fault]:
+        """What is wrong with kernels where they are worst, a `plain` one among them and others before."""
         assert self._search is not None
-        self._search.look(plain, carried)
+        if plain is not None:
+            self._search.look(plain)
         sincos = {scalar: draft.programs[scalar].sincos for scalar in kernels}
         faults = (self._search.fault(kernel, sincos[scalar], scalar) for scalar, kernel in kernels.items())
         return [fault for fault in faults if fault is not None]
@@ -148,7 +147,7 @@ class Fallback:
                     return one
                 if "float64" in one.scalars:
                     passing.append(one)
-        for one in self._carrying(draft, quantity, expected):
+        for one in self._with_more_digits(draft, quantity, expected):
             if one.scalars == needed and one.largest <= MARGIN:
                 return one
             if "float64" in one.scalars:
@@ -191,53 +190,31 @@ class Fallback:
                 self._kernels[quantity].append(kernels)
                 yield self._measured(draft, way, kernels, expected)
 
-    def _carrying(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
-        """The ways that lose digits, with the rounding errors of the statements where they do; the shortest first."""
-        if quantity in self._carried or self._options.forms.get(quantity, AUTO) != AUTO or self._search is None:
+    def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
+        """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
+        if quantity in self._widened or self._options.forms.get(quantity, AUTO) != AUTO:
             return
-        self._carried.add(quantity)
-        sincos = {scalar: program.sincos for scalar, program in draft.programs.items()}
-        found: list[tuple[int, Alternative, Kernels, Kernel, frozenset[str]]] = []
-        for way in self._inaccurate[quantity][:CARRYING]:
-            self._progress(f"where {quantity} loses digits, {way.choice.way}")
-            plain = draft.kernels_along(way, tuple(draft.kernels(quantity)))
-            if max(len(kernel.statements) for kernel in plain.values()) > LONGEST // 2:
-                continue  # errors of what matters at least double a kernel
-            lost: dict[tuple[object, ...], frozenset[str]] = {}
-            marks: list[tuple[Scalar, str]] = []
-            for scalar, kernel in plain.items():
-                # shares are those of eps: but for thresholds, both types lose digits in the same statements
-                same = tuple((statement.targets, statement.operation) for statement in kernel.statements)
-                if same not in lost and scalar in expected.scalars:
-                    doubtful = self._search.losing(kernel)
-                    searched = self._search.expectations(quantity, scalar)
-                    lost[same] = doubtful | losing(kernel, sincos[scalar], scalar, expected, searched)
-                if chosen := lost.get(same):
-                    marks.append((scalar, mark(kernel, chosen)))
-            way = replace(way, choice=replace(way.choice, compensated=tuple(marks)))
-            carrying = draft.kernels_along(way, tuple(plain))
-            length = max(len(kernel.statements) for kernel in carrying.values())
-            if marks and length <= LONGEST:
-                targets = frozenset().union(*lost.values())
-                found.append((length, way, carrying, plain["float64"], targets))
-        for _, way, kernels, kernel, carried in sorted(found, key=lambda one: one[0]):
-            yield self._measured(draft, way, kernels, expected, kernel, carried)
+        self._widened.add(quantity)
+        scalars = tuple(draft.kernels(quantity))
+        passing = [one for one in self._passing[quantity] if "float32" in scalars and one.scalars == ("float64",)]
+        passing.sort(key=lambda one: (one.largest > MARGIN, one.way.cost))
+        single: tuple[Scalar, ...] = ("float32",)
+        chosen = [(one.way, single) for one in passing]
+        chosen += [(way, scalars) for way in sorted(self._inaccurate[quantity], key=lambda way: way.cost)]
+        for way, wide in [one for one in chosen if one[0].cost <= LONGEST][:WIDENED]:
+            self._progress(f"twice the digits for {quantity}, {way.choice.way}")
+            way = replace(way, choice=replace(way.choice, wide=wide))
+            yield self._measured(draft, way, draft.kernels_along(way, scalars), expected)
 
-    def _measured(
-        self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected,
-        plain: Kernel | None = None, carried: Collection[str] = (),
-    ) -> _Candidate:  # fmt: skip
-        """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted.
-
-        Kernels that carry errors are those of `carried` targets of a plain one.
-        """
+    def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
+        """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: dict[Scalar, Kernel] = {}
         worst = 0.0
         for scalar, kernel in kernels.items():
             if scalar in expected.scalars:
                 record, fault = measured(kernel, draft.programs[scalar].sincos, scalar, expected)
                 if fault is not None:
-                    name = way.choice.way + CARRIED * bool(way.choice.compensated)
+                    name = way.choice.way + way.choice.digits
                     _check_algebra(kernels["float64"], name, expected, record.worst_state)
                     self._note(way, fault, inaccurate=not record.refused)
                     if scalar == "float64":
@@ -247,7 +224,7 @@ class Fallback:
             passed[scalar] = kernel
         judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
         if judged:
-            for fault in self._at_worst(draft, judged, plain or kernels["float64"], carried):
+            for fault in self._at_worst(draft, judged, _plain(way.choice, kernels)):
                 self._note(way, fault, inaccurate=True)
                 passed.pop(fault.scalar)
         scalars = tuple(passed) if "float64" in passed else ()
@@ -256,8 +233,8 @@ class Fallback:
         return _Candidate(worst, scalars, way, kernels)
 
     def _note(self, way: Alternative, fault: Fault, inaccurate: bool) -> None:
-        """What speaks against a way; one that is inaccurate may carry its errors."""
-        name = way.choice.way + CARRIED * bool(way.choice.compensated)
+        """What speaks against a way; one that is inaccurate may work with more digits."""
+        name = way.choice.way + way.choice.digits
         self._tried[fault.quantity].append((name, f"{fault.what} ({fault.target})"))
         if inaccurate and way not in self._inaccurate[fault.quantity]:
             self._inaccurate[fault.quantity].append(way)
@@ -269,6 +246,11 @@ class Fallback:
         if "float64" not in without:
             return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
         return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"
+
+
+def _plain(choice: Choice, kernels: Kernels) -> Kernel | None:
+    """The kernel of plain numbers among those of a way: where it is worst is looked for."""
+    return None if "float64" in choice.wide else kernels["float64"]
 
 
 def _check_algebra(kernel: Kernel, way: str, expected: Expected, worst: int) -> None:
@@ -294,8 +276,7 @@ def as_recorded(draft: Draft, recorded: Mapping[str, Any]) -> Draft:
         if way is None or draft.choice(quantity).way == way.choice.way:
             way = draft.taken(quantity)
         if kernel is not None:
-            marks = tuple(kernel.get("rounding_errors_carried", {}).items())
-            way = replace(way, choice=replace(way.choice, compensated=marks))
+            way = replace(way, choice=replace(way.choice, wide=tuple(kernel.get("twice_the_digits", ()))))
             draft = draft.along(way, draft.kernels_along(way, tuple(draft.programs)))
         if quantity in left_out:
             draft = draft.without(quantity, left_out[quantity], REJECTED)

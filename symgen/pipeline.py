@@ -18,7 +18,7 @@ from symgen.activity import each, working
 from symgen.dense_motion import dense_motions
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
-from symgen.draft import CARRIED, Draft
+from symgen.draft import Draft
 from symgen.dynamics.catalogue import BY_NAME
 from symgen.dynamics.everything import OF_ALL
 from symgen.dynamics.forms.motions import BY_FRAMES
@@ -32,9 +32,10 @@ from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.literals import LiteralRangeError
 from symgen.emit.operations import count_operations
 from symgen.garbage import let_go_and_keep
-from symgen.ir.kernel import Scalar
+from symgen.ir.kernel import Kernel, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.model.names import did_you_mean
@@ -52,6 +53,8 @@ if TYPE_CHECKING:
 
 # Measured on a chain of 16 links: 6336 operations in 45.6 kB with the single precision of a Cortex-M4, gcc -O2.
 BYTES_AN_OPERATION = 7
+# What a step of `emit/steps.py` takes in its table.
+BYTES_A_STEP = 14
 LARGEST_CODE = 64_000
 # Scalars, at half a kilobyte each: derivations of fewer leave little behind.
 LARGE_GRAPH = 100_000
@@ -372,18 +375,24 @@ def _summary(draft: Draft, certificate: Certificate | None) -> Summary:
 
 
 def _size(draft: Draft, options: Options) -> tuple[Notice, ...]:
-    """How much machine code the C takes, where small targets do not hold it; code is written out, never looped."""
-    counts = {kernel.name: count_operations(kernel.statements).total for kernel in draft.program.kernels}
-    size = BYTES_AN_OPERATION * sum(counts.values())
+    """How much machine code the C takes, where small targets do not hold it: all but steps of tables is written out."""
+    sizes = {kernel.name: _bytes(kernel) for kernel in draft.program.kernels}
+    size = sum(sizes.values())
     if size <= LARGEST_CODE or "c" not in options.parts:
         return ()
-    each = ", ".join(f"{name} {round(BYTES_AN_OPERATION * count / 1000)} kB" for name, count in counts.items())
+    each = ", ".join(f"{name} {round(count / 1000)} kB" for name, count in sizes.items())
     return (
         Notice(
-            f"the C takes about {round(size / 1000)} kB of machine code on a Cortex-M4 ({sum(counts.values())} "
-            f"operations written out: {each}); where that is too much, name fewer with --outputs"
+            f"the C takes about {round(size / 1000)} kB of machine code on a Cortex-M4 ({each}); where that is too "
+            "much, name fewer with --outputs"
         ),
     )
+
+
+def _bytes(kernel: Kernel) -> int:
+    if works_with_pairs(kernel):
+        return BYTES_A_STEP * len(kernel.statements)
+    return BYTES_AN_OPERATION * count_operations(kernel.statements).total
 
 
 def _notices(draft: Draft, options: Options, certificate: Certificate | None) -> tuple[Notice, ...]:
@@ -420,7 +429,7 @@ def _replaced(draft: Draft) -> tuple[Notice, ...]:
         tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
         if tried:
             others = ", ".join(tried)
-            way = choice.way + CARRIED * bool(choice.compensated)
+            way = choice.way + choice.digits
             found.append(Notice(f"{choice.quantity} takes {way}: verification speaks against {others}"))
     return tuple(found)
 

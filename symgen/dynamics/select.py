@@ -53,14 +53,19 @@ STRUCTURED_WORTH = Fraction(1, 20)
 class Choice:
     """Which way a quantity took, and the counted cost of each way tried; q_ddot and lambda have a form along it.
 
-    `compensated` marks by scalar type the statements whose rounding errors are carried along, where there are any.
+    `wide` are the scalar types in which its kernel works with twice the digits.
     """
 
     quantity: str
     way: str
     costs: tuple[tuple[str, int], ...]
     form: str = ""
-    compensated: tuple[tuple[Scalar, str], ...] = ()
+    wide: tuple[Scalar, ...] = ()
+
+    @property
+    def digits(self) -> str:
+        """What is told of it beside the way: empty where it works with plain numbers."""
+        return f", with twice the digits in {' and '.join(self.wide)}" if self.wide else ""
 
 
 @dataclass(frozen=True, slots=True)

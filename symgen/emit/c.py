@@ -19,6 +19,7 @@ from symgen.emit.quantities import meaning
 from symgen.emit.render import render
 from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.emit.statements import CStatements
+from symgen.emit.steps import StepsView, Table, steps_view, table
 from symgen.emit.surroundings import (
     LibraryPair,
     apart_macro,
@@ -30,6 +31,7 @@ from symgen.emit.surroundings import (
     surrounding_names,
 )
 from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
+from symgen.ir.wide_functions import with_bodies, works_with_pairs
 from symgen.model.model import Model
 from symgen.naming import macro_name
 from symgen.records import dataclass
@@ -73,6 +75,7 @@ class CView:
     functions: tuple[FunctionView, ...]
     pairs: PairsView | None
     both: LibraryPair | None
+    steps: StepsView | None
     rare: str
     each: str
     apart: str
@@ -138,6 +141,7 @@ def _view(model: Model, program: Program) -> CView:
         functions=functions,
         pairs=pairs_view(prefix, suffix, program),
         both=library_pair(prefix, program),
+        steps=steps_view(prefix, suffix, program),
         rare=rare_macro(prefix, program),
         each=each_macro(prefix, program),
         apart=apart_macro(prefix, program),
@@ -220,14 +224,15 @@ def _printer(model: Model, program: Program, kernel: Kernel, names: Names, cause
 
 def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names, function: str) -> tuple[str, ...]:
     """The lines of `function`, of one state; the parameters, or what stands for them, are the members of `*p`."""
+    if works_with_pairs(kernel):
+        return _body_of_steps(model, program, kernel, names, function)
     suffix = SUFFIX[program.scalar]
     causes = causes_of(kernel, function)
     printer = _printer(model, program, kernel, names, causes)
     used, group = printer.used, () if program.sincos is None else leading_group(kernel)
-    rare = rare_name(model.c_name, suffix)
     loads = [load for load in kernel.loads if load.local in used]
     loaded = {load.argument for load in loads}
-    scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
+    scalar = C_TYPE[program.scalar]
     finite = FiniteTest(scalar, (names.locals[o.name] for o in kernel.outputs if isinstance(o, Local)))
     lines = [f"(void){name};" for name in (*(a.name for a in array_arguments(kernel)), "p") if name not in loaded]
     waiting: dict[str, str] = {}
@@ -265,14 +270,51 @@ def kernel_body(model: Model, program: Program, kernel: Kernel, names: Names, fu
             lines += [*due(operands_of(check, causes)), *printer.check(check)]
     lines += due(kernel.outputs)
     lines += finite.remaining()
-    if any(isinstance(output, Local) for output in kernel.outputs):
+    return (*lines, *_ending(model, kernel, printer, names))
+
+
+def _ending(model: Model, kernel: Kernel, printer: CStatements, names: Names) -> list[str]:
+    """The test that all results are finite, and what is stored where they are."""
+    lines: list[str] = []
+    output = names.outputs[kernel.name]
+    if any(isinstance(entry, Local) for entry in kernel.outputs):
         failed = status_name(model, Status.NOT_FINITE)
-        lines += [f"if ({rare}(isnan({SUM}) != 0)) {{", f"    return {failed};", "}"]
+        lines += [f"if ({printer.rare}(isnan({SUM}) != 0)) {{", f"    return {failed};", "}"]
     lines += [
         f"{output}[{index}] = {printer.operand(operand).strip('()')};" for index, operand in enumerate(kernel.outputs)
     ]
     lines.append(f"return {status_name(model, Status.OK)};")
-    return tuple(lines)
+    return lines
+
+
+def _body_of_steps(model: Model, program: Program, kernel: Kernel, names: Names, function: str) -> tuple[str, ...]:
+    """The lines of a function that runs through tables of steps."""
+    suffix, scalar = SUFFIX[program.scalar], C_TYPE[program.scalar]
+    steps: Table = table(kernel, program)
+    causes = causes_of(kernel, function)
+    placed = replace(names, locals={**names.locals, **steps.spelled})
+    printer = _printer(model, program, kernel, placed, causes)
+    loaded = {load.argument for load in kernel.loads}
+    lines = [f"(void){name};" for name in (*(a.name for a in array_arguments(kernel)), "p") if name not in loaded]
+    lines += steps.lines(f"{model.c_name}_step{suffix}")
+    lines += [f"{steps.spelled[load.local]} = {place(load, names)};" for load in kernel.loads]
+    for block, part in zip(kernel.blocks, steps.parts, strict=True):
+        if part:
+            lines.append(f"{model.c_name}_steps{suffix}(step + {part.start}, {len(part)}, v);")
+        for check in block.checks:
+            # what only a failure computes has names of its own
+            inside = {target: names.locals[target] for target in _targets_on_failure(check)}
+            lines += replace(printer, names={**placed.locals, **inside}).check(check)
+    finite = FiniteTest(scalar, (placed.locals[o.name] for o in kernel.outputs if isinstance(o, Local)))
+    return (*lines, *finite.remaining(), *_ending(model, kernel, printer, names))
+
+
+def _targets_on_failure(check: Check) -> set[str]:
+    first = check.first
+    if first is None or check.apart:
+        return set()
+    own = {target for statement in first.statements for target in statement.targets}
+    return own.union(*map(_targets_on_failure, first.checks))
 
 
 def _read_back(group: Sequence[Statement], scalar: str, names: Names) -> dict[str, str]:
@@ -292,4 +334,4 @@ def uses_library(program: Program) -> bool:
     own = () if program.sincos is None else program.sincos.statements
     free = _WITHOUT_LIBRARY if program.sincos is None else _WITHOUT_LIBRARY | {"sincos"}
     statements = [*own, *(statement for kernel in program.kernels for statement in all_statements(kernel))]
-    return any(statement.operation not in free for statement in statements)
+    return any(statement.operation not in free for statement in with_bodies(statements))

@@ -19,6 +19,7 @@ from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
 from symgen.ir.split import names_in, names_of_blocks, split, without_first
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model
 from symgen.naming import macro_name
 from symgen.records import dataclass
@@ -58,6 +59,7 @@ class BatchView:
     size: int
     fixed: tuple[str, ...]
     body: tuple[str, ...]
+    one_by_one: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +101,8 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     # the members of the parameter struct are those of the other header
     few = replace(program, kernels=kernels)
     names = replace(names_of(model, few, own), members=c_members(model, program))
-    operations = {statement.operation for kernel in kernels for statement in all_statements(kernel)}
+    in_lanes = [kernel for kernel in kernels if not works_with_pairs(kernel)]
+    operations = {statement.operation for kernel in in_lanes for statement in all_statements(kernel)}
     own_pair = program.sincos if "sincos" in operations else None
     angle, body = ("", ()) if own_pair is None else pair_body(program.scalar, own_pair, pair)
     view = BatchFileView(
@@ -135,7 +138,8 @@ def _function(
     given = ["size_t count", "size_t stride", *(f"const {scalar} *{a.name}" for a in arguments)]
     given += [f"const {model.c_name}_params{suffix} *p", f"{scalar} *{output}", "unsigned char *status"]
     name = f"{model.c_name}_{kernel.name}_batch{suffix}"
-    flat = without_first(kernel)
+    by_pairs = works_with_pairs(kernel)
+    flat = Kernel(kernel.name, (), (), (), (), ()) if by_pairs else without_first(kernel)
     parts = split(flat)
     pair, ratio = private
     own_pair = None if program.sincos is None else pair
@@ -149,8 +153,8 @@ def _function(
     fixed += [line for statement in parts.fixed for line in printer.statement(statement)]
     body = [f"const {scalar} {names.locals[load.local]} = from[{k}][k];" for k, load in enumerate(rows)]
     body += [line for block in parts.blocks for statement in block.statements for line in printer.statement(statement)]
-    body += printer.flag([check for block in parts.blocks for check in block.checks], kernel.outputs)
-    body += [f"result[{k}][k] = {printer.plain.operand(operand)};" for k, operand in enumerate(kernel.outputs)]
+    body += printer.flag([check for block in parts.blocks for check in block.checks], flat.outputs)
+    body += [f"result[{k}][k] = {printer.plain.operand(operand)};" for k, operand in enumerate(flat.outputs)]
     return BatchView(
         comment=c_comment_lines(f"{meaning(kernel)}; {output} has {len(kernel.outputs)} rows"),
         prototype=f"size_t {name}({', '.join(given)})",
@@ -161,6 +165,7 @@ def _function(
         size=len(kernel.outputs),
         fixed=tuple(fixed),
         body=tuple(body),
+        one_by_one=by_pairs,
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from symgen.emit.lanes import lane_names
 from symgen.emit.quantities import output_argument
+from symgen.emit.steps import local_names as step_locals
 from symgen.ir.kernel import Argument, Block, Check, Kernel, Local, Operand, Program, Statement
 from symgen.model.model import Model
 from symgen.naming import c_identifiers
@@ -42,7 +43,7 @@ def names_of(model: Model, program: Program, own_names: Iterable[str] = ()) -> N
         wanted = output_argument(kernel.name)
         clash = wanted in users or wanted in {argument.name for argument in array_arguments(kernel)}
         outputs[kernel.name] = f"{wanted}_out" if clash else wanted
-    taken = own | KERNEL_NAMES | lane_names(program) | set(outputs.values())
+    taken = own | KERNEL_NAMES | lane_names(program) | step_locals(program) | set(outputs.values())
     names = [*users, *(name for kernel in program.kernels for name in kernel_locals(kernel))]
     return Names(c_identifiers(names, taken), members, outputs)
 

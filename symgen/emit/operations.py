@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
 
-from symgen.ir.kernel import Statement
+from symgen.ir.kernel import OperationName, Statement
+from symgen.ir.wide_functions import is_wide, wide_function
 from symgen.records import dataclass
 
 _KIND = {
@@ -40,8 +43,17 @@ class OperationCounts:
 
 
 def count_operations(statements: Iterable[Statement]) -> OperationCounts:
-    """Counts the statements by kind."""
-    counts = dict.fromkeys(("add", "mul", "div", "sqrt", "sincos", "sign", "other"), 0)
+    """Counts the statements by kind; operations on pairs of numbers are those of their bodies."""
+    counts = Counter(dict.fromkeys(("add", "mul", "div", "sqrt", "sincos", "sign", "other"), 0))
     for statement in statements:
-        counts[_KIND.get(statement.operation, "other")] += 1
+        counts.update(_of_pairs(statement.operation) if is_wide(statement) else (_kind(statement),))
     return OperationCounts(**counts)
+
+
+def _kind(statement: Statement) -> str:
+    return _KIND.get(statement.operation, "other")
+
+
+@lru_cache
+def _of_pairs(operation: OperationName) -> Mapping[str, int]:
+    return Counter(map(_kind, wide_function(operation).statements))

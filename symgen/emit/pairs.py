@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from symgen.emit.scalars import C_TYPE
 from symgen.emit.statements import CStatements
 from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.naming import c_identifiers, macro_name
 from symgen.records import dataclass
 
@@ -86,6 +87,8 @@ def pair_body(scalar: Scalar, function: Function, name: str) -> tuple[str, tuple
 
 def leading_group(kernel: Kernel) -> tuple[Statement, ...]:
     """The pairs that stand side by side before anything needs one of them; empty if too few."""
+    if works_with_pairs(kernel):
+        return ()
     for block in kernel.blocks:
         for place, statement in enumerate(block.statements):
             if statement.operation == "sincos":

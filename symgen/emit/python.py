@@ -10,7 +10,8 @@ from symgen.emit.locals import Names, all_statements, array_arguments, names_of,
 from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
 from symgen.emit.statements import NumpyStatements
-from symgen.ir.kernel import Function, Kernel, Program, Status
+from symgen.ir.kernel import Function, Kernel, OperationName, Program, Status
+from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
 from symgen.model.model import Model
 from symgen.naming import c_identifiers
 from symgen.records import dataclass
@@ -45,6 +46,16 @@ class FunctionView:
 
 
 @dataclass(frozen=True, slots=True)
+class WideView:
+    """A function of pairs of numbers."""
+
+    name: str
+    parameters: tuple[str, ...]
+    body: tuple[str, ...]
+    results: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class PythonView:
     """Everything the Python template prints."""
 
@@ -57,13 +68,15 @@ class PythonView:
     sincos_parameter: str
     sincos_body: tuple[str, ...]
     needs_ratio: bool
+    wide: tuple[WideView, ...]
     c_files: tuple[str, ...]
 
 
 def emit_python(model: Model, program: Program) -> dict[str, str]:
     """`python/<model>.py` from the float64 program; it needs NumPy only."""
     names = names_of(model, program, {kernel.name for kernel in program.kernels} | {"Parameters", "compile"})
-    operations = {statement.operation for kernel in program.kernels for statement in all_statements(kernel)}
+    statements = [statement for kernel in program.kernels for statement in all_statements(kernel)]
+    operations = {statement.operation for statement in with_bodies(statements)}
     own = program.sincos if "sincos" in operations else None
     parameter, body = ("", ()) if own is None else _sincos(own)
     view = PythonView(
@@ -76,6 +89,7 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
         sincos_parameter=parameter,
         sincos_body=body,
         needs_ratio="ratio_or_zero" in operations or (own is not None and _has_ratio(own)),
+        wide=tuple(map(_wide, wide_operations(statements))),
         c_files=_c_files(model, program),
     )
     return {f"python/{view.stem}.py": render("python/module.py.jinja", view)}
@@ -147,6 +161,16 @@ def _sincos(function: Function) -> tuple[str, tuple[str, ...]]:
     body = [line for statement in function.statements for line in printer.statement(statement)]
     sine, cosine = function.results
     return names[function.parameters[0]], (*body, f"return {names[sine]}, {names[cosine]}")
+
+
+def _wide(operation: OperationName) -> WideView:
+    function = wide_function(operation)
+    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
+    names = c_identifiers(own, {"np"})
+    printer = NumpyStatements(names, frozenset(own))
+    body = tuple(line for statement in function.statements for line in printer.statement(statement))
+    parameters, results = (tuple(names[one] for one in part) for part in (function.parameters, function.results))
+    return WideView(f"_{operation}", parameters, body, results)
 
 
 def _has_ratio(function: Function) -> bool:

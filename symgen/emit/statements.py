@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 from symgen.emit.literals import c_literal, numpy_literal
 from symgen.emit.scalars import C_TYPE
 from symgen.ir.kernel import Block, Check, Literal, Local, Operand, Scalar, Statement, Status
+from symgen.ir.wide_functions import is_wide
 from symgen.records import dataclass
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
@@ -48,7 +49,7 @@ class CStatements:
         operands = [self.operand(operand) for operand in statement.operands]
         if statement.operation == "sincos":
             return self._sincos(statement.targets, operands[0])
-        return (self._declare(statement.targets[0], self._expression(statement.operation, operands)),)
+        return (self._declare(statement.targets[0], self.expression(statement.operation, operands)),)
 
     def block(self, block: Block) -> tuple[str, ...]:
         """Statements, then checks."""
@@ -59,7 +60,8 @@ class CStatements:
     def _declare(self, target: str, expression: str) -> str:
         return f"const {C_TYPE[self.scalar]} {self.names[target]} = {expression};"
 
-    def _expression(self, operation: str, operands: list[str]) -> str:
+    def expression(self, operation: str, operands: Sequence[str]) -> str:
+        """An operation with one result."""
         if operation in _INFIX:
             return f"{operands[0]} {_INFIX[operation]} {operands[1]}"
         if operation == "neg":
@@ -122,6 +124,8 @@ class NumpyStatements:
         """One statement as lines."""
         operands = [self.operand(operand) for operand in statement.operands]
         targets = [self.names[target] for target in statement.targets]
+        if is_wide(statement):
+            return (f"{', '.join(targets)} = _{statement.operation}({', '.join(operands)})",)
         if statement.operation != "sincos":
             return (f"{targets[0]} = {self._expression(statement.operation, operands)}",)
         if self.sincos is not None:

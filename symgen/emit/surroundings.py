@@ -5,6 +5,7 @@ from __future__ import annotations
 from symgen.emit.lanes import each_name
 from symgen.emit.locals import all_statements, used_locals
 from symgen.emit.scalars import C_TYPE, SUFFIX
+from symgen.emit.steps import step_names
 from symgen.ir.kernel import Kernel, Local, Program
 from symgen.naming import macro_name
 from symgen.records import dataclass
@@ -58,7 +59,8 @@ def both_name(name: str, suffix: str) -> str:
 
 def surrounding_names(name: str, suffix: str) -> set[str]:
     """Every name that stands before the kernels of a file."""
-    return {rare_name(name, suffix), apart_name(name, suffix), both_name(name, suffix), each_name(name, suffix)}
+    macros = {rare_name(name, suffix), apart_name(name, suffix), both_name(name, suffix), each_name(name, suffix)}
+    return macros | step_names(name, suffix)
 
 
 def _is_tested(kernel: Kernel) -> bool:

@@ -13,6 +13,7 @@ from functools import lru_cache
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, OperationName, Statement, Status
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.split import names_in
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.records import dataclass
 
 # Coordinates in a sum, counted with their multiples, up to which addition is cheaper than another pair.
@@ -34,7 +35,12 @@ class GivenTrig:
 
 @lru_cache(maxsize=16)  # one kernel serves several files
 def given_trig(kernel: Kernel) -> GivenTrig | None:
-    """The kernel with sines and cosines as an argument; None where it has none of a sum of coordinates."""
+    """The kernel with sines and cosines as an argument; None where it has none of a sum of coordinates.
+
+    Beside operations on pairs of numbers a few sines are little, and given ones lack the digits.
+    """
+    if works_with_pairs(kernel):
+        return None
     coordinates = {load.local: load for load in kernel.loads if load.argument == "q"}
     sums = _sums(kernel, coordinates)
     if not sums:
@@ -77,7 +83,7 @@ def _sums(kernel: Kernel, coordinates: Mapping[str, Load]) -> dict[Operand, Sum]
         return None
 
     arguments = [s.operands[0] for block in kernel.blocks for s in _all_statements(block) if s.operation == "sincos"]
-    found = {a: parts(a) for a in arguments if not (isinstance(a, Local) and a.name in kernel.own_pairs)}
+    found = {a: parts(a) for a in arguments}
     return {a: p for a, p in found.items() if p and sum(map(abs, p.values())) <= LONGEST_SUM}
 
 

@@ -53,6 +53,13 @@ OperationName: TypeAlias = Choice[
     "cosh",
     "tanh",
     "pow",  # real power with a literal exponent, where products and roots do not serve
+    # two targets (value, rest); the operands are pairs of these, too: the functions of `ir/wide_functions.py`
+    "wide_add",
+    "wide_sub",
+    "wide_mul",
+    "wide_div",
+    "wide_ratio_or_zero",
+    "wide_sqrt",
 ]
 
 
@@ -85,7 +92,7 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """`targets = operation(operands)`; two targets for `sincos` only, else one."""
+    """`targets = operation(operands)`; two targets for `sincos` and operations on pairs of numbers, else one."""
 
     targets: tuple[str, ...]
     operation: OperationName
@@ -133,8 +140,7 @@ class Kernel:
     Order at run time: loads, then `blocks` one after the other (statements, then their checks), then the test that
     every output is finite (status NOT_FINITE), then the stores.  `outputs` are row-major entries of `shape`.
     `remark` is for the comments of its functions.  `alike` numbers blocks side by side whose statements are the same
-    one by one, on other operands: none of them reads what another one of them assigns.  `own_pairs` are arguments of
-    sines and cosines whose rounding errors are carried along: given sines and cosines do not stand for theirs.
+    one by one, on other operands: none of them reads what another one of them assigns.
     """
 
     name: str
@@ -145,7 +151,6 @@ class Kernel:
     shape: tuple[int, ...]
     remark: str = ""
     alike: tuple[tuple[int, ...], ...] = ()
-    own_pairs: frozenset[str] = frozenset()
 
     @property
     def statements(self) -> tuple[Statement, ...]:

@@ -17,6 +17,7 @@ from symgen.graph.identity import same_values
 from symgen.graph.scalar import Graph
 from symgen.graph.scalar import Scalar as Node
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, Statement, Status
+from symgen.ir.wide_functions import is_wide, plain_operation
 from symgen.records import dataclass
 
 # A scalar of a graph, or its value in the field of fingerprints.
@@ -179,12 +180,20 @@ class _Nodes(_Reader[Node]):
     def _write(self, statements: Sequence[Statement]) -> None:
         for statement in statements:
             operation, operands = statement.operation, tuple(map(self._operand, statement.operands))
+            if is_wide(statement):
+                operation, operands = plain_operation(operation), tuple(map(self._sum, operands[::2], operands[1::2]))
+                self._known[statement.targets[1]] = self._graph.zero
             if operation == "sincos":
                 self._known |= zip(statement.targets, self._pair(operands[0]), strict=True)
             elif operation == "pow":
                 self._known[statement.targets[0]] = self._graph.raw("pow", operands[:1], operands[1].constant)
             else:
                 self._known[statement.targets[0]] = self._graph.raw(operation, operands)
+
+
+    def _sum(self, value: Node, rest: Node) -> Node:
+        """Of a pair, as it stands."""
+        return value if rest.is_zero else self._graph.raw("add", (value, rest))
 
 
 class _Residues(_Reader[int]):
@@ -225,6 +234,10 @@ class _Residues(_Reader[int]):
             values = [
                 known[o.name] if isinstance(o, Local) and o.name in known else self._operand(o) for o in operands
             ]
+            if is_wide(statement):
+                operation, values = plain_operation(operation), [*map(self._sum, values[::2], values[1::2])]
+                operands = operands[::2]
+                known[statement.targets[1]] = 0
             if operation == "mul":
                 a, b = values
                 value = a * b % PRIME
@@ -249,6 +262,11 @@ class _Residues(_Reader[int]):
                 if operation == "neg":
                     sums.setdefault(value, (len(sums), ((values[0], -1),)))
             known[statement.targets[0]] = value
+
+
+    def _sum(self, value: int, rest: int) -> int:
+        """Of a pair, read as what the value was made of where nothing is added."""
+        return value if not rest else (value + rest) % PRIME
 
 
 def _exponent(operand: Operand) -> Fraction:

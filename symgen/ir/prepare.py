@@ -10,6 +10,7 @@ from typing import TypeAlias
 from symgen.ir.kernel import Kernel, Literal, Load, Local, Program, Statement
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.split import Split, names_in, names_of_blocks, split
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.records import dataclass
 
 # A prepared kernel is made where it saves at least this share of the operations of a call.
@@ -50,6 +51,8 @@ def prepare(program: Program, names: Collection[str]) -> Prepared | None:
 
 
 def _worthwhile(kernel: Kernel, parts: Split) -> bool:
+    if works_with_pairs(kernel):  # what parameters alone take is little beside these
+        return False
     return bool(parts.fixed) and len(parts.fixed) >= WORTHWHILE * len(kernel.statements)
 
 

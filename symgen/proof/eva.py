@@ -89,7 +89,9 @@ def emit_eva(model: Model, program: Program) -> dict[str, str]:
 
 def decisive_angles(kernel: Kernel) -> tuple[Load, ...]:
     """The coordinates that enter a denominator or a test through their sine or cosine."""
-    needed = {o.name for s in kernel.statements if s.operation == "div" for o in s.operands[1:] if isinstance(o, Local)}
+    quotients = [s.operands for s in kernel.statements if s.operation in ("div", "wide_div")]
+    divisors = [operands[len(operands) // 2] for operands in quotients]
+    needed = {operand.name for operand in divisors if isinstance(operand, Local)}
     for block in kernel.blocks[1:]:
         needed |= {o.name for check in block.checks for o in (check.value, check.limit) if isinstance(o, Local)}
     for statement in reversed(kernel.statements):

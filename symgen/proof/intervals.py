@@ -11,12 +11,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from symgen.ir.kernel import Function, Kernel, Literal, Local, Operand, Statement
+from symgen.ir.wide_functions import WIDE, is_wide
 from symgen.model.model import Range
 
 Interval = tuple[float, float]
 Pair = Callable[[Operand, Interval], tuple[Interval, ...]]
 EVERYTHING: Interval = (-math.inf, math.inf)
 _SLACK = 1e-14
+# Of a value, more than what a pair holds beside it.
+REST = 2.0**-20
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +52,8 @@ def enclose(kernel: Kernel, ranges: Mapping[str, Sequence[Range]], pair: Pair = 
         bounds[load.local] = (float(low), float(high))
     doubtful = []
     for statement in kernel.statements:
-        if statement.operation == "div":
-            divisor = statement.operands[1]
+        if statement.operation in ("div", "wide_div"):
+            divisor = statement.operands[len(statement.operands) // 2]
             least, most = _bounds(divisor, bounds)
             if least <= 0 <= most:
                 doubtful.append(divisor.name if isinstance(divisor, Local) else "0")
@@ -74,11 +77,22 @@ def _bounds(operand: Operand, bounds: Mapping[str, Interval]) -> Interval:
 def _values(statement: Statement, operands: Sequence[Interval], pair: Pair) -> tuple[Interval, ...]:
     if statement.operation == "sincos":
         return pair(statement.operands[0], operands[0])
+    if is_wide(statement):
+        return _pair_values(statement, operands)
     if statement.operation == "mul" and statement.operands[0] == statement.operands[1]:
         low, high = _magnitude(operands[0])
         return ((low * low, high * high),)
     rule = _RULES.get(statement.operation)
     return (EVERYTHING if rule is None else rule(*operands),)
+
+
+def _pair_values(statement: Statement, operands: Sequence[Interval]) -> tuple[Interval, ...]:
+    """The value is that of the plain operation on values, but for rests, which are less than its last digit."""
+    plain = next(plain for plain, wide in WIDE.items() if wide == statement.operation)
+    rule = _RULES.get(plain)
+    low, high = EVERYTHING if rule is None else rule(*operands[::2])
+    rest = REST * max(abs(low), abs(high))
+    return (low - rest, high + rest), (-rest, rest)
 
 
 def _product(a: Interval, b: Interval) -> Interval:

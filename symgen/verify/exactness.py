@@ -16,6 +16,7 @@ from typing import Any
 from flint import arb
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Literal, Operand
+from symgen.ir.wide_functions import is_wide, plain_operation
 from symgen.verify.expected import Expected
 from symgen.verify.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference_closing import onto_manifold
@@ -91,6 +92,10 @@ def exact_outputs(kernel: Kernel, state: State) -> list[Any]:
         operands = [operand(which) for which in statement.operands]
         if statement.operation == "sincos":
             values.update(zip(statement.targets, operands[0].sin_cos(), strict=True))
+        elif is_wide(statement):
+            sums = map(operator.add, operands[::2], operands[1::2])
+            values[statement.targets[0]] = EXACT[plain_operation(statement.operation)](*sums)
+            values[statement.targets[1]] = arb(0)
         else:
             values[statement.targets[0]] = EXACT[statement.operation](*operands)
     return [operand(which) for which in kernel.outputs]

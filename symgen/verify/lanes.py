@@ -1,14 +1,14 @@
 """What rounding does to the result of a kernel, estimated at many states at once: where to look for its worst.
 
-The reverse mode of `ir/adjoint.py` with a lane for each state, in float64.  Functions are those of NumPy, whose last
-bits differ between machines: no verdict rests on them.
+The reverse mode of automatic differentiation with a lane for each state, in float64.  Functions are those of NumPy,
+whose last bits differ between machines: no verdict rests on them.
 """
 
 from __future__ import annotations
 
 import operator
 import random
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -25,29 +25,15 @@ LARGEST = 1.5
 EXACT = frozenset({"neg", "abs", "copysign", "min", "max"})
 
 
-def estimates(kernel: Kernel, given: Mapping[str, Lanes], without: Collection[str] = ()) -> Lanes:
+def estimates(kernel: Kernel, given: Mapping[str, Lanes]) -> Lanes:
     """The rounding errors of a kernel in units of d + eps |y|, as if all were independent, and 0 where it refuses.
 
-    `given` holds the arguments and the parameters `p`, a row for each state.  Left out are the errors of the targets
-    `without` which they are carried along.  d is that of the kernel itself for arguments and parameters; what literals
-    of the model add is left out, so that this is more than there is rather than less.
+    `given` holds the arguments and the parameters `p`, a row for each state.  d is that of the kernel itself for
+    arguments and parameters; what literals of the model add is left out, so that this is more than there is rather
+    than less.
     """
     own, unit = _weighed(kernel, given)
-    kept = (share for target, share in own.items() if target not in without)
-    return np.sqrt(sum(kept, np.zeros(unit.shape))) / unit
-
-
-def losing(kernel: Kernel, given: Mapping[str, Lanes], left: float) -> frozenset[str]:
-    """Targets without which the estimates are no more than `left` at these states; those that lose least are not."""
-    own, unit = _weighed(kernel, given)
-    shares = {target: share / (left * unit) ** 2 for target, share in own.items()}
-    by_share = sorted(shares, key=lambda target: float(shares[target].max()))
-    total = np.zeros(unit.shape)
-    for place, target in enumerate(by_share):
-        total = total + shares[target]
-        if total.max() > 1:
-            return frozenset(by_share[place:])
-    return frozenset()
+    return np.sqrt(sum(own.values(), np.zeros(unit.shape))) / unit
 
 
 def _weighed(kernel: Kernel, given: Mapping[str, Lanes]) -> tuple[dict[str, Lanes], Lanes]:

@@ -8,19 +8,17 @@ any state of the verification.  A status there is an answer.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterator
 from functools import cached_property
 
 import numpy as np
 
 from symgen.activity import working
-from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Function, Kernel, Scalar
 from symgen.verify.certificate import Fault
 from symgen.verify.comparison import INACCURATE
 from symgen.verify.expected import Expected
-from symgen.verify.interpreted import outcome
-from symgen.verify.lanes import Lanes, estimates, losing
+from symgen.verify.interpreted import outcomes
+from symgen.verify.lanes import Lanes, estimates
 from symgen.verify.nearby import Nearby, Surroundings, joined
 from symgen.verify.reference import ReferenceValueError
 from symgen.verify.settling import Settling
@@ -45,17 +43,10 @@ class Search:
         self._found: defaultdict[str, list[Sample]] = defaultdict(list)
         self._values: dict[tuple[str, int, Scalar], Expectation | None] = {}
 
-    def look(self, kernel: Kernel, without: Collection[str] = ()) -> None:
-        """Adds the worst states of a kernel, in which the errors of the targets `without` are carried along."""
+    def look(self, kernel: Kernel) -> None:
+        """Adds the worst states of a kernel of plain numbers."""
         with working(f"where {kernel.name} is worst"):
-            self._add(kernel.name, *self._estimated(kernel, without))
-
-    def losing(self, kernel: Kernel) -> frozenset[str]:
-        """Targets of a kernel whose errors leave a doubt at its worst states, which are added, too."""
-        with working(f"where {kernel.name} is worst"):
-            states, units = self._estimated(kernel, ())
-            self._add(kernel.name, states, units)
-            return losing(kernel, states.only(_worst(units, KEPT)).parts, DOUBTFUL)
+            self._add(kernel.name, *self._estimated(kernel))
 
     def _add(self, quantity: str, states: Nearby, units: Lanes) -> None:
         for place in (place for place in _worst(units, JUDGED) if units[place] > DOUBTFUL):
@@ -66,25 +57,15 @@ class Search:
 
     def fault(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> Fault | None:
         """A wrong number with status 0 at the states that were found for its quantity, whatever way it takes."""
-        interpreter = Interpreter(sincos, scalar)
+        states = [rounded(sample, scalar).state for sample in self._found[kernel.name]]
         worst = 0.0
-        for place, sample in enumerate(self._found[kernel.name]):
-            made = outcome(interpreter, kernel, rounded(sample, scalar).state)
-            if not made.valid:
-                continue
-            expected = self._expectation(kernel.name, place, scalar)
-            if expected is not None:
+        for place, made in enumerate(outcomes(kernel, sincos, scalar, states)):
+            if made.valid and (expected := self._expectation(kernel.name, place, scalar)) is not None:
                 worst = max(worst, expected.in_units(expected.distance(made.entries)))
         if worst <= FACTOR:
             return None
         what = f"{INACCURATE} {worst:.3g} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
         return Fault(what, kernel.name, scalar)
-
-    def expectations(self, quantity: str, scalar: Scalar) -> Iterator[tuple[Sample, Expectation]]:
-        """The states of a quantity, rounded, and what is expected there."""
-        for place, sample in enumerate(self._found[quantity]):
-            if (expected := self._expectation(quantity, place, scalar)) is not None:
-                yield rounded(sample, scalar), expected
 
     def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
         """None where there is no value once the state is rounded."""
@@ -98,16 +79,16 @@ class Search:
                 self._values[key] = None
         return self._values[key]
 
-    def _estimated(self, kernel: Kernel, without: Collection[str]) -> tuple[Nearby, Lanes]:
+    def _estimated(self, kernel: Kernel) -> tuple[Nearby, Lanes]:
         """States, and the rounding errors that are estimated there."""
         count = min(DRAWN, NUMBERS // (len(kernel.statements) + 1))
         states = self._drawn.only(slice(max(len(self._surroundings.samples), count)))
-        units = estimates(kernel, states.parts, without)
+        units = estimates(kernel, states.parts)
         if units.max() > DOUBTFUL:
             worst = states.only(_worst(units, KEPT))
             further = self._surroundings.moved(worst.only(np.arange(len(worst)).repeat(DIRECTIONS)), kernel.name)
             if len(further):
-                states, units = joined(states, further), np.append(units, estimates(kernel, further.parts, without))
+                states, units = joined(states, further), np.append(units, estimates(kernel, further.parts))
         return states, units
 
     @cached_property

@@ -237,8 +237,8 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
     spoil_named(monkeypatch, edgy)
     result = made(yoke)
     assert all("searched for" in one["why"] for one in derived(result)["rejected"])
-    carried = derived(result)["kernels"].get("multipliers", {}).get("rounding_errors_carried")
-    assert carried or [one.quantity for one in result.left_out] == ["multipliers"]
+    wide = derived(result)["kernels"].get("multipliers", {}).get("twice_the_digits")
+    assert wide or [one.quantity for one in result.left_out] == ["multipliers"]
     assert made(yoke).files["derivation.json"] == result.files["derivation.json"]
 
 
@@ -291,11 +291,25 @@ def test_what_no_way_passes_is_left_out_alone(
     assert "the files on disk are not" not in capsys.readouterr().err
 
 
+def test_float32_works_with_twice_the_digits_where_it_alone_is_rejected(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Its thresholds are sharp then: a state that is regular for float64 is regular."""
+    spoil_choice(monkeypatch, refusing_float32)
+    spoil_named(monkeypatch, refusing_float32)
+    common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
+    assert cli.main(common) == 0
+    content = json.loads((tmp_path / "out/yoke/derivation.json").read_bytes())
+    assert content["kernels"]["multipliers"]["twice_the_digits"] == ["float32"]
+    assert cli.main([*common, "--check"]) == 0
+
+
 def test_float64_stays_where_float32_alone_is_rejected(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     spoil_choice(monkeypatch, refusing_float32)
     spoil_named(monkeypatch, refusing_float32)
+    monkeypatch.setattr(fallback, "LONGEST", 20)
     common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
     assert cli.main(common) == 1
     told = capsys.readouterr().err
@@ -329,7 +343,7 @@ def test_check_takes_over_the_way_that_verification_led_to(
     assert cli.main([*common, "--check"]) == 1
 
 
-def test_where_every_way_loses_digits_one_carries_its_rounding_errors(
+def test_where_every_way_loses_digits_one_works_with_twice_as_many(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     usual = derived(made(yoke))["kernels"]
@@ -337,11 +351,11 @@ def test_where_every_way_loses_digits_one_carries_its_rounding_errors(
     spoil_named(monkeypatch, losing_digits)
     common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8"]
     assert cli.main(common) == 0
-    assert "rounding errors carried along: verification speaks against" in capsys.readouterr().err
+    assert "with twice the digits in float64 and float32: verification speaks against" in capsys.readouterr().err
     folder = tmp_path / "out/yoke"
     content = json.loads((folder / "derivation.json").read_bytes())
     kernel = content["kernels"]["multipliers"]
-    assert set(kernel["rounding_errors_carried"]) == {"float64", "float32"}
+    assert kernel["twice_the_digits"] == ["float64", "float32"]
     assert {one["quantity"] for one in content["rejected"]} == {"multipliers"}
     # nothing else pays for it
     assert {name: one for name, one in content["kernels"].items() if name != "multipliers"} == {
@@ -353,14 +367,10 @@ def test_where_every_way_loses_digits_one_carries_its_rounding_errors(
     assert cli.main([*common, "--quiet", "--check"]) == 0
 
 
-def test_kernels_that_carrying_errors_makes_too_long_are_not_weighed(
-    yoke: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Weighing every rounding of a long kernel takes more memory than all else."""
+def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_choice(monkeypatch, losing_digits)
     spoil_named(monkeypatch, losing_digits)
     monkeypatch.setattr(fallback, "LONGEST", 20)
-    monkeypatch.setattr(fallback, "losing", lambda *_: pytest.fail("weighed"))
     assert [one.quantity for one in made(yoke).left_out] == ["multipliers"]
 
 

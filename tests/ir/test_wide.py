@@ -1,0 +1,270 @@
+"""Kernels with twice the digits: accurate where plain ones lose every digit, and the same function."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from flint import arb
+
+from symgen.diagnostics import SymgenBug
+from symgen.ir.interpret import Interpreter, round_literal
+from symgen.ir.kernel import (
+    UNIT_ROUNDOFF,
+    Argument,
+    Block,
+    Check,
+    Kernel,
+    Literal,
+    Load,
+    Local,
+    Operand,
+    OperationName,
+    Scalar,
+    Statement,
+    Status,
+)
+from symgen.ir.lifted import Lifted, same_kernel
+from symgen.ir.sincos import sincos
+from symgen.ir.wide import GAINED, widened, with_sharp_thresholds
+from symgen.ir.wide_functions import WIDE, wide_function
+from symgen.verify.exactness import EXACT, exact_outputs
+from symgen.verify.many_states import run_many
+from symgen.verify.reference import State
+from symgen.verify.reference_tape import precision
+
+SCALARS: tuple[Scalar, ...] = ("float64", "float32")
+
+
+class Lines:
+    """A kernel line by line; q is a, q_dot are x and y, p is k."""
+
+    def __init__(self) -> None:
+        self.statements: list[Statement] = []
+
+    def __call__(self, operation: OperationName, *operands: Operand | str | Fraction | int, targets: int = 1) -> str:
+        names = tuple(f"t{len(self.statements)}{'ab'[k] if targets > 1 else ''}" for k in range(targets))
+        self.statements.append(Statement(names, operation, tuple(map(_operand, operands))))
+        return names[0]
+
+    def kernel(self, *outputs: str, checks: tuple[Check, ...] = ()) -> Kernel:
+        loads = (Load("x", "qd", 0), Load("y", "qd", 1), Load("a", "q", 0), Load("k", "p", 0, "k"))
+        blocks = (Block((), ()), Block(tuple(self.statements), checks))
+        arguments = (Argument("q", 1), Argument("qd", 2))
+        return Kernel("f", arguments, loads, blocks, tuple(map(Local, outputs)), (len(outputs),))
+
+
+def _operand(x: Operand | str | Fraction | int) -> Operand:
+    if isinstance(x, str):
+        return Local(x)
+    return Literal(Fraction(x)) if isinstance(x, (int, Fraction)) else x
+
+
+def squared(lines: Lines) -> str:
+    """(x - y)^2 multiplied out."""
+    squares = lines("add", lines("mul", "x", "x"), lines("mul", "y", "y"))
+    return lines("sub", squares, lines("mul", 2, lines("mul", "x", "y")))
+
+
+def quotients(lines: Lines) -> str:
+    """x / y - y / x - (x^2 - y^2) / (x y) + (x - y)."""
+    first = lines("sub", lines("div", "x", "y"), lines("ratio_or_zero", "y", "x"))
+    squares = lines("sub", lines("mul", "x", "x"), lines("mul", "y", "y"))
+    rest = lines("sub", first, lines("div", squares, lines("mul", "x", "y")))
+    return lines("add", rest, lines("sub", "x", "y"))
+
+
+def roots(lines: Lines) -> str:
+    """sqrt(x^2 + (x - y)) - x: a root of what is rounded."""
+    under = lines("add", lines("mul", "x", "x"), lines("sub", "x", "y"))
+    return lines("sub", lines("sqrt", under), "x")
+
+
+def literals(lines: Lines) -> str:
+    """(x / 3 + y / 7) 21 - 7 x - 3 y + (x - y): numbers that no float holds."""
+    parts = lines("add", lines("mul", Fraction(1, 3), "x"), lines("div", "y", Fraction(7, 3)))
+    both = lines("add", lines("mul", 7, "x"), lines("mul", 9, "y"))
+    return lines("add", lines("sub", lines("mul", 21, parts), both), lines("sub", "x", "y"))
+
+
+def choices(lines: Lines) -> str:
+    """min(x x, y y) + max(x x, y y) - |-x x| - y y with the sign of x, + (x - y)."""
+    xx, yy = lines("mul", "x", "x"), lines("mul", "y", "y")
+    both = lines("add", lines("min", xx, yy), lines("max", xx, yy))
+    rest = lines("sub", lines("sub", both, lines("abs", lines("neg", xx))), lines("copysign", yy, "x"))
+    return lines("add", rest, lines("sub", "x", "y"))
+
+
+def circle(lines: Lines) -> str:
+    """(1 - cos^2 a) / sin^2 a - 1 + (x - y)."""
+    lines("sincos", "a", targets=2)
+    number = len(lines.statements) - 1
+    sine, cosine = f"t{number}a", f"t{number}b"
+    over = lines("sub", 1, lines("mul", cosine, cosine))
+    quotient = lines("sub", lines("div", over, lines("mul", sine, sine)), 1)
+    return lines("add", quotient, lines("sub", "x", "y"))
+
+
+def turned(lines: Lines) -> str:
+    """sin(a + k) - sin a cos k - cos a sin k + (x - y), the sum large beside k."""
+    sine = lines("sincos", lines("add", "a", "k"), targets=2)
+    lines("sincos", "a", targets=2)
+    first = len(lines.statements) - 1
+    lines("sincos", "k", targets=2)
+    second = len(lines.statements) - 1
+    left = lines("mul", f"t{first}a", f"t{second}b")
+    right = lines("mul", f"t{first}b", f"t{second}a")
+    return lines("add", lines("sub", sine, lines("add", left, right)), lines("sub", "x", "y"))
+
+
+KERNELS: tuple[Callable[[Lines], str], ...] = (squared, quotients, roots, literals, choices, circle)
+
+
+def given(scalar: Scalar) -> list[dict[str, tuple[float, ...]]]:
+    """x and y that differ in the second half of their digits, and angles."""
+    source = random.Random(5)
+    eps = float(UNIT_ROUNDOFF[scalar])
+    found = []
+    for _ in range(20):
+        x = round_literal(Fraction(source.uniform(1, 2)), scalar)
+        y = round_literal(Fraction(x * (1 + 2 * math.sqrt(eps) * source.randint(1, 9))), scalar)
+        a = round_literal(Fraction(source.uniform(0.5, 1)), scalar)
+        found.append({"q": (a,), "qd": (x, y), "qdd": (), "u": (), "p": (a / 64,)})
+    return found
+
+
+def _state(one: Mapping[str, Sequence[float]]) -> State:
+    return State(*(tuple(map(Fraction, one[part])) for part in ("q", "qd", "qdd", "u", "p")))
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+@pytest.mark.parametrize("build", KERNELS, ids=lambda build: build.__name__)
+def test_what_plain_kernels_lose(build: Callable[[Lines], str], scalar: Scalar) -> None:
+    """A relative error of a few eps, where the plain kernel has nothing but rounding errors."""
+    lines = Lines()
+    plain = lines.kernel(build(lines))
+    wide = widened(plain, scalar)
+    interpreter = Interpreter(sincos(scalar), scalar)
+    eps = float(UNIT_ROUNDOFF[scalar])
+    lost = []
+    for one in given(scalar):
+        with precision(200):
+            (exact,) = exact_outputs(plain, _state(one))
+        relative = []
+        for kernel in (plain, wide):
+            status, (entry,) = interpreter.run(kernel, one, one["p"])
+            assert status is Status.OK
+            with precision(200):
+                relative.append(float(abs(arb(entry) - exact) / abs(exact)))
+        lost.append(relative[0])
+        assert relative[1] < 4 * eps
+    assert max(lost) > 100 * eps
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+def test_sums_of_angles(scalar: Scalar) -> None:
+    """What rounding takes of a sum of angles comes back; what is left are the errors of sines, which turn angles."""
+    lines = Lines()
+    wide = widened(lines.kernel(turned(lines)), scalar)
+    interpreter = Interpreter(sincos(scalar), scalar)
+    eps = float(UNIT_ROUNDOFF[scalar])
+    for one in given(scalar):
+        _, (entry,) = interpreter.run(wide, one, one["p"])
+        x, y = one["qd"]
+        assert abs(entry - (x - y)) < 4 * eps * one["q"][0]
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+@pytest.mark.parametrize("operation", WIDE.values())
+def test_operations_on_pairs(operation: OperationName, scalar: Scalar) -> None:
+    """A few eps^2 of the larger operand of a sum, of the result otherwise."""
+    source = random.Random(operation)
+    plain = next(name for name, wide in WIDE.items() if wide == operation)
+    eps = UNIT_ROUNDOFF[scalar]
+    function = wide_function(operation, scalar)
+    names = [Local(name) for name in function.parameters]
+    statements = (Statement(("value", "rest"), operation, tuple(names)),)
+    loads = tuple(Load(name.name, "q", place) for place, name in enumerate(names))
+    outputs = (Local("value"), Local("rest"))
+    kernel = Kernel("f", (Argument("q", len(names)),), loads, (Block(statements, ()),), outputs, (2,))
+    interpreter = Interpreter(None, scalar)
+    for _ in range(300):
+        operands = []
+        for _ in names[::2]:
+            value = round_literal(Fraction(source.uniform(0.5, 1) * 2.0 ** source.randint(-6, 6)), scalar)
+            sign = 1 if operation == "wide_sqrt" else source.choice((-1, 1))
+            rest = round_literal(Fraction(value) * eps * Fraction(source.uniform(-0.9, 0.9)), scalar)
+            operands += [sign * value, rest]
+        _, (value, rest) = interpreter.run(kernel, {"q": operands}, ())
+        assert abs(rest) <= 2 * eps * abs(value)
+        with precision(300):
+            sums = [arb(a) + arb(b) for a, b in zip(operands[::2], operands[1::2], strict=True)]
+            exact = EXACT[plain](*sums)
+            size = max(map(abs, sums)) if plain in ("add", "sub") else abs(exact)
+            assert abs(arb(value) + arb(rest) - exact) < 16 * float(eps) ** 2 * size
+
+
+def test_nothing_over_nothing_is_zero() -> None:
+    interpreter = Interpreter(None, "float64")
+    zero = Literal(Fraction(0))
+    statement = Statement(("value", "rest"), "wide_ratio_or_zero", (Local("x"), zero, Local("y"), zero))
+    loads = (Load("x", "qd", 0), Load("y", "qd", 1))
+    kernel = Kernel("f", (Argument("qd", 2),), loads, (Block((statement,), ()),), (Local("value"), Local("rest")), (2,))
+    assert interpreter.run(kernel, {"qd": (3.0, 0.0)}, ()) == (Status.OK, [0.0, 0.0])
+
+
+def test_a_pair_that_is_not_the_same_is_found() -> None:
+    """Exactly, a rest is 0 and a value what plain operations give: anything else is refused."""
+    lines = Lines()
+    plain = lines.kernel(squared(lines))
+    wide = widened(plain, "float64")
+    statements = list(wide.blocks[1].statements)
+    place = next(k for k, one in enumerate(statements) if one.operation == "wide_sub")
+    statements[place] = Statement(statements[place].targets, "wide_add", statements[place].operands)
+    wrong = replace(wide, blocks=(wide.blocks[0], Block(tuple(statements), ())))
+    with pytest.raises(SymgenBug, match="a sign"):
+        same_kernel("a sign", Lifted(plain), Lifted(wrong), squares_roots=True)
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+@pytest.mark.parametrize("build", [*KERNELS, turned], ids=lambda build: build.__name__)
+def test_many_states_have_the_bits_of_one(build: Callable[[Lines], str], scalar: Scalar) -> None:
+    lines = Lines()
+    last = build(lines)
+    limit = Check(Status.CONSTRAINT_RANK, Local(last), Literal(Fraction(0)), first=Block((), (_inner(last),)))
+    for kernel in (lines.kernel(last, checks=(limit,)), widened(lines.kernel(last, checks=(limit,)), scalar)):
+        for function in (sincos(scalar), None):
+            states = [*given(scalar), {"q": (math.nan,), "qd": (math.inf, 0.0), "qdd": (), "u": (), "p": (1.0,)}]
+            found = run_many(kernel, function, scalar, states)
+            interpreter = Interpreter(function, scalar)
+            assert found == [interpreter.run(kernel, one, one["p"]) for one in states]
+
+
+def _inner(last: str) -> Check:
+    return Check(Status.MASS_RANK, Local(last), Literal(Fraction(-1, 10**6)))
+
+
+def test_sharp_thresholds() -> None:
+    """Of multiples of eps and eps^2 as many digits are taken off as pairs of float32 gain; angles keep their range."""
+    def kernel(eps: Fraction, largest: int) -> Kernel:
+        lines = Lines()
+        scaled = lines("mul", 8 * eps, lines("mul", "x", "x"))
+        tests = (
+            Check(Status.CONSTRAINT_RANK, Local("y"), Literal(24 * eps**2)),
+            Check(Status.MASS_RANK, Local("y"), Local(scaled)),
+            Check(Status.ANGLE_RANGE, Literal(Fraction(largest)), Local("a"), inclusive=True),
+        )
+        return lines.kernel(scaled, checks=tests)
+
+    single, double = (kernel(UNIT_ROUNDOFF[s], largest) for s, largest in (("float32", 100), ("float64", 100_000)))
+    sharp = with_sharp_thresholds(single, double)
+    gained = Fraction(1, 2**GAINED)
+    eps = UNIT_ROUNDOFF["float32"]
+    assert sharp.blocks[1].statements[1].operands[0] == Literal(8 * eps * gained)
+    first, second, third = sharp.blocks[1].checks
+    assert first.limit == Literal(24 * eps**2 * gained**2)
+    assert (second, third) == single.blocks[1].checks[1:]
