@@ -1,0 +1,70 @@
+"""Kernels run at all states at once give the bits and statuses of the interpreter, which takes one after the other."""
+
+from __future__ import annotations
+
+import math
+import random
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+
+from symgen.ir.interpret import OPERATIONS, Interpreter
+from symgen.ir.kernel import Argument, Block, Check, Kernel, Literal, Load, Local, Scalar, Statement, Status
+from symgen.verify.many_states import run_many
+
+SPECIAL = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-40, -3e38, math.inf, -math.inf, math.nan)
+UNARY = ("neg", "abs", "sqrt", "tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh")
+A, B = Local("a"), Local("b")
+LOADS = (Load("a", "q", 0), Load("b", "q", 1))
+ARGUMENTS = (Argument("q", 2),)
+
+
+def states(scalar: Scalar) -> list[dict[str, list[float]]]:
+    source = random.Random(scalar)
+    pairs = [*product(SPECIAL, repeat=2), *((source.gauss(0, 2), source.gauss(0, 2)) for _ in range(40))]
+    number = np.float32 if scalar == "float32" else np.float64
+    with np.errstate(all="ignore"):
+        return [{"q": [float(number(x)) for x in pair], "p": []} for pair in pairs]
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+def test_every_operation_has_the_same_bits(scalar: Scalar) -> None:
+    given = states(scalar)
+    for name in OPERATIONS:
+        statements = [Statement(("x",), name, (A,) if name in UNARY else (A, B))]  # type: ignore[arg-type]
+        statements.append(Statement(("y",), "mul", (Local("x"), Literal(Fraction(1, 3)))))
+        statements.append(Statement(("s", "c"), "sincos", (Local("y"),)))
+        outputs = tuple(map(Local, "xysc"))
+        kernel = Kernel("k", ARGUMENTS, LOADS, (Block(tuple(statements), ()),), outputs, (4,))
+        for state, (status, entries) in zip(given, run_many(kernel, None, scalar, given), strict=True):
+            wanted, numbers = Interpreter(None, scalar).run(kernel, state, ())
+            assert status is wanted
+            assert _same(entries, numbers), (name, state)
+
+
+def _same(found: list[float], wanted: list[float]) -> bool:
+    """All bits but the sign of NaN, which nothing reads."""
+    pairs = zip(found, wanted, strict=True)
+    return all((a == b and math.copysign(1, a) == math.copysign(1, b)) or (a != a and b != b) for a, b in pairs)
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+def test_the_first_check_that_fails_tells_the_status(scalar: Scalar) -> None:
+    zero, one = Literal(Fraction(0)), Literal(Fraction(1))
+    first = Block((Statement(("t",), "sub", (one, A)),), (Check(Status.CONSTRAINT_RANK, Local("t"), zero),))
+    blocks = (
+        Block((Statement(("x",), "sub", (A, B)),), (Check(Status.ACTUATION_RANK, Local("x"), zero, first=first),)),
+        Block((Statement(("y",), "div", (one, B)),), (Check(Status.MASS_RANK, B, zero, inclusive=True),)),
+    )
+    kernel = Kernel("k", ARGUMENTS, LOADS, blocks, (Local("x"), Local("y"), one), (3,))
+    given, met = states(scalar), set()
+    for state, (status, entries) in zip(given, run_many(kernel, None, scalar, given), strict=True):
+        wanted, numbers = Interpreter(None, scalar).run(kernel, state, ())
+        met.add(status)
+        assert status is wanted
+        assert _same(entries, numbers)
+    assert met == {
+        Status.OK, Status.NOT_FINITE, Status.CONSTRAINT_RANK, Status.ACTUATION_RANK, Status.MASS_RANK
+    }  # fmt: skip
