@@ -36,8 +36,13 @@ class Sample:
 def affordable_states(reference: Reference, quantities: Sequence[str], wanted: int) -> int:
     """How many of `wanted` states fit in 20 s, by a count of operations (never by a clock), but 8 at least."""
     system, ranks = reference.system, reference.ranks
-    subsets = comb(system.r, ranks.constraints)
-    operations = system.operations(gradients=not NEED_GRADIENTS.isdisjoint(quantities)) + 40 * system.n**3 * subsets
+    solved = 40 * sum(len(part.coordinates) ** 3 for part in system.heavy) + 2 * system.n**2
+    if len(ranks.of_parts) == len(system.parts):
+        of_parts = zip(system.parts, ranks.of_parts, strict=True)
+        subsets = max(comb(len(part.rows), constraints) for part, (constraints, _) in of_parts)
+    else:
+        subsets = comb(system.r, ranks.constraints)
+    operations = system.operations(gradients=not NEED_GRADIENTS.isdisjoint(quantities)) + solved * subsets
     seconds_per_state = 30 * 1.3e-7 * operations
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from decimal import Decimal
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
+import pytest
 from counted import calls
 
 from symgen.dynamics.admission.search import Search, symbols
@@ -14,6 +16,10 @@ from symgen.dynamics.inverse import InverseDynamics, Offer
 from symgen.dynamics.mechanics import Mechanics
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.verify import reference_closing, reference_evaluation, reference_linear
+from symgen.verify.reference import Reference
+from symgen.verify.reference_linear import solve
+from symgen.verify.states import sample_states
 
 
 def sliders(count: int) -> Model:
@@ -89,3 +95,29 @@ def test_forces_of_twice_the_loops_are_a_few_times_the_work() -> None:
 
     few, many = (calls(partial(forces, sliders(n)), 20_000_000) for n in (6, 12))
     assert many <= 2.6 * few
+
+
+def test_states_of_twice_the_loops_are_a_few_times_the_work() -> None:
+    """Loops that lead elsewhere are started anew alone: that all of them are regular at once is rare."""
+
+    def looked_for(reference: Reference) -> None:
+        assert len(sample_states(reference, ["inverse_dynamics"], 16)) == 16
+
+    few, many = (calls(partial(looked_for, Reference(sliders(n))), 20_000_000) for n in (6, 12))
+    assert many <= 2.3 * few
+
+
+def test_the_reference_solves_nothing_larger_than_a_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes: list[int] = []
+
+    def noted(matrix: Any, right: Any) -> Any:
+        sizes.append(matrix.nrows())
+        return solve(matrix, right)
+
+    for module in (reference_closing, reference_evaluation, reference_linear):
+        monkeypatch.setattr(module, "solve", noted)
+    reference = Reference(sliders(5))
+    (sample, *_) = sample_states(reference, ["singularity"], 8)
+    reference.precise(sample.state, ("inverse_dynamics", "forward_dynamics", "multipliers", "singularity"))
+    assert max(sizes) == 3
+    assert len(reference.system.parts) == 5
