@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from itertools import pairwise
 from fractions import Fraction
 from math import pi
 from random import Random
@@ -137,8 +138,12 @@ def test_affordable_states_shrink_with_the_model_only() -> None:
     assert affordable_states(Reference(slider_crank()), ["mass_matrix"], 64) == 64
     assert affordable_states(Reference(slider_crank()), ["mass_matrix"], 1000) == 1000
     names = [f"x_{i}" for i in range(30)]
-    long_chain = build("chain", " ".join(names), " + ".join(f"{n}_dot**2" for n in names))
+    masses = [f"{n}_dot**2" for n in names]
+    coupled = [f"({a}_dot - {b}_dot)**2" for a, b in pairwise(names)]
+    long_chain = build("chain", " ".join(names), " + ".join([*masses, *coupled]))
     assert 8 <= affordable_states(Reference(long_chain), ["mass_matrix"], 64) < 64
+    apart = build("apart", " ".join(names), " + ".join(masses))
+    assert affordable_states(Reference(apart), ["mass_matrix"], 64) == 64
 
 
 def test_error_unit_follows_condition_inputs_parameters_and_literals() -> None:
