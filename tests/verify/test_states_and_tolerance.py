@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import struct
-from itertools import pairwise
 from fractions import Fraction
+from itertools import pairwise
 from math import pi
 from random import Random
 
