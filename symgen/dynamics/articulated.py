@@ -25,6 +25,7 @@ from symgen.records import dataclass
 
 # Turning rates and velocities of the origin, or moments and forces, in the frame's axes.
 Six = tuple[Scalar, ...]
+Sizes = tuple[Vector3, Scalar]
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,37 +248,42 @@ class ArticulatedFactor:
         linear = plus((twist[3], twist[4], twist[5]), cross(angular, joint.place))
         return (*applied(inward, angular), *applied(inward, linear))
 
-    def size(self, direction: Six, bounds: tuple[Scalar, Scalar]) -> Scalar:
-        """A bound of the inertia along a motion, from those of the moment of inertia and the mass."""
-        about, mass = bounds
-        return self._squared(direction[:3]) * about + self._squared(direction[3:]) * mass
+    def size(self, direction: Six, bounds: Sizes) -> Scalar:
+        """What the inertia along a motion is made of, from bounds of the moments of inertia and of the mass."""
+        squares = [x * x for x in magnitude(self.graph, direction)]
+        turning = self.graph.sum(x * y for x, y in zip(squares[:3], bounds[0], strict=True))
+        return turning + self.graph.sum(squares[3:]) * bounds[1]
 
-    def sizes(self, alone: Collection[str] = ()) -> dict[str, tuple[Scalar, Scalar]]:
-        """For each frame with all it carries: bounds of the moment of inertia about its origin, and the mass.
+    def sizes(self, alone: Collection[str] = ()) -> dict[str, Sizes]:
+        """For each frame with all it carries: bounds of the moments of inertia about its axes, and of the mass.
 
-        Frames that are `alone` carry nothing but their own bodies.
+        Axis by axis, since a thin rod resists a turn about itself a million times less than one about another axis;
+        what a frame carries counts about the axes that it can turn there.  Frames that are `alone` carry nothing.
         """
         graph, zero = self.graph, self.graph.zero
-        about, first, mass = (dict.fromkeys(self.frames, zero) for _ in range(3))
+        first, mass = (dict.fromkeys(self.frames, zero) for _ in range(2))
+        about = {name: [zero] * 3 for name in self.frames}
         for body in self._bodies.mechanism.bodies:
             if body.frame == WORLD:
                 continue
             rows, com = self._bodies.inertia(body.name), self._bodies.kinematics.space.values(body.com)
-            m, arm = self._bodies.scalars.value(body.mass), graph.sum(magnitude(graph, com))
-            own = graph.sum(magnitude(graph, [rows[i][i] for i in range(3)]))
-            about[body.frame] = about[body.frame] + own + m * arm * arm
-            first[body.frame], mass[body.frame] = first[body.frame] + m * arm, mass[body.frame] + m
+            m, arms = self._bodies.scalars.value(body.mass), magnitude(graph, com)
+            for k, own in enumerate(magnitude(graph, [rows[i][i] for i in range(3)])):
+                across = graph.sum(arms[i] for i in range(3) if i != k)
+                about[body.frame][k] = about[body.frame][k] + own + m * across * across
+            first[body.frame] = first[body.frame] + m * graph.sum(arms)
+            mass[body.frame] = mass[body.frame] + m
         for name in reversed(self.frames):
             parent = self._parents[name]
             if parent != WORLD and parent not in alone:
-                arm = graph.sum(magnitude(graph, self._bodies.kinematics.joint(name).place))
-                moment, m = first[name], mass[name]
-                about[parent] = about[parent] + about[name] + (moment + moment + m * arm) * arm
-                first[parent], mass[parent] = first[parent] + moment + m * arm, mass[parent] + m
-        return {name: (about[name], mass[name]) for name in self.frames}
-
-    def _squared(self, vector: Six) -> Scalar:
-        return self.graph.sum(x * x for x in magnitude(self.graph, vector))
+                joint = self._bodies.kinematics.joint(name)
+                arms, moment, m = magnitude(graph, joint.place), first[name], mass[name]
+                for k, row in enumerate(joint.axes):
+                    carried = graph.sum(x for x, part in zip(about[name], row, strict=True) if not part.is_zero)
+                    across = graph.sum(arms[i] for i in range(3) if i != k)
+                    about[parent][k] = about[parent][k] + carried + (moment + moment + m * across) * across
+                first[parent], mass[parent] = first[parent] + moment + m * graph.sum(arms), mass[parent] + m
+        return {name: ((about[name][0], about[name][1], about[name][2]), mass[name]) for name in self.frames}
 
     def _times(self, inertia: Matrix, direction: Six) -> Six:
         return tuple(self._dot(row, direction) for row in inertia)
