@@ -9,9 +9,10 @@ from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.assembly import Assembly, Place
 from symgen.model.branches import Open
 from symgen.model.dense import Rows, rank
-from symgen.model.expression import Binary, Expression, Power
+from symgen.model.expression import Binary, Expression, Name, Power
 from symgen.model.masses import check_masses
 from symgen.model.mechanics import Mechanics
+from symgen.model.mechanism import Quaternion
 from symgen.model.model import Coordinate
 from symgen.model.names import counted, shown_names
 from symgen.model.walk import evaluate
@@ -166,9 +167,14 @@ def _held(mechanics: Mechanics, found: Assembly, span: Span | None) -> Iterator[
         names = shown_names(name for name, _ in places)
         listed = ", ".join(f"{name} = {value:.4g}" for name, value in places[:MOST_SHOWN])
         listed += ", ..." if len(places) > MOST_SHOWN else ""
+        rotations = (frame.rotation for frame in mechanics.mechanism.frames)
+        parts = {x.name for r in rotations if isinstance(r, Quaternion) for x in r.parts if isinstance(x, Name)}
+        # an attitude has four parts, whatever it is held to
+        spare = sum(name not in parts for name, _ in places)
+        left_out = f", else leave the coordinate{'s' if spare > 1 else ''} out" if spare == len(places) else ""
         yield Notice(
-            f"{names} cannot move: the constraints hold {listed}; if that is not meant, check axes, lengths and loops, "
-            f"else leave the {'coordinates' if len(places) > 1 else 'coordinate'} out",
+            f"{names} cannot move: the constraints hold {listed}; if that is not meant, check axes, lengths and "
+            f"loops{left_out}",
             span,
         )
 

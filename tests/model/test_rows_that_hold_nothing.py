@@ -251,3 +251,23 @@ def test_a_length_that_no_motion_makes_up_for_is_tied_in_any_axes() -> None:
     assert all(_rows(model).values())
     assert model.assembly is not None
     assert model.assembly.tied == ("w",)
+
+
+def test_a_part_of_a_quaternion_that_cannot_move_is_not_to_be_left_out() -> None:
+    text = """model: hinged
+joints:
+  ball: {type: spherical, coordinates: [e_0, e_1, e_2, e_3]}
+  slide: {type: prismatic, axis: x, coordinate: s}
+bodies:
+  ball: {mass: 1, com: [0, 0.1, 0], inertia: {xx: 1, yy: 1, zz: 1}}
+  slide: {mass: 1}
+gravity: [0, 0, -9.81]
+constraints: {geometric: {plane: e_3 - 0.6, still: EXPRESSION}}
+configuration: {e_0: 0.8, e_3: 0.6}
+"""
+    for expression in ("e_3 + e_1 - 0.6", "s - 0.2"):
+        told = [x.message for x in load_text(text.replace("EXPRESSION", expression), "hinged.yaml").notices]
+        assert sum("`e_3`" in x and "cannot move" in x for x in told) == 1
+        assert not any("leave the coordinate" in x for x in told)
+    alone = load_text(text.replace("plane: e_3 - 0.6, still: EXPRESSION", "still: s - 0.2"), "hinged.yaml")
+    assert any("else leave the coordinate out" in notice.message for notice in alone.notices)
