@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symgen.ir.kernel import Kernel
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.quantities import QUANTITIES
 
 # Those with a kernel for many states: what trajectories, sampling and simulations evaluate by the million.
@@ -63,4 +64,5 @@ def meaning(kernel: Kernel) -> str:
     if known is None:
         return kernel.name.replace("_", " ")
     line = f"{known.symbol}: {known.description}" + (f", {known.equation}" if known.equation else "")
-    return line + (f"; {kernel.remark}" if kernel.remark else "")
+    digits = "; works with twice the digits" if works_with_pairs(kernel) else ""
+    return line + digits + (f"; {kernel.remark}" if kernel.remark else "")

@@ -59,10 +59,11 @@ class Balls:
 
     def power(self, base: Any, exponent: Fraction) -> Any:
         """base to a rational power."""
-        if exponent.denominator == 1:
-            return base**exponent.numerator
-        if exponent.denominator == 2:
-            return base.sqrt() ** exponent.numerator
+        if exponent.denominator <= 2:
+            root = base if exponent.denominator == 1 else base.sqrt()
+            # powers of balls about 0 by logarithms are no numbers
+            product = math.prod([root] * abs(exponent.numerator), start=self._arb(1))
+            return product if exponent > 0 else 1 / product
         return base ** (self._arb(exponent.numerator) / self._arb(exponent.denominator))
 
 

@@ -254,3 +254,14 @@ def test_what_rounding_leaves_of_an_idle_input_spans_nothing() -> None:
     witness = Witness(RADIAL, {"a": 0.7})
     _, ranks = Walker(witness._system, witness._evaluate, {"a": 0.7}, Dice("radial")).states({}, 6)
     assert ranks.actuation == 1
+
+
+def test_powers_of_what_may_be_zero() -> None:
+    """The square of a speed that is 0 but for its digits is a number."""
+    balls = Balls()
+    with precision():
+        nothing = balls.number(Fraction(1, 3)) - balls.number(Fraction(1, 3))
+        assert abs(float(balls.power(nothing, Fraction(2)).mid())) < 1e-60
+        for exponent in (3, -3, Fraction(1, 2), Fraction(-3, 2), Fraction(1, 3)):
+            value = balls.power(balls.number(Fraction(5, 2)), Fraction(exponent))
+            assert float(value.mid()) == pytest.approx(2.5 ** float(exponent), rel=1e-14)
