@@ -30,6 +30,9 @@ NEWTON_STEPS = 12
 CLOSED = 1e-11
 # Of the largest singular value: rows depend on each other.
 DEPENDENT = 1e-8
+QUARTER = np.pi / 2
+# Powers of ten: how far an angle is from a multiple of a quarter turn.
+OFF = (1.0, 5.0)
 # A step of differences along the rates, in radians and metres a unit of time.
 DIFFERENCE = 1e-5
 
@@ -83,7 +86,7 @@ class Surroundings:
         parts["p"] = _rows([state.parameters for state in states])
         admissible = np.array([sample.admissible for sample in samples])
         self.samples = Nearby(parts, admissible, np.arange(len(samples)))
-        coordinates = reference.model.coordinates
+        coordinates = self._coordinates = reference.model.coordinates
         self._low, self._high = (np.array([float(c.range[side]) for c in coordinates]) for side in (0, 1))
         self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
         self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
@@ -93,6 +96,25 @@ class Surroundings:
         """About so many: a step off each sample in turn, with other rates, accelerations and inputs."""
         start = self.samples.only(np.arange(count) % len(self.samples))
         return self._stepped(start, REACH, 1.0, random.Random("nearby"), afresh=True)
+
+    def aligned(self, count: int) -> Nearby:
+        """About so many with an angle near a multiple of a quarter turn, where a sine or cosine vanishes.
+
+        What divides by one of them loses digits there, and states at random do not come near.
+        """
+        start = self.samples.only(np.arange(count) % len(self.samples))
+        angles = [place for place, c in enumerate(self._coordinates) if c.unit == "rad"]
+        if not angles:
+            return start.only(slice(0))
+        dice = random.Random("aligned")
+        places = np.array([dice.choice(angles) for _ in range(count)])
+        before = start.parts["q"][np.arange(count), places]
+        off = np.array([dice.choice((-1, 1)) * 10.0 ** -dice.uniform(*OFF) for _ in range(count)])
+        held = (places, np.round(before / QUARTER) * QUARTER + off)
+        with np.errstate(all="ignore"):
+            q, _ = self._onto_manifold(start.parts["q"], start.parts["p"], held)
+            parts = {**start.parts, "q": q}
+            return self._settled(Nearby(parts, start.admissible, start.origins), start.parts["q"])
 
     def moved(self, states: Nearby, seed: str) -> Nearby:
         """States a step further, of which some are left out: those that are not regular or out of range."""
@@ -150,11 +172,16 @@ class Surroundings:
             parts["qd"], parts["qdd"] = np.where(on, qd, parts["qd"]), np.where(on, qdd, parts["qdd"])
         return Nearby(parts, states.admissible, states.origins).only(good)
 
-    def _onto_manifold(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
-        """The places where Newton's method ends, and whether the loops of each coordinate are closed there."""
+    def _onto_manifold(self, q: Lanes, p: Lanes, held: tuple[Lanes, Lanes] | None = None) -> tuple[Lanes, Lanes]:
+        """The places where Newton's method ends, and whether the loops of each coordinate are closed there.
+
+        `held` are the place of a coordinate and its value, for each state: another row.
+        """
         r, n = self._system.r_geometric, self._system.n
         q = q.copy()
         shut = np.ones(q.shape, dtype=bool)
+        if held is not None:
+            q[np.arange(len(q)), held[0]] = held[1]
         for _ in range(NEWTON_STEPS if r else 0):
             made = self._run(self._system.geometry_replay, q, p)
             steps = []
@@ -164,6 +191,9 @@ class Surroundings:
                 gaps = _block(made, [[i] for i in loop.rows])[:, :, 0]
                 finite = np.isfinite(rows).all(axis=(1, 2)) & np.isfinite(gaps).all(axis=1)
                 rows[~finite], gaps[~finite] = 0.0, 0.0
+                if held is not None:
+                    rows = np.concatenate((rows, (held[0][:, None] == np.array(these))[:, None] * 1.0), axis=1)
+                    gaps = np.concatenate((gaps, np.zeros((len(q), 1))), axis=1)
                 lengths = _lengths(rows)
                 gaps = gaps / lengths[:, :, 0]
                 near = np.abs(gaps).max(axis=1) <= CLOSED

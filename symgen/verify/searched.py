@@ -26,7 +26,7 @@ from symgen.verify.states import Sample, rounded
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
 
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
-DRAWN = 512
+DRAWN, ALIGNED = 512, 256
 NUMBERS = 4_000_000
 # Of the worst of them, how many go further, and in how many directions.
 KEPT, DIRECTIONS = 32, 8
@@ -81,7 +81,7 @@ class Search:
 
     def _estimated(self, kernel: Kernel) -> tuple[Nearby, Lanes]:
         """States, and the rounding errors that are estimated there."""
-        count = min(DRAWN, NUMBERS // (len(kernel.statements) + 1))
+        count = min(DRAWN + ALIGNED, NUMBERS // (len(kernel.statements) + 1))
         states = self._drawn.only(slice(max(len(self._surroundings.samples), count)))
         units = estimates(kernel, states.parts)
         if units.max() > DOUBTFUL:
@@ -97,7 +97,8 @@ class Search:
 
     @cached_property
     def _drawn(self) -> Nearby:
-        return joined(self._surroundings.samples, self._surroundings.drawn(DRAWN))
+        around = self._surroundings
+        return joined(joined(around.samples, around.aligned(ALIGNED)), around.drawn(DRAWN))
 
     @cached_property
     def _settling(self) -> Settling:
