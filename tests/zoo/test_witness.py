@@ -265,3 +265,32 @@ def test_powers_of_what_may_be_zero() -> None:
         for exponent in (3, -3, Fraction(1, 2), Fraction(-3, 2), Fraction(1, 3)):
             value = balls.power(balls.number(Fraction(5, 2)), Fraction(exponent))
             assert float(value.mid()) == pytest.approx(2.5 ** float(exponent), rel=1e-14)
+
+
+# y is 1 or -1; only where it is 1 the input moves x
+TWO = """model: two
+coordinates: {x: {unit: m, range: [-1, 1]}, y: {unit: m, range: [-2, 2]}}
+parameters: {m: {value: 2, unit: kg}, l: {value: 1, unit: m}}
+kinetic_energy: m/2*(x_dot**2 + y_dot**2)
+constraints: {geometric: {kept: y**2 - l**2}}
+inputs: {u: {unit: N, acts_on: {x: 1 + y/l}}}
+configuration: {x: 0.3, y: -1}
+outputs: [inverse_dynamics, forward_dynamics]
+"""
+
+
+def test_a_branch_on_which_inputs_span_less_has_a_status(tmp_path: Path) -> None:
+    """It is told; what the kernel answers there is no false status, whether it is this one is looked at."""
+    model = tmp_path / "two.yaml"
+    model.write_text(TWO, encoding="utf-8")
+    run = run_command(model, tmp_path / "out")
+    assert "another branch of configurations" in run.err
+    witness = Witness(TWO, {"x": 0.3, "y": -1.0})
+    checked = witness.check(tmp_path / "out/two")
+    assert checked.states
+    assert checked.findings == ()
+    json_file = tmp_path / "out/two/derivation.json"
+    text = json_file.read_text(encoding="utf-8")
+    json_file.write_text(text.replace('"alpha": 1', '"alpha": 0'), encoding="utf-8")
+    (finding, *_) = Witness(TWO, {"x": 0.3, "y": -1.0}).check(tmp_path / "out/two").findings
+    assert finding.kind == "witness: status"
