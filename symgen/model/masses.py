@@ -83,8 +83,8 @@ class _Masses:
             definite_somewhere = definite_somewhere or definite
             if definite_somewhere and mechanics.mass_is_sure:
                 break
-            if not definite_somewhere:
-                still |= self._without_mass(jacobian, mass)
+            if not definite_somewhere and not still:
+                still = self._without_mass(jacobian, mass)
         if not definite_somewhere:
             yield self._undetermined(still, span)
 
@@ -187,8 +187,10 @@ def _above(values: Rows, least: Rows) -> Rows:
 
 
 def _reduced(matrix: Rows, basis: Rows) -> Rows:
-    images = [[sum(a * b for a, b in zip(row, vector, strict=True)) for row in matrix] for vector in basis]
-    return [[sum(a * b for a, b in zip(image, vector, strict=True)) for vector in basis] for image in images]
+    # most vectors of most bases have one entry
+    sparse = [[(j, x) for j, x in enumerate(vector) if x] for vector in basis]
+    images = [[sum(row[j] * x for j, x in vector) for row in matrix] for vector in sparse]
+    return [[sum(image[j] * x for j, x in vector) for vector in sparse] for image in images]
 
 
 def _negative_energy(mechanics: Mechanics, where: str, span: Span | None) -> Mistake:
