@@ -50,9 +50,10 @@ def closed(
     q = list(column(start).entries())
     if system.r_geometric == 0:
         return q, []
-    geometry = system.geometry(q, parameters, literals)
-    units = _units(system, geometry[1])
-    loops = [_Loop(part, units, q, geometry) for part in system.loops]
+    geometry = system.loop_geometry(q, parameters, literals)
+    units = _units(system, geometry)
+    own = zip(system.loops, units, geometry, strict=True)
+    loops = [_Loop(place, part, unit, q, found) for place, (part, unit, found) in enumerate(own)]
     for _ in range(MOST_STEPS):
         moving = [loop for loop in loops if not loop.ended and not loop.size <= tolerance]
         if not moving:
@@ -63,9 +64,9 @@ def closed(
         place = list(q)
         for loop, trial in trials:
             loop.put(trial, place)
-        geometry = system.geometry(place, parameters, literals)
+        geometry = system.loop_geometry(place, parameters, literals)
         for loop, trial in trials:
-            loop.judge(trial, geometry)
+            loop.judge(trial, geometry[loop.place])
             loop.put(loop.q, q)
     length = max(1.0, norm(column(q)))
     near = {loop: ROUNDED * norm(loop.jacobian) * length if rounded else 0.0 for loop in loops}
@@ -73,11 +74,13 @@ def closed(
 
 
 class _Loop:
-    """The rows of a part and what they know of Newton's method."""
+    """The rows of a part and what they know of Newton's method; `place` is its number."""
 
-    def __init__(self, part: Part, units: Sequence[int], q: Sequence[Any], geometry: tuple[Any, Any]) -> None:
-        self.part = part
-        self._units = powers([units[i] for i in part.rows])
+    def __init__(
+        self, place: int, part: Part, units: Sequence[int], q: Sequence[Any], geometry: tuple[Any, Any]
+    ) -> None:
+        self.place, self.part = place, part
+        self._units = powers(units)
         self.q = column([q[j] for j in part.coordinates])
         self.residual, self.jacobian = self._own(geometry)
         self.size = norm(self.residual)
@@ -113,8 +116,7 @@ class _Loop:
 
     def _own(self, geometry: tuple[Any, Any]) -> tuple[Any, Any]:
         residual, jacobian = geometry
-        rows, columns = self.part.rows, self.part.coordinates
-        return self._units * piece(residual, rows, (0,)), self._units * piece(jacobian, rows, columns)
+        return self._units * residual, self._units * jacobian
 
 
 def _step(residual: Any, jacobian: Any, damping: float) -> Any:
@@ -131,26 +133,25 @@ def admissible(
     system: System, q: Sequence[Any], shift: Sequence[float], parameters: Sequence[Any], literals: Sequence[Any]
 ) -> list[Any]:
     """The part of a shift that leaves the geometric rows as they are to first order; rows may depend on each other."""
-    jacobian = system.geometry(column(q).entries(), parameters, literals)[1].mid()
-    units = _units(system, jacobian)
+    geometry = system.loop_geometry(column(q).entries(), parameters, literals)
     moved, found = column(shift), []
-    for part in system.loops:
-        rows = powers([units[i] for i in part.rows]) * piece(jacobian, part.rows, part.coordinates)
+    for part, units, (_, jacobian) in zip(system.loops, _units(system, geometry), geometry, strict=True):
+        rows = powers(units) * jacobian.mid()
         step = _step(rows * piece(moved, part.coordinates, (0,)), rows, 1e-25)
         if step is not None:
             found.append((part.coordinates, (0,), step))
     return list((moved - placed(system.n, 1, found)).mid().entries())
 
 
-def _units(system: System, jacobian: Any) -> Sequence[int]:
-    """Powers of 2 that bring geometric rows to ordinary size.
+def _units(system: System, geometry: Sequence[tuple[Any, Any]]) -> list[list[int]]:
+    """Powers of 2 that bring the rows of each loop to ordinary size.
 
     Where loading found what rows usually are that counts: of some nothing but rounding is left on V.
     """
     if system.model.assembly is not None and system.model.assembly.units:
-        return system.model.assembly.units[: system.r_geometric]
-    sizes = [max((abs(float(entry)) for entry in row), default=0.0) for row in jacobian.tolist()]
-    return [-frexp(size)[1] if 0 < size < inf else 0 for size in sizes]
+        return [[system.model.assembly.units[i] for i in loop.rows] for loop in system.loops]
+    sizes = [[max((abs(float(x)) for x in row), default=0.0) for row in rows.tolist()] for _, rows in geometry]
+    return [[-frexp(size)[1] if 0 < size < inf else 0 for size in these] for these in sizes]
 
 
 def powers(exponents: Sequence[int]) -> Any:

@@ -131,13 +131,24 @@ class System:
     def _set_parts(self, blocks: Sequence[Sequence[Register]]) -> None:
         """What nothing couples: by geometric rows (`loops`), by rows and inputs (`parts`), by masses too (`heavy`)."""
         n, zero = self.n, self._tape.zero
-        mass, constraints, _, control, *_ = blocks
+        mass, constraints, residual, control, *_ = blocks
         rows = touched(constraints, n, zero)
         inputs = [[k for k in range(n) if control[k * self.m + j] != zero] for j in range(self.m)]
         pairs = [(i, j) for i, these in enumerate(touched(mass, n, zero)) for j in these]
         bodies = self._bodies.moved()
         found = parts(n, rows[: self.r_geometric])
         self.loops = tuple(part for part in found if part.rows)
+        self._loop_replay = replay_of(
+            self._tape,
+            [
+                x
+                for loop in self.loops
+                for x in (
+                    *(residual[i] for i in loop.rows),
+                    *(constraints[i * n + j] for i in loop.rows for j in loop.coordinates),
+                )
+            ],
+        )
         self.parts = parts(n, rows, inputs)
         self.heavy = parts(n, rows, inputs, bodies, pairs)
 
@@ -164,6 +175,19 @@ class System:
         values = self.geometry_replay.run([*q, *([None] * self.n), *parameters, *literals])
         r = self.r_geometric
         return arb_mat(r, 1, values[:r]), arb_mat(r, self.n, values[r:])
+
+    def loop_geometry(
+        self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
+    ) -> list[tuple[Any, Any]]:
+        """g and dg/dq of each loop, by its own coordinates."""
+        values = self._loop_replay.run([*q, *([None] * self.n), *parameters, *literals])
+        found, start = [], 0
+        for loop in self.loops:
+            rows, columns = len(loop.rows), len(loop.coordinates)
+            middle, end = start + rows, start + rows * (1 + columns)
+            found.append((arb_mat(rows, 1, values[start:middle]), arb_mat(rows, columns, values[middle:end])))
+            start = end
+        return found
 
     def energies(
         self, q: Sequence[Any], qd: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
