@@ -11,7 +11,7 @@ from flint import arb_mat
 from symgen.model.expression import Expression
 from symgen.model.mechanism import Mechanism
 from symgen.verify.reference_frames import Frames
-from symgen.verify.reference_parts import Part, placed
+from symgen.verify.reference_parts import Part, piece, placed
 from symgen.verify.reference_tape import Register
 from symgen.verify.reference_taylor import CONSTANT
 from symgen.verify.reference_translation import Translation
@@ -38,6 +38,15 @@ class BodyJacobian:
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
             found.append((part.coordinates, part.coordinates, rows.transpose() * _weighted(rows, own)))
         return placed(self.n, self.n, found)
+
+    def mass_times(self, vector: Any, weights: Sequence[Any]) -> Any:
+        """G times a column (n x 1)."""
+        found = []
+        for part, rows in zip(self.parts, self.pieces, strict=True):
+            own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
+            moved = rows * piece(vector, part.coordinates, (0,))
+            found.append((part.coordinates, (0,), rows.transpose() * _weighted(moved, own)))
+        return placed(self.n, 1, found)
 
     def force(self, wrenches: Sequence[Any]) -> Any:
         """What forces on the centres and torques in body axes load the coordinates with (n x 1)."""

@@ -181,7 +181,7 @@ class Evaluation:
     @cached_property
     def load(self) -> Any:
         """tau = G qdd + C qd + Q - Q_a."""
-        return self.at.mass * column(self.qdd) + self.bias
+        return self.at.mass_times(column(self.qdd)) + self.bias
 
     @cached_property
     def weighted(self) -> Any:
@@ -199,7 +199,12 @@ class Evaluation:
     @cached_property
     def projected_control(self) -> Any:
         """N_B M (21)."""
-        return self.projector * self.at.control
+        found = []
+        for part in self.system.parts:
+            projector = piece(self.projector, part.coordinates, part.coordinates)
+            control = piece(self.at.control, part.coordinates, part.inputs)
+            found.append((part.coordinates, part.inputs, projector * control))
+        return placed(self.system.n, self.system.m, found)
 
     @cached_property
     def control_inverse(self) -> Any:

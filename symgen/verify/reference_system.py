@@ -81,6 +81,12 @@ class Configuration:
             return self.written_mass
         return self.written_mass + self.jacobian.mass(self.weights.entries())
 
+    def mass_times(self, vector: Any) -> Any:
+        """G times a column, through the bodies: G itself of a long chain takes many times as much."""
+        if not self.weights.nrows():
+            return self.written_mass * vector
+        return self.written_mass * vector + self.jacobian.mass_times(vector, self.weights.entries())
+
 
 class System:
     """The model as replays."""
