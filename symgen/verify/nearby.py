@@ -87,7 +87,11 @@ class Surroundings:
         admissible = np.array([sample.admissible for sample in samples])
         self.samples = Nearby(parts, admissible, np.arange(len(samples)))
         coordinates = self._coordinates = reference.model.coordinates
-        self._low, self._high = (np.array([float(c.range[side]) for c in coordinates]) for side in (0, 1))
+        low, high = (np.array([float(c.range[side]) for c in coordinates]) for side in (0, 1))
+        self._widths = high - low
+        # ranges that nobody told may be left by every configuration there is
+        self._low = np.minimum(low, parts["q"].min(axis=0, initial=np.inf))
+        self._high = np.maximum(high, parts["q"].max(axis=0, initial=-np.inf))
         self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
         self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
         self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
@@ -123,7 +127,7 @@ class Surroundings:
     def _stepped(self, start: Nearby, reach: float, share: float, dice: random.Random, afresh: bool) -> Nearby:
         count, kept = len(start), 0.0 if afresh else 1.0
         parts = dict(start.parts)
-        q = parts["q"] + reach * _shifts(dice, parts["q"]) * (self._high - self._low)
+        q = parts["q"] + reach * _shifts(dice, parts["q"]) * self._widths
         parts["q"] = np.clip(q, self._low, self._high)
         widths = {"qd": self._rates, "qdd": self._accelerations, "u": self._inputs[start.origins]}
         for name, width in widths.items():
@@ -139,7 +143,7 @@ class Surroundings:
         """
         parts, p = dict(states.parts), states.parts["p"]
         q, shut = self._onto_manifold(parts["q"], p)
-        slack = 0.01 * (self._high - self._low)
+        slack = 0.01 * self._widths
         inside = (q >= self._low - slack) & (q <= self._high + slack)
         good = np.ones(len(q), dtype=bool)
         for part, blocks in zip(self._parts, self._matrices(q, p), strict=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -103,3 +104,14 @@ def test_states_with_an_angle_near_a_quarter_turn_satisfy_the_constraints(refere
     assert len(aligned) > 32
     assert np.sort(off)[len(off) // 2] < 0.02
     assert (off > 1e-7).all()
+
+
+def test_ranges_that_configurations_leave_are_no_bounds(tmp_path: Path) -> None:
+    """A slide without a range, whose loop closes beyond a metre: what lies beside its states is looked at, too."""
+    path = tmp_path / "far.yaml"
+    text = LADDER.replace("range: [0.3, 1.2]", "range: [0.2, 0.5]").replace("1.5, unit: m, range: [1, 2]", "4")
+    path.write_text(text.replace("x: 1.2, y: 0.9, a: 0.6435", "x: 3.7, y: 1.5, a: 0.39"), encoding="utf-8")
+    far = Reference(load_model(path))
+    samples = sample_states(far, ["inverse_dynamics"], 16)
+    assert min(float(sample.state.q[0]) for sample in samples) > 3
+    assert len(Surroundings(far, samples).drawn(64)) > 32
