@@ -130,10 +130,8 @@ class _Writer:
         return self.emit("add", output, self.rest(output))
 
     def rest(self, x: Operand) -> Operand:
-        """What x lacks; 0 for what is loaded, and what a literal loses where it is rounded."""
-        if isinstance(x, Local):
-            return self._rests.get(x.name, ZERO)
-        return Literal(x.value - Fraction(round_literal(x.value, self._scalar)))
+        """What x lacks: 0 for what is loaded, and for literals that stand for themselves."""
+        return self._rests.get(x.name, ZERO) if isinstance(x, Local) else ZERO
 
     def emit(self, operation: OperationName, *operands: Operand) -> Operand:
         """The result of one more plain operation."""
@@ -164,7 +162,8 @@ class _Writer:
         """A literal that is rounded is a pair in exact arithmetic only where it is brought into the form of one."""
         if isinstance(x, Local):
             return x, self.rest(x)
-        value, rest = Literal(Fraction(round_literal(x.value, self._scalar))), self.rest(x)
+        value = Literal(Fraction(round_literal(x.value, self._scalar)))
+        rest = Literal(x.value - value.value)
         return (value, rest) if exact or rest == ZERO else self.wide("wide_add", (value, rest), (ZERO, ZERO))
 
     def _sines(self, statement: Statement) -> None:

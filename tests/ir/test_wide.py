@@ -121,7 +121,16 @@ def turned(lines: Lines) -> str:
     return lines("add", lines("sub", sine, lines("add", left, right)), lines("sub", "x", "y"))
 
 
-KERNELS: tuple[Callable[[Lines], str], ...] = (squared, quotients, roots, literals, choices, circle)
+def bounded(lines: Lines) -> str:
+    """max(x x, 1/3) - max(min(y y, 99/7), -1/3) + (x - y) - sinh(1/3) + sinh(1/3): choices beside numbers."""
+    xx, yy = lines("mul", "x", "x"), lines("mul", "y", "y")
+    low = lines("max", lines("min", yy, Fraction(99, 7)), Fraction(-1, 3))
+    both = lines("sub", lines("max", xx, Fraction(1, 3)), low)
+    same = lines("sub", lines("sinh", Fraction(1, 3)), lines("sinh", Fraction(1, 3)))
+    return lines("add", lines("add", both, same), lines("sub", "x", "y"))
+
+
+KERNELS: tuple[Callable[[Lines], str], ...] = (squared, quotients, roots, literals, choices, bounded, circle)
 
 
 def given(scalar: Scalar) -> list[dict[str, tuple[float, ...]]]:
