@@ -1058,32 +1058,32 @@ chain4_status chain4_multipliers_sc(const chain4_trig *sc, const double q[4], co
     const double t165 = l * t164;
     const double t166 = l * t165;
     const double t167 = t90 + t166;
-    const double t170 = fabs(c);
-    const double t171 = m * t170;
-    const double t169 = fabs(J);
-    const double t172 = t170 * t171;
-    const double t173 = t169 + t172;
-    const double t175 = fabs(l);
-    const double t177 = m * t175;
-    const double t183 = 2.0 * t177;
-    const double t176 = 2.0 * t171;
-    const double t178 = t176 + t177;
-    const double t174 = 2.0 * t173;
-    const double t179 = t175 * t178;
-    const double t180 = t174 + t179;
-    const double t181 = t173 + t180;
-    const double t182 = 2.0 * t178;
+    const double t172 = fabs(c);
+    const double t173 = m * t172;
+    const double t182 = fabs(J);
+    const double t183 = t172 * t173;
     const double t184 = t182 + t183;
-    const double t185 = t175 * t184;
-    const double t186 = t181 + t185;
-    const double t187 = t173 + t186;
-    const double t188 = t171 + t178;
-    const double t189 = t183 + t188;
-    const double t190 = 2.0 * t189;
-    const double t191 = 3.0 * t177;
-    const double t192 = t190 + t191;
-    const double t193 = t175 * t192;
-    const double t194 = t187 + t193;
+    const double t169 = fabs(l);
+    const double t170 = m * t169;
+    const double t171 = 2.0 * t170;
+    const double t174 = 2.0 * t173;
+    const double t175 = t170 + t174;
+    const double t188 = t169 * t175;
+    const double t189 = 2.0 * t184;
+    const double t190 = t188 + t189;
+    const double t185 = 2.0 * t175;
+    const double t186 = t171 + t185;
+    const double t187 = t169 * t186;
+    const double t191 = t184 + t190;
+    const double t192 = t187 + t191;
+    const double t176 = t173 + t175;
+    const double t177 = t171 + t176;
+    const double t178 = 2.0 * t177;
+    const double t179 = 3.0 * t170;
+    const double t180 = t178 + t179;
+    const double t181 = t169 * t180;
+    const double t193 = t184 + t192;
+    const double t194 = t181 + t193;
     const double t195 = t194 * 3.552713678800501e-15;
     const double t202 = cos_a_4 * t27;
     const double t207 = sin_a_4 * t27;
@@ -1175,17 +1175,17 @@ chain4_status chain4_multipliers_sc(const chain4_trig *sc, const double q[4], co
     if (CHAIN4_RARELY(!(t168 > t195))) {
         return CHAIN4_MASS_RANK;
     }
-    const double t197 = t186 * 3.552713678800501e-15;
+    const double t197 = t192 * 3.552713678800501e-15;
     const double t196 = fabs(t145);
     if (CHAIN4_RARELY(!(t196 > t197))) {
         return CHAIN4_MASS_RANK;
     }
-    const double t199 = t180 * 3.552713678800501e-15;
+    const double t199 = t190 * 3.552713678800501e-15;
     const double t198 = fabs(t111);
     if (CHAIN4_RARELY(!(t198 > t199))) {
         return CHAIN4_MASS_RANK;
     }
-    const double t201 = t173 * 3.552713678800501e-15;
+    const double t201 = t184 * 3.552713678800501e-15;
     const double t200 = fabs(t90);
     if (CHAIN4_RARELY(!(t200 > t201))) {
         return CHAIN4_MASS_RANK;

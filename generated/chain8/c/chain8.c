@@ -1054,100 +1054,100 @@ chain8_status chain8_forward_dynamics(const double q[8], const double qd[8], con
     const double t402 = l * t401;
     const double t403 = t190 + t402;
     const double t404 = fabs(t403);
-    const double t405 = fabs(J);
-    const double t406 = fabs(c);
-    const double t407 = m * t406;
-    const double t408 = t406 * t407;
-    const double t409 = t405 + t408;
-    const double t410 = 2.0 * t409;
-    const double t411 = fabs(l);
-    const double t412 = 2.0 * t407;
-    const double t413 = m * t411;
-    const double t414 = t412 + t413;
-    const double t415 = t411 * t414;
-    const double t416 = t410 + t415;
-    const double t417 = t409 + t416;
-    const double t418 = 2.0 * t414;
-    const double t419 = 2.0 * t413;
-    const double t420 = t418 + t419;
-    const double t421 = t411 * t420;
-    const double t422 = t417 + t421;
-    const double t423 = t409 + t422;
-    const double t424 = t407 + t414;
-    const double t425 = t419 + t424;
+    const double t405 = fabs(l);
+    const double t406 = m * t405;
+    const double t407 = 6.0 * t406;
+    const double t408 = fabs(c);
+    const double t409 = m * t408;
+    const double t410 = 5.0 * t406;
+    const double t411 = 4.0 * t406;
+    const double t412 = 3.0 * t406;
+    const double t413 = 2.0 * t406;
+    const double t414 = 2.0 * t409;
+    const double t415 = t406 + t414;
+    const double t416 = t409 + t415;
+    const double t417 = t413 + t416;
+    const double t418 = t409 + t417;
+    const double t419 = t412 + t418;
+    const double t420 = t409 + t419;
+    const double t421 = t411 + t420;
+    const double t422 = t409 + t421;
+    const double t423 = t410 + t422;
+    const double t424 = t409 + t423;
+    const double t425 = t407 + t424;
     const double t426 = 2.0 * t425;
-    const double t427 = 3.0 * t413;
+    const double t427 = 7.0 * t406;
     const double t428 = t426 + t427;
-    const double t429 = t411 * t428;
-    const double t430 = t423 + t429;
-    const double t431 = t409 + t430;
-    const double t432 = t407 + t425;
-    const double t433 = t427 + t432;
-    const double t434 = 2.0 * t433;
-    const double t435 = 4.0 * t413;
-    const double t436 = t434 + t435;
-    const double t437 = t411 * t436;
-    const double t438 = t431 + t437;
-    const double t439 = t409 + t438;
-    const double t440 = t407 + t433;
-    const double t441 = t435 + t440;
-    const double t442 = 2.0 * t441;
-    const double t443 = 5.0 * t413;
-    const double t444 = t442 + t443;
-    const double t445 = t411 * t444;
-    const double t446 = t439 + t445;
-    const double t447 = t409 + t446;
-    const double t448 = t407 + t441;
-    const double t449 = t443 + t448;
-    const double t450 = 2.0 * t449;
-    const double t451 = 6.0 * t413;
-    const double t452 = t450 + t451;
-    const double t453 = t411 * t452;
-    const double t454 = t447 + t453;
-    const double t455 = t409 + t454;
-    const double t456 = t407 + t449;
-    const double t457 = t451 + t456;
-    const double t458 = 2.0 * t457;
-    const double t459 = 7.0 * t413;
-    const double t460 = t458 + t459;
-    const double t461 = t411 * t460;
-    const double t462 = t455 + t461;
+    const double t429 = t405 * t428;
+    const double t430 = fabs(J);
+    const double t431 = t408 * t409;
+    const double t432 = t430 + t431;
+    const double t433 = 2.0 * t423;
+    const double t434 = t407 + t433;
+    const double t435 = t405 * t434;
+    const double t436 = 2.0 * t421;
+    const double t437 = t410 + t436;
+    const double t438 = t405 * t437;
+    const double t439 = 2.0 * t419;
+    const double t440 = t411 + t439;
+    const double t441 = t405 * t440;
+    const double t442 = 2.0 * t417;
+    const double t443 = t412 + t442;
+    const double t444 = t405 * t443;
+    const double t445 = 2.0 * t415;
+    const double t446 = t413 + t445;
+    const double t447 = t405 * t446;
+    const double t448 = t405 * t415;
+    const double t449 = 2.0 * t432;
+    const double t450 = t448 + t449;
+    const double t451 = t432 + t450;
+    const double t452 = t447 + t451;
+    const double t453 = t432 + t452;
+    const double t454 = t444 + t453;
+    const double t455 = t432 + t454;
+    const double t456 = t441 + t455;
+    const double t457 = t432 + t456;
+    const double t458 = t438 + t457;
+    const double t459 = t432 + t458;
+    const double t460 = t435 + t459;
+    const double t461 = t432 + t460;
+    const double t462 = t429 + t461;
     const double t463 = t462 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t404 > t463))) {
         return CHAIN8_MASS_RANK;
     }
     const double t464 = fabs(t381);
-    const double t465 = t454 * 7.105427357601002e-15;
+    const double t465 = t460 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t464 > t465))) {
         return CHAIN8_MASS_RANK;
     }
     const double t466 = fabs(t347);
-    const double t467 = t446 * 7.105427357601002e-15;
+    const double t467 = t458 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t466 > t467))) {
         return CHAIN8_MASS_RANK;
     }
     const double t468 = fabs(t313);
-    const double t469 = t438 * 7.105427357601002e-15;
+    const double t469 = t456 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t468 > t469))) {
         return CHAIN8_MASS_RANK;
     }
     const double t470 = fabs(t279);
-    const double t471 = t430 * 7.105427357601002e-15;
+    const double t471 = t454 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t470 > t471))) {
         return CHAIN8_MASS_RANK;
     }
     const double t472 = fabs(t245);
-    const double t473 = t422 * 7.105427357601002e-15;
+    const double t473 = t452 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t472 > t473))) {
         return CHAIN8_MASS_RANK;
     }
     const double t474 = fabs(t211);
-    const double t475 = t416 * 7.105427357601002e-15;
+    const double t475 = t450 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t474 > t475))) {
         return CHAIN8_MASS_RANK;
     }
     const double t476 = fabs(t190);
-    const double t477 = t409 * 7.105427357601002e-15;
+    const double t477 = t432 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t476 > t477))) {
         return CHAIN8_MASS_RANK;
     }
@@ -2546,100 +2546,100 @@ chain8_status chain8_multipliers(const double q[8], const double qd[8], const do
     const double t402 = l * t401;
     const double t403 = t190 + t402;
     const double t404 = fabs(t403);
-    const double t405 = fabs(J);
-    const double t406 = fabs(c);
-    const double t407 = m * t406;
-    const double t408 = t406 * t407;
-    const double t409 = t405 + t408;
-    const double t410 = 2.0 * t409;
-    const double t411 = fabs(l);
-    const double t412 = 2.0 * t407;
-    const double t413 = m * t411;
-    const double t414 = t412 + t413;
-    const double t415 = t411 * t414;
-    const double t416 = t410 + t415;
-    const double t417 = t409 + t416;
-    const double t418 = 2.0 * t414;
-    const double t419 = 2.0 * t413;
-    const double t420 = t418 + t419;
-    const double t421 = t411 * t420;
-    const double t422 = t417 + t421;
-    const double t423 = t409 + t422;
-    const double t424 = t407 + t414;
-    const double t425 = t419 + t424;
+    const double t405 = fabs(l);
+    const double t406 = m * t405;
+    const double t407 = 6.0 * t406;
+    const double t408 = fabs(c);
+    const double t409 = m * t408;
+    const double t410 = 5.0 * t406;
+    const double t411 = 4.0 * t406;
+    const double t412 = 3.0 * t406;
+    const double t413 = 2.0 * t406;
+    const double t414 = 2.0 * t409;
+    const double t415 = t406 + t414;
+    const double t416 = t409 + t415;
+    const double t417 = t413 + t416;
+    const double t418 = t409 + t417;
+    const double t419 = t412 + t418;
+    const double t420 = t409 + t419;
+    const double t421 = t411 + t420;
+    const double t422 = t409 + t421;
+    const double t423 = t410 + t422;
+    const double t424 = t409 + t423;
+    const double t425 = t407 + t424;
     const double t426 = 2.0 * t425;
-    const double t427 = 3.0 * t413;
+    const double t427 = 7.0 * t406;
     const double t428 = t426 + t427;
-    const double t429 = t411 * t428;
-    const double t430 = t423 + t429;
-    const double t431 = t409 + t430;
-    const double t432 = t407 + t425;
-    const double t433 = t427 + t432;
-    const double t434 = 2.0 * t433;
-    const double t435 = 4.0 * t413;
-    const double t436 = t434 + t435;
-    const double t437 = t411 * t436;
-    const double t438 = t431 + t437;
-    const double t439 = t409 + t438;
-    const double t440 = t407 + t433;
-    const double t441 = t435 + t440;
-    const double t442 = 2.0 * t441;
-    const double t443 = 5.0 * t413;
-    const double t444 = t442 + t443;
-    const double t445 = t411 * t444;
-    const double t446 = t439 + t445;
-    const double t447 = t409 + t446;
-    const double t448 = t407 + t441;
-    const double t449 = t443 + t448;
-    const double t450 = 2.0 * t449;
-    const double t451 = 6.0 * t413;
-    const double t452 = t450 + t451;
-    const double t453 = t411 * t452;
-    const double t454 = t447 + t453;
-    const double t455 = t409 + t454;
-    const double t456 = t407 + t449;
-    const double t457 = t451 + t456;
-    const double t458 = 2.0 * t457;
-    const double t459 = 7.0 * t413;
-    const double t460 = t458 + t459;
-    const double t461 = t411 * t460;
-    const double t462 = t455 + t461;
+    const double t429 = t405 * t428;
+    const double t430 = fabs(J);
+    const double t431 = t408 * t409;
+    const double t432 = t430 + t431;
+    const double t433 = 2.0 * t423;
+    const double t434 = t407 + t433;
+    const double t435 = t405 * t434;
+    const double t436 = 2.0 * t421;
+    const double t437 = t410 + t436;
+    const double t438 = t405 * t437;
+    const double t439 = 2.0 * t419;
+    const double t440 = t411 + t439;
+    const double t441 = t405 * t440;
+    const double t442 = 2.0 * t417;
+    const double t443 = t412 + t442;
+    const double t444 = t405 * t443;
+    const double t445 = 2.0 * t415;
+    const double t446 = t413 + t445;
+    const double t447 = t405 * t446;
+    const double t448 = t405 * t415;
+    const double t449 = 2.0 * t432;
+    const double t450 = t448 + t449;
+    const double t451 = t432 + t450;
+    const double t452 = t447 + t451;
+    const double t453 = t432 + t452;
+    const double t454 = t444 + t453;
+    const double t455 = t432 + t454;
+    const double t456 = t441 + t455;
+    const double t457 = t432 + t456;
+    const double t458 = t438 + t457;
+    const double t459 = t432 + t458;
+    const double t460 = t435 + t459;
+    const double t461 = t432 + t460;
+    const double t462 = t429 + t461;
     const double t463 = t462 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t404 > t463))) {
         return CHAIN8_MASS_RANK;
     }
     const double t464 = fabs(t381);
-    const double t465 = t454 * 7.105427357601002e-15;
+    const double t465 = t460 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t464 > t465))) {
         return CHAIN8_MASS_RANK;
     }
     const double t466 = fabs(t347);
-    const double t467 = t446 * 7.105427357601002e-15;
+    const double t467 = t458 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t466 > t467))) {
         return CHAIN8_MASS_RANK;
     }
     const double t468 = fabs(t313);
-    const double t469 = t438 * 7.105427357601002e-15;
+    const double t469 = t456 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t468 > t469))) {
         return CHAIN8_MASS_RANK;
     }
     const double t470 = fabs(t279);
-    const double t471 = t430 * 7.105427357601002e-15;
+    const double t471 = t454 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t470 > t471))) {
         return CHAIN8_MASS_RANK;
     }
     const double t472 = fabs(t245);
-    const double t473 = t422 * 7.105427357601002e-15;
+    const double t473 = t452 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t472 > t473))) {
         return CHAIN8_MASS_RANK;
     }
     const double t474 = fabs(t211);
-    const double t475 = t416 * 7.105427357601002e-15;
+    const double t475 = t450 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t474 > t475))) {
         return CHAIN8_MASS_RANK;
     }
     const double t476 = fabs(t190);
-    const double t477 = t409 * 7.105427357601002e-15;
+    const double t477 = t432 * 7.105427357601002e-15;
     if (CHAIN8_RARELY(!(t476 > t477))) {
         return CHAIN8_MASS_RANK;
     }

@@ -480,7 +480,7 @@ five_bar_status five_bar_forward_dynamics(const double q[4], const double qd[4],
     const double t90 = 0.0256 * t89;
     const double t91 = t84 + t90;
     const double t92 = fabs(t91);
-    const double t93 = 0.024557 + J_m;
+    const double t93 = 0.019873 + J_m;
     const double t94 = t93 * 3.552713678800501e-15;
     if (FIVE_BAR_RARELY(!(t92 > t94))) {
         return FIVE_BAR_MASS_RANK;
@@ -492,7 +492,7 @@ five_bar_status five_bar_forward_dynamics(const double q[4], const double qd[4],
     const double t100 = 0.0256 * t99;
     const double t101 = t84 + t100;
     const double t102 = fabs(t101);
-    const double t103 = 0.09127441935483877 + J_m;
+    const double t103 = 0.07783300000000005 + J_m;
     const double t104 = t103 * 3.552713678800501e-15;
     if (FIVE_BAR_RARELY(!(t102 > t104))) {
         return FIVE_BAR_MASS_RANK;
@@ -544,10 +544,10 @@ five_bar_status five_bar_forward_dynamics(const double q[4], const double qd[4],
     const double t130 = t114 + t129;
     const double t109 = 0.16 * t108;
     const double t113 = 0.16 * t112;
-    if (FIVE_BAR_RARELY(!(0.003782 > 1.752198386384407e-17))) {
+    if (FIVE_BAR_RARELY(!(0.003782 > 0.0))) {
         return FIVE_BAR_MASS_RANK;
     }
-    if (FIVE_BAR_RARELY(!(0.02334200000000003 > 9.595673359839459e-17))) {
+    if (FIVE_BAR_RARELY(!(0.02334200000000003 > 0.0))) {
         return FIVE_BAR_MASS_RANK;
     }
     const double t131 = 1.0 / t130;
@@ -964,7 +964,7 @@ five_bar_status five_bar_multipliers(const double q[4], const double qd[4], cons
     const double t90 = 0.0256 * t89;
     const double t91 = t84 + t90;
     const double t92 = fabs(t91);
-    const double t93 = 0.024557 + J_m;
+    const double t93 = 0.019873 + J_m;
     const double t94 = t93 * 3.552713678800501e-15;
     if (FIVE_BAR_RARELY(!(t92 > t94))) {
         return FIVE_BAR_MASS_RANK;
@@ -976,7 +976,7 @@ five_bar_status five_bar_multipliers(const double q[4], const double qd[4], cons
     const double t100 = 0.0256 * t99;
     const double t101 = t84 + t100;
     const double t102 = fabs(t101);
-    const double t103 = 0.09127441935483877 + J_m;
+    const double t103 = 0.07783300000000005 + J_m;
     const double t104 = t103 * 3.552713678800501e-15;
     if (FIVE_BAR_RARELY(!(t102 > t104))) {
         return FIVE_BAR_MASS_RANK;
@@ -1028,10 +1028,10 @@ five_bar_status five_bar_multipliers(const double q[4], const double qd[4], cons
     const double t130 = t114 + t129;
     const double t109 = 0.16 * t108;
     const double t113 = 0.16 * t112;
-    if (FIVE_BAR_RARELY(!(0.003782 > 1.752198386384407e-17))) {
+    if (FIVE_BAR_RARELY(!(0.003782 > 0.0))) {
         return FIVE_BAR_MASS_RANK;
     }
-    if (FIVE_BAR_RARELY(!(0.02334200000000003 > 9.595673359839459e-17))) {
+    if (FIVE_BAR_RARELY(!(0.02334200000000003 > 0.0))) {
         return FIVE_BAR_MASS_RANK;
     }
     const double t131 = 1.0 / t130;

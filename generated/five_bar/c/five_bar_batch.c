@@ -287,9 +287,9 @@ size_t five_bar_inverse_dynamics_batch(size_t count, size_t stride, const double
 size_t five_bar_forward_dynamics_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const five_bar_params *p, double *qdd, unsigned char *status) {
     const double J_m = p->J_m;
     const double t84 = 0.002715 + J_m;
-    const double t93 = 0.024557 + J_m;
+    const double t93 = 0.019873 + J_m;
     const double t94 = t93 * 3.552713678800501e-15;
-    const double t103 = 0.09127441935483877 + J_m;
+    const double t103 = 0.07783300000000005 + J_m;
     const double t104 = t103 * 3.552713678800501e-15;
     double copy[10][LANES]; /* the last states, the first of them repeated */
     double result[4][LANES];
@@ -757,8 +757,8 @@ size_t five_bar_forward_dynamics_batch(size_t count, size_t stride, const double
             rest += t73 > t83 ? 0.0 : 1.0;
             rest += t92 > t94 ? 0.0 : 1.0;
             rest += t102 > t104 ? 0.0 : 1.0;
-            rest += 0.003782 > 1.752198386384407e-17 ? 0.0 : 1.0;
-            rest += 0.02334200000000003 > 9.595673359839459e-17 ? 0.0 : 1.0;
+            rest += 0.003782 > 0.0 ? 0.0 : 1.0;
+            rest += 0.02334200000000003 > 0.0 ? 0.0 : 1.0;
             rest += t178 > 1.262177448353619e-29 ? 0.0 : 1.0;
             flag[k] = rest;
             result[0][k] = t395;
@@ -811,9 +811,9 @@ size_t five_bar_forward_dynamics_batch(size_t count, size_t stride, const double
 size_t five_bar_multipliers_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const five_bar_params *p, double *lambda_B, unsigned char *status) {
     const double J_m = p->J_m;
     const double t84 = 0.002715 + J_m;
-    const double t93 = 0.024557 + J_m;
+    const double t93 = 0.019873 + J_m;
     const double t94 = t93 * 3.552713678800501e-15;
-    const double t103 = 0.09127441935483877 + J_m;
+    const double t103 = 0.07783300000000005 + J_m;
     const double t104 = t103 * 3.552713678800501e-15;
     double copy[10][LANES]; /* the last states, the first of them repeated */
     double result[2][LANES];
@@ -1253,8 +1253,8 @@ size_t five_bar_multipliers_batch(size_t count, size_t stride, const double *q, 
             rest += t73 > t83 ? 0.0 : 1.0;
             rest += t92 > t94 ? 0.0 : 1.0;
             rest += t102 > t104 ? 0.0 : 1.0;
-            rest += 0.003782 > 1.752198386384407e-17 ? 0.0 : 1.0;
-            rest += 0.02334200000000003 > 9.595673359839459e-17 ? 0.0 : 1.0;
+            rest += 0.003782 > 0.0 ? 0.0 : 1.0;
+            rest += 0.02334200000000003 > 0.0 ? 0.0 : 1.0;
             rest += t178 > 1.262177448353619e-29 ? 0.0 : 1.0;
             flag[k] = rest;
             result[0][k] = t392;

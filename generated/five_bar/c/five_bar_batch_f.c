@@ -274,9 +274,9 @@ size_t five_bar_inverse_dynamics_batch_f(size_t count, size_t stride, const floa
 size_t five_bar_forward_dynamics_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *u, const five_bar_params_f *p, float *qdd, unsigned char *status) {
     const float J_m = p->J_m;
     const float t84 = 0.002715f + J_m;
-    const float t93 = 0.024557f + J_m;
+    const float t93 = 0.019873f + J_m;
     const float t94 = t93 * 1.9073486e-06f;
-    const float t103 = 0.09127442f + J_m;
+    const float t103 = 0.077833f + J_m;
     const float t104 = t103 * 1.9073486e-06f;
     float copy[10][LANES]; /* the last states, the first of them repeated */
     float result[4][LANES];
@@ -744,8 +744,8 @@ size_t five_bar_forward_dynamics_batch_f(size_t count, size_t stride, const floa
             rest += t73 > t83 ? 0.0f : 1.0f;
             rest += t92 > t94 ? 0.0f : 1.0f;
             rest += t102 > t104 ? 0.0f : 1.0f;
-            rest += 0.003782f > 9.407043e-09f ? 0.0f : 1.0f;
-            rest += 0.023342f > 5.151638e-08f ? 0.0f : 1.0f;
+            rest += 0.003782f > 0.0f ? 0.0f : 1.0f;
+            rest += 0.023342f > 0.0f ? 0.0f : 1.0f;
             rest += t178 > 3.637979e-12f ? 0.0f : 1.0f;
             flag[k] = rest;
             result[0][k] = t395;
@@ -798,9 +798,9 @@ size_t five_bar_forward_dynamics_batch_f(size_t count, size_t stride, const floa
 size_t five_bar_multipliers_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *u, const five_bar_params_f *p, float *lambda_B, unsigned char *status) {
     const float J_m = p->J_m;
     const float t84 = 0.002715f + J_m;
-    const float t93 = 0.024557f + J_m;
+    const float t93 = 0.019873f + J_m;
     const float t94 = t93 * 1.9073486e-06f;
-    const float t103 = 0.09127442f + J_m;
+    const float t103 = 0.077833f + J_m;
     const float t104 = t103 * 1.9073486e-06f;
     float copy[10][LANES]; /* the last states, the first of them repeated */
     float result[2][LANES];
@@ -1240,8 +1240,8 @@ size_t five_bar_multipliers_batch_f(size_t count, size_t stride, const float *q,
             rest += t73 > t83 ? 0.0f : 1.0f;
             rest += t92 > t94 ? 0.0f : 1.0f;
             rest += t102 > t104 ? 0.0f : 1.0f;
-            rest += 0.003782f > 9.407043e-09f ? 0.0f : 1.0f;
-            rest += 0.023342f > 5.151638e-08f ? 0.0f : 1.0f;
+            rest += 0.003782f > 0.0f ? 0.0f : 1.0f;
+            rest += 0.023342f > 0.0f ? 0.0f : 1.0f;
             rest += t178 > 3.637979e-12f ? 0.0f : 1.0f;
             flag[k] = rest;
             result[0][k] = t392;

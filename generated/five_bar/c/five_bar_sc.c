@@ -345,7 +345,7 @@ five_bar_status five_bar_forward_dynamics_sc(const five_bar_trig *sc, const doub
     const double t90 = 0.0256 * t89;
     const double t91 = t84 + t90;
     const double t92 = fabs(t91);
-    const double t93 = 0.024557 + J_m;
+    const double t93 = 0.019873 + J_m;
     const double t94 = t93 * 3.552713678800501e-15;
     if (FIVE_BAR_RARELY(!(t92 > t94))) {
         return FIVE_BAR_MASS_RANK;
@@ -357,7 +357,7 @@ five_bar_status five_bar_forward_dynamics_sc(const five_bar_trig *sc, const doub
     const double t100 = 0.0256 * t99;
     const double t101 = t84 + t100;
     const double t102 = fabs(t101);
-    const double t103 = 0.09127441935483877 + J_m;
+    const double t103 = 0.07783300000000005 + J_m;
     const double t104 = t103 * 3.552713678800501e-15;
     if (FIVE_BAR_RARELY(!(t102 > t104))) {
         return FIVE_BAR_MASS_RANK;
@@ -409,10 +409,10 @@ five_bar_status five_bar_forward_dynamics_sc(const five_bar_trig *sc, const doub
     const double t130 = t114 + t129;
     const double t109 = 0.16 * t108;
     const double t113 = 0.16 * t112;
-    if (FIVE_BAR_RARELY(!(0.003782 > 1.752198386384407e-17))) {
+    if (FIVE_BAR_RARELY(!(0.003782 > 0.0))) {
         return FIVE_BAR_MASS_RANK;
     }
-    if (FIVE_BAR_RARELY(!(0.02334200000000003 > 9.595673359839459e-17))) {
+    if (FIVE_BAR_RARELY(!(0.02334200000000003 > 0.0))) {
         return FIVE_BAR_MASS_RANK;
     }
     const double t131 = 1.0 / t130;
@@ -806,7 +806,7 @@ five_bar_status five_bar_multipliers_sc(const five_bar_trig *sc, const double q[
     const double t90 = 0.0256 * t89;
     const double t91 = t84 + t90;
     const double t92 = fabs(t91);
-    const double t93 = 0.024557 + J_m;
+    const double t93 = 0.019873 + J_m;
     const double t94 = t93 * 3.552713678800501e-15;
     if (FIVE_BAR_RARELY(!(t92 > t94))) {
         return FIVE_BAR_MASS_RANK;
@@ -818,7 +818,7 @@ five_bar_status five_bar_multipliers_sc(const five_bar_trig *sc, const double q[
     const double t100 = 0.0256 * t99;
     const double t101 = t84 + t100;
     const double t102 = fabs(t101);
-    const double t103 = 0.09127441935483877 + J_m;
+    const double t103 = 0.07783300000000005 + J_m;
     const double t104 = t103 * 3.552713678800501e-15;
     if (FIVE_BAR_RARELY(!(t102 > t104))) {
         return FIVE_BAR_MASS_RANK;
@@ -870,10 +870,10 @@ five_bar_status five_bar_multipliers_sc(const five_bar_trig *sc, const double q[
     const double t130 = t114 + t129;
     const double t109 = 0.16 * t108;
     const double t113 = 0.16 * t112;
-    if (FIVE_BAR_RARELY(!(0.003782 > 1.752198386384407e-17))) {
+    if (FIVE_BAR_RARELY(!(0.003782 > 0.0))) {
         return FIVE_BAR_MASS_RANK;
     }
-    if (FIVE_BAR_RARELY(!(0.02334200000000003 > 9.595673359839459e-17))) {
+    if (FIVE_BAR_RARELY(!(0.02334200000000003 > 0.0))) {
         return FIVE_BAR_MASS_RANK;
     }
     const double t131 = 1.0 / t130;

@@ -41,7 +41,7 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     501    800     20      3     16      0
- * forward_dynamics    6235   7241     53      0     16      0
+ * forward_dynamics    6238   7242     53      0     16      0
  * singularity         2713   3510    133     36     16      0
  * (changes of sign are not counted)
  *

@@ -458,42 +458,42 @@ rapkm_bodies_status rapkm_bodies_forward_dynamics_sc_f(const rapkm_bodies_trig_f
     const float t168 = t167 * t167;
     const float t169 = t165 + t168;
     const float t203 = fabsf(l_2);
-    const float m_payload = p->m_payload;
-    const float t204 = m_payload * t203;
     const float m_2 = p->m_2;
-    const float t205 = m_2 * t203;
+    const float t204 = m_2 * t203;
+    const float m_payload = p->m_payload;
+    const float t208 = m_payload * t203;
     const float J_2 = p->J_2;
-    const float t212 = fabsf(J_2);
-    const float t213 = t203 * t205;
-    const float t214 = 0.25f * t213;
-    const float t215 = t212 + t214;
-    const float t216 = t203 * t204;
-    const float t217 = t215 + t216;
+    const float t202 = fabsf(J_2);
+    const float t205 = t203 * t204;
+    const float t206 = 0.25f * t205;
+    const float t207 = t202 + t206;
+    const float t209 = t203 * t208;
+    const float t210 = t207 + t209;
     const float t175 = m_2 + m_payload;
     const float m_1 = p->m_1;
     const float t195 = 0.25f * m_1;
-    const float t202 = fabsf(l_1);
+    const float t211 = fabsf(l_1);
     const float J_1 = p->J_1;
     const float t218 = fabsf(J_1);
-    const float t219 = t202 * t195;
-    const float t220 = t202 * t219;
+    const float t219 = t211 * t195;
+    const float t220 = t211 * t219;
     const float t221 = t218 + t220;
     const float J_motor = p->J_motor;
     const float t222 = J_motor + t221;
-    const float t206 = 0.5f * t205;
-    const float t207 = t204 + t206;
-    const float t208 = 2.0f * t207;
-    const float t209 = t175 * t202;
-    const float t210 = t208 + t209;
-    const float t211 = t202 * t210;
+    const float t212 = 0.5f * t204;
+    const float t213 = t212 + t208;
+    const float t214 = 2.0f * t213;
+    const float t215 = t175 * t211;
+    const float t216 = t214 + t215;
+    const float t217 = t211 * t216;
     const float t223 = t217 + t222;
-    const float t224 = t211 + t223;
+    const float t224 = t210 + t223;
     const float t225 = t224 * 2.861023e-06f;
-    const float t238 = m_2 * t202;
-    const float t239 = t205 + t238;
-    const float t240 = t202 * t239;
-    const float t241 = t215 + t222;
-    const float t242 = t240 + t241;
+    const float t238 = m_2 * t211;
+    const float t239 = t204 + t238;
+    const float t240 = t211 * t239;
+    const float t241 = t240 + t222;
+    const float t242 = t207 + t241;
     const float t243 = t242 * 2.861023e-06f;
     const float t170 = t142 * t142;
     const float t171 = t143 * t143;
@@ -558,12 +558,12 @@ rapkm_bodies_status rapkm_bodies_forward_dynamics_sc_f(const rapkm_bodies_trig_f
     if (RAPKM_BODIES_RARELY_F(!(t252 > t243))) {
         return RAPKM_BODIES_MASS_RANK;
     }
-    const float t254 = t217 * 2.861023e-06f;
+    const float t254 = t210 * 2.861023e-06f;
     const float t253 = fabsf(t186);
     if (RAPKM_BODIES_RARELY_F(!(t253 > t254))) {
         return RAPKM_BODIES_MASS_RANK;
     }
-    const float t256 = t215 * 2.861023e-06f;
+    const float t256 = t207 * 2.861023e-06f;
     const float t255 = fabsf(t184);
     if (RAPKM_BODIES_RARELY_F(!(t255 > t256))) {
         return RAPKM_BODIES_MASS_RANK;
@@ -1494,29 +1494,29 @@ rapkm_bodies_status rapkm_bodies_multipliers_sc_f(const rapkm_bodies_trig_f *sc,
     const float t199 = J_motor + t198;
     const float t200 = t194 + t199;
     const float t201 = fabsf(t200);
-    const float t202 = fabsf(l_1);
+    const float t202 = fabsf(J_2);
     const float t203 = fabsf(l_2);
-    const float t204 = m_payload * t203;
-    const float t205 = m_2 * t203;
-    const float t206 = 0.5f * t205;
-    const float t207 = t204 + t206;
-    const float t208 = 2.0f * t207;
-    const float t209 = t175 * t202;
-    const float t210 = t208 + t209;
-    const float t211 = t202 * t210;
-    const float t212 = fabsf(J_2);
-    const float t213 = t203 * t205;
-    const float t214 = 0.25f * t213;
-    const float t215 = t212 + t214;
-    const float t216 = t203 * t204;
-    const float t217 = t215 + t216;
+    const float t204 = m_2 * t203;
+    const float t205 = t203 * t204;
+    const float t206 = 0.25f * t205;
+    const float t207 = t202 + t206;
+    const float t208 = m_payload * t203;
+    const float t209 = t203 * t208;
+    const float t210 = t207 + t209;
+    const float t211 = fabsf(l_1);
+    const float t212 = 0.5f * t204;
+    const float t213 = t212 + t208;
+    const float t214 = 2.0f * t213;
+    const float t215 = t175 * t211;
+    const float t216 = t214 + t215;
+    const float t217 = t211 * t216;
     const float t218 = fabsf(J_1);
-    const float t219 = t202 * t195;
-    const float t220 = t202 * t219;
+    const float t219 = t211 * t195;
+    const float t220 = t211 * t219;
     const float t221 = t218 + t220;
     const float t222 = J_motor + t221;
     const float t223 = t217 + t222;
-    const float t224 = t211 + t223;
+    const float t224 = t210 + t223;
     const float t225 = t224 * 2.861023e-06f;
     if (RAPKM_BODIES_RARELY_F(!(t201 > t225))) {
         return RAPKM_BODIES_MASS_RANK;
@@ -1533,11 +1533,11 @@ rapkm_bodies_status rapkm_bodies_multipliers_sc_f(const rapkm_bodies_trig_f *sc,
     const float t235 = l_1 * t234;
     const float t236 = t199 + t235;
     const float t237 = fabsf(t236);
-    const float t238 = m_2 * t202;
-    const float t239 = t205 + t238;
-    const float t240 = t202 * t239;
-    const float t241 = t215 + t222;
-    const float t242 = t240 + t241;
+    const float t238 = m_2 * t211;
+    const float t239 = t204 + t238;
+    const float t240 = t211 * t239;
+    const float t241 = t240 + t222;
+    const float t242 = t207 + t241;
     const float t243 = t242 * 2.861023e-06f;
     if (RAPKM_BODIES_RARELY_F(!(t237 > t243))) {
         return RAPKM_BODIES_MASS_RANK;
@@ -1555,12 +1555,12 @@ rapkm_bodies_status rapkm_bodies_multipliers_sc_f(const rapkm_bodies_trig_f *sc,
         return RAPKM_BODIES_MASS_RANK;
     }
     const float t253 = fabsf(t186);
-    const float t254 = t217 * 2.861023e-06f;
+    const float t254 = t210 * 2.861023e-06f;
     if (RAPKM_BODIES_RARELY_F(!(t253 > t254))) {
         return RAPKM_BODIES_MASS_RANK;
     }
     const float t255 = fabsf(t184);
-    const float t256 = t215 * 2.861023e-06f;
+    const float t256 = t207 * 2.861023e-06f;
     if (RAPKM_BODIES_RARELY_F(!(t255 > t256))) {
         return RAPKM_BODIES_MASS_RANK;
     }

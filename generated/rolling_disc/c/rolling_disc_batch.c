@@ -267,8 +267,8 @@ size_t rolling_disc_forward_dynamics_batch(size_t count, size_t stride, const do
     const double t80 = m * 1.5987211554602254e-14;
     const double t81 = m * 1.0658141036401503e-14;
     const double t85 = fabs(J);
-    const double t86 = t85 * 4.263256414560601e-14;
-    const double t87 = t85 * 2.1316282072803006e-14;
+    const double t86 = t85 * 2.1316282072803006e-14;
+    const double t87 = t85 * 1.0658141036401503e-14;
     const double t88 = 2.0 * J;
     const double t89 = fabs(t88);
     const double t90 = 1.0 / J;
@@ -775,8 +775,8 @@ size_t rolling_disc_multipliers_batch(size_t count, size_t stride, const double 
     const double t80 = m * 1.5987211554602254e-14;
     const double t81 = m * 1.0658141036401503e-14;
     const double t85 = fabs(J);
-    const double t86 = t85 * 4.263256414560601e-14;
-    const double t87 = t85 * 2.1316282072803006e-14;
+    const double t86 = t85 * 2.1316282072803006e-14;
+    const double t87 = t85 * 1.0658141036401503e-14;
     const double t88 = 2.0 * J;
     const double t89 = fabs(t88);
     const double t90 = 1.0 / J;

@@ -254,8 +254,8 @@ size_t rolling_disc_forward_dynamics_batch_f(size_t count, size_t stride, const 
     const float t80 = m * 8.583069e-06f;
     const float t81 = m * 5.722046e-06f;
     const float t85 = fabsf(J);
-    const float t86 = t85 * 2.2888184e-05f;
-    const float t87 = t85 * 1.1444092e-05f;
+    const float t86 = t85 * 1.1444092e-05f;
+    const float t87 = t85 * 5.722046e-06f;
     const float t88 = 2.0f * J;
     const float t89 = fabsf(t88);
     const float t90 = 1.0f / J;
@@ -762,8 +762,8 @@ size_t rolling_disc_multipliers_batch_f(size_t count, size_t stride, const float
     const float t80 = m * 8.583069e-06f;
     const float t81 = m * 5.722046e-06f;
     const float t85 = fabsf(J);
-    const float t86 = t85 * 2.2888184e-05f;
-    const float t87 = t85 * 1.1444092e-05f;
+    const float t86 = t85 * 1.1444092e-05f;
+    const float t87 = t85 * 5.722046e-06f;
     const float t88 = 2.0f * J;
     const float t89 = fabsf(t88);
     const float t90 = 1.0f / J;

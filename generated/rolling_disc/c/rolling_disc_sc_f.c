@@ -287,11 +287,11 @@ rolling_disc_status rolling_disc_forward_dynamics_sc_f(const rolling_disc_trig_f
     const float t83 = cos_beta * t82;
     const float t84 = fabsf(t83);
     const float t85 = fabsf(J);
-    const float t86 = t85 * 2.2888184e-05f;
+    const float t86 = t85 * 1.1444092e-05f;
     if (ROLLING_DISC_RARELY_F(!(t84 > t86))) {
         return ROLLING_DISC_MASS_RANK;
     }
-    const float t87 = t85 * 1.1444092e-05f;
+    const float t87 = t85 * 5.722046e-06f;
     if (ROLLING_DISC_RARELY_F(!(t85 > t87))) {
         return ROLLING_DISC_MASS_RANK;
     }
@@ -744,11 +744,11 @@ rolling_disc_status rolling_disc_multipliers_sc_f(const rolling_disc_trig_f *sc,
     const float t83 = cos_beta * t82;
     const float t84 = fabsf(t83);
     const float t85 = fabsf(J);
-    const float t86 = t85 * 2.2888184e-05f;
+    const float t86 = t85 * 1.1444092e-05f;
     if (ROLLING_DISC_RARELY_F(!(t84 > t86))) {
         return ROLLING_DISC_MASS_RANK;
     }
-    const float t87 = t85 * 1.1444092e-05f;
+    const float t87 = t85 * 5.722046e-06f;
     if (ROLLING_DISC_RARELY_F(!(t85 > t87))) {
         return ROLLING_DISC_MASS_RANK;
     }

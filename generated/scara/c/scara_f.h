@@ -16,7 +16,7 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      31     40      0      0      1      3
- * forward_dynamics      55     64      6      0      2      3
+ * forward_dynamics      51     64      6      0      2      3
  * singularity            0      0      0      0      0      0
  * (changes of sign are not counted)
  *

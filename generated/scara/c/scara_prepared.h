@@ -22,7 +22,7 @@ scara_prepared scara_prepare(const scara_params *p);
 /* u: the smallest inputs that produce the motion, (27); 60 operations instead of 77 */
 scara_status scara_inverse_dynamics_prepared(const double q[4], const double qd[4], const double qdd[4], const scara_prepared *p, double u[4]);
 
-/* q̈: accelerations under the inputs, (15); 105 operations instead of 141 */
+/* q̈: accelerations under the inputs, (15); 99 operations instead of 137 */
 scara_status scara_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[4], const scara_prepared *p, double qdd[4]);
 
 #ifdef __cplusplus

@@ -1023,14 +1023,14 @@ three_rrr_status three_rrr_forward_dynamics_f(const float q[9], const float qd[9
     const float t412 = 0.25f * t411;
     const float t413 = t408 + t412;
     const float t414 = fabsf(J_1);
-    const float t415 = J_motor + t414;
-    const float t416 = fabsf(l_1);
-    const float t417 = m_2 * t416;
-    const float t418 = t410 + t417;
-    const float t419 = t416 * t401;
-    const float t420 = t418 + t419;
-    const float t421 = t416 * t420;
-    const float t422 = t415 + t421;
+    const float t415 = fabsf(l_1);
+    const float t416 = m_2 * t415;
+    const float t417 = t410 + t416;
+    const float t418 = t415 * t401;
+    const float t419 = t417 + t418;
+    const float t420 = t415 * t419;
+    const float t421 = J_motor + t420;
+    const float t422 = t414 + t421;
     const float t423 = t413 + t422;
     const float t424 = t423 * 4.2915344e-06f;
     if (THREE_RRR_RARELY_F(!(t407 > t424))) {
@@ -2956,14 +2956,14 @@ three_rrr_status three_rrr_multipliers_f(const float q[9], const float qd[9], co
     const float t412 = 0.25f * t411;
     const float t413 = t408 + t412;
     const float t414 = fabsf(J_1);
-    const float t415 = J_motor + t414;
-    const float t416 = fabsf(l_1);
-    const float t417 = m_2 * t416;
-    const float t418 = t410 + t417;
-    const float t419 = t416 * t401;
-    const float t420 = t418 + t419;
-    const float t421 = t416 * t420;
-    const float t422 = t415 + t421;
+    const float t415 = fabsf(l_1);
+    const float t416 = m_2 * t415;
+    const float t417 = t410 + t416;
+    const float t418 = t415 * t401;
+    const float t419 = t417 + t418;
+    const float t420 = t415 * t419;
+    const float t421 = J_motor + t420;
+    const float t422 = t414 + t421;
     const float t423 = t413 + t422;
     const float t424 = t423 * 4.2915344e-06f;
     if (THREE_RRR_RARELY_F(!(t407 > t424))) {

@@ -21,7 +21,7 @@ extern "C" {
 /* u: the smallest inputs that produce the motion, (27); u has 1 rows */
 size_t tilted_four_bar_inverse_dynamics_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *qdd, const tilted_four_bar_params_f *p, float *u, unsigned char *status);
 
-/* q̈: accelerations under the inputs, (15); qdd has 3 rows */
+/* q̈: accelerations under the inputs, (15); works with twice the digits; qdd has 3 rows */
 size_t tilted_four_bar_forward_dynamics_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *u, const tilted_four_bar_params_f *p, float *qdd, unsigned char *status);
 
 /* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); not unique, as the constraints depend on

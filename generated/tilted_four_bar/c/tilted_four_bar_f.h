@@ -14,7 +14,7 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      60    108      1      0      3      0
- * forward_dynamics     237    406     18      0      3      2
+ * forward_dynamics    9133   3755     38      0      3      2
  * multipliers          227    398     18      0      3      2
  * singularity           35     62     14      3      3      0
  * (changes of sign are not counted)
@@ -56,7 +56,7 @@ tilted_four_bar_params_f tilted_four_bar_default_params_f(void);
 /* u: the smallest inputs that produce the motion, (27); length 1 */
 tilted_four_bar_status tilted_four_bar_inverse_dynamics_f(const float q[3], const float qd[3], const float qdd[3], const tilted_four_bar_params_f *p, float u[1]);
 
-/* q̈: accelerations under the inputs, (15); length 3 */
+/* q̈: accelerations under the inputs, (15); works with twice the digits; length 3 */
 tilted_four_bar_status tilted_four_bar_forward_dynamics_f(const float q[3], const float qd[3], const float u[1], const tilted_four_bar_params_f *p, float qdd[3]);
 
 /* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); not unique, as the constraints depend on

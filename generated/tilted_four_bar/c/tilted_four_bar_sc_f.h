@@ -24,9 +24,6 @@ typedef struct {
 /* u: the smallest inputs that produce the motion, (27) */
 tilted_four_bar_status tilted_four_bar_inverse_dynamics_sc_f(const tilted_four_bar_trig_f *sc, const float q[3], const float qd[3], const float qdd[3], const tilted_four_bar_params_f *p, float u[1]);
 
-/* q̈: accelerations under the inputs, (15) */
-tilted_four_bar_status tilted_four_bar_forward_dynamics_sc_f(const tilted_four_bar_trig_f *sc, const float q[3], const float qd[3], const float u[1], const tilted_four_bar_params_f *p, float qdd[3]);
-
 /* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); not unique, as the constraints depend on
    each other (rank 2 of 3): these are the smallest; u and q̈ are not affected */
 tilted_four_bar_status tilted_four_bar_multipliers_sc_f(const tilted_four_bar_trig_f *sc, const float q[3], const float qd[3], const float u[1], const tilted_four_bar_params_f *p, float lambda_B[3]);

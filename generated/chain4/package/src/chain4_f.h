@@ -1304,32 +1304,32 @@ chain4_status chain4_multipliers_f(const float q[4], const float qd[4], const fl
     const float t165 = l * t164;
     const float t166 = l * t165;
     const float t167 = t90 + t166;
-    const float t170 = fabsf(c);
-    const float t171 = m * t170;
-    const float t169 = fabsf(J);
-    const float t172 = t170 * t171;
-    const float t173 = t169 + t172;
-    const float t175 = fabsf(l);
-    const float t177 = m * t175;
-    const float t183 = 2.0f * t177;
-    const float t176 = 2.0f * t171;
-    const float t178 = t176 + t177;
-    const float t174 = 2.0f * t173;
-    const float t179 = t175 * t178;
-    const float t180 = t174 + t179;
-    const float t181 = t173 + t180;
-    const float t182 = 2.0f * t178;
+    const float t172 = fabsf(c);
+    const float t173 = m * t172;
+    const float t182 = fabsf(J);
+    const float t183 = t172 * t173;
     const float t184 = t182 + t183;
-    const float t185 = t175 * t184;
-    const float t186 = t181 + t185;
-    const float t187 = t173 + t186;
-    const float t188 = t171 + t178;
-    const float t189 = t183 + t188;
-    const float t190 = 2.0f * t189;
-    const float t191 = 3.0f * t177;
-    const float t192 = t190 + t191;
-    const float t193 = t175 * t192;
-    const float t194 = t187 + t193;
+    const float t169 = fabsf(l);
+    const float t170 = m * t169;
+    const float t171 = 2.0f * t170;
+    const float t174 = 2.0f * t173;
+    const float t175 = t170 + t174;
+    const float t188 = t169 * t175;
+    const float t189 = 2.0f * t184;
+    const float t190 = t188 + t189;
+    const float t185 = 2.0f * t175;
+    const float t186 = t171 + t185;
+    const float t187 = t169 * t186;
+    const float t191 = t184 + t190;
+    const float t192 = t187 + t191;
+    const float t176 = t173 + t175;
+    const float t177 = t171 + t176;
+    const float t178 = 2.0f * t177;
+    const float t179 = 3.0f * t170;
+    const float t180 = t178 + t179;
+    const float t181 = t169 * t180;
+    const float t193 = t184 + t192;
+    const float t194 = t181 + t193;
     const float t195 = t194 * 1.9073486e-06f;
     const float t202 = t6 * t27;
     const float t207 = t5 * t27;
@@ -1421,17 +1421,17 @@ chain4_status chain4_multipliers_f(const float q[4], const float qd[4], const fl
     if (CHAIN4_RARELY_F(!(t168 > t195))) {
         return CHAIN4_MASS_RANK;
     }
-    const float t197 = t186 * 1.9073486e-06f;
+    const float t197 = t192 * 1.9073486e-06f;
     const float t196 = fabsf(t145);
     if (CHAIN4_RARELY_F(!(t196 > t197))) {
         return CHAIN4_MASS_RANK;
     }
-    const float t199 = t180 * 1.9073486e-06f;
+    const float t199 = t190 * 1.9073486e-06f;
     const float t198 = fabsf(t111);
     if (CHAIN4_RARELY_F(!(t198 > t199))) {
         return CHAIN4_MASS_RANK;
     }
-    const float t201 = t173 * 1.9073486e-06f;
+    const float t201 = t184 * 1.9073486e-06f;
     const float t200 = fabsf(t90);
     if (CHAIN4_RARELY_F(!(t200 > t201))) {
         return CHAIN4_MASS_RANK;

@@ -903,100 +903,100 @@ chain8_status chain8_forward_dynamics_sc_f(const chain8_trig_f *sc, const float 
     const float t402 = l * t401;
     const float t403 = t190 + t402;
     const float t404 = fabsf(t403);
-    const float t405 = fabsf(J);
-    const float t406 = fabsf(c);
-    const float t407 = m * t406;
-    const float t408 = t406 * t407;
-    const float t409 = t405 + t408;
-    const float t410 = 2.0f * t409;
-    const float t411 = fabsf(l);
-    const float t412 = 2.0f * t407;
-    const float t413 = m * t411;
-    const float t414 = t412 + t413;
-    const float t415 = t411 * t414;
-    const float t416 = t410 + t415;
-    const float t417 = t409 + t416;
-    const float t418 = 2.0f * t414;
-    const float t419 = 2.0f * t413;
-    const float t420 = t418 + t419;
-    const float t421 = t411 * t420;
-    const float t422 = t417 + t421;
-    const float t423 = t409 + t422;
-    const float t424 = t407 + t414;
-    const float t425 = t419 + t424;
+    const float t405 = fabsf(l);
+    const float t406 = m * t405;
+    const float t407 = 6.0f * t406;
+    const float t408 = fabsf(c);
+    const float t409 = m * t408;
+    const float t410 = 5.0f * t406;
+    const float t411 = 4.0f * t406;
+    const float t412 = 3.0f * t406;
+    const float t413 = 2.0f * t406;
+    const float t414 = 2.0f * t409;
+    const float t415 = t406 + t414;
+    const float t416 = t409 + t415;
+    const float t417 = t413 + t416;
+    const float t418 = t409 + t417;
+    const float t419 = t412 + t418;
+    const float t420 = t409 + t419;
+    const float t421 = t411 + t420;
+    const float t422 = t409 + t421;
+    const float t423 = t410 + t422;
+    const float t424 = t409 + t423;
+    const float t425 = t407 + t424;
     const float t426 = 2.0f * t425;
-    const float t427 = 3.0f * t413;
+    const float t427 = 7.0f * t406;
     const float t428 = t426 + t427;
-    const float t429 = t411 * t428;
-    const float t430 = t423 + t429;
-    const float t431 = t409 + t430;
-    const float t432 = t407 + t425;
-    const float t433 = t427 + t432;
-    const float t434 = 2.0f * t433;
-    const float t435 = 4.0f * t413;
-    const float t436 = t434 + t435;
-    const float t437 = t411 * t436;
-    const float t438 = t431 + t437;
-    const float t439 = t409 + t438;
-    const float t440 = t407 + t433;
-    const float t441 = t435 + t440;
-    const float t442 = 2.0f * t441;
-    const float t443 = 5.0f * t413;
-    const float t444 = t442 + t443;
-    const float t445 = t411 * t444;
-    const float t446 = t439 + t445;
-    const float t447 = t409 + t446;
-    const float t448 = t407 + t441;
-    const float t449 = t443 + t448;
-    const float t450 = 2.0f * t449;
-    const float t451 = 6.0f * t413;
-    const float t452 = t450 + t451;
-    const float t453 = t411 * t452;
-    const float t454 = t447 + t453;
-    const float t455 = t409 + t454;
-    const float t456 = t407 + t449;
-    const float t457 = t451 + t456;
-    const float t458 = 2.0f * t457;
-    const float t459 = 7.0f * t413;
-    const float t460 = t458 + t459;
-    const float t461 = t411 * t460;
-    const float t462 = t455 + t461;
+    const float t429 = t405 * t428;
+    const float t430 = fabsf(J);
+    const float t431 = t408 * t409;
+    const float t432 = t430 + t431;
+    const float t433 = 2.0f * t423;
+    const float t434 = t407 + t433;
+    const float t435 = t405 * t434;
+    const float t436 = 2.0f * t421;
+    const float t437 = t410 + t436;
+    const float t438 = t405 * t437;
+    const float t439 = 2.0f * t419;
+    const float t440 = t411 + t439;
+    const float t441 = t405 * t440;
+    const float t442 = 2.0f * t417;
+    const float t443 = t412 + t442;
+    const float t444 = t405 * t443;
+    const float t445 = 2.0f * t415;
+    const float t446 = t413 + t445;
+    const float t447 = t405 * t446;
+    const float t448 = t405 * t415;
+    const float t449 = 2.0f * t432;
+    const float t450 = t448 + t449;
+    const float t451 = t432 + t450;
+    const float t452 = t447 + t451;
+    const float t453 = t432 + t452;
+    const float t454 = t444 + t453;
+    const float t455 = t432 + t454;
+    const float t456 = t441 + t455;
+    const float t457 = t432 + t456;
+    const float t458 = t438 + t457;
+    const float t459 = t432 + t458;
+    const float t460 = t435 + t459;
+    const float t461 = t432 + t460;
+    const float t462 = t429 + t461;
     const float t463 = t462 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t404 > t463))) {
         return CHAIN8_MASS_RANK;
     }
     const float t464 = fabsf(t381);
-    const float t465 = t454 * 3.8146973e-06f;
+    const float t465 = t460 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t464 > t465))) {
         return CHAIN8_MASS_RANK;
     }
     const float t466 = fabsf(t347);
-    const float t467 = t446 * 3.8146973e-06f;
+    const float t467 = t458 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t466 > t467))) {
         return CHAIN8_MASS_RANK;
     }
     const float t468 = fabsf(t313);
-    const float t469 = t438 * 3.8146973e-06f;
+    const float t469 = t456 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t468 > t469))) {
         return CHAIN8_MASS_RANK;
     }
     const float t470 = fabsf(t279);
-    const float t471 = t430 * 3.8146973e-06f;
+    const float t471 = t454 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t470 > t471))) {
         return CHAIN8_MASS_RANK;
     }
     const float t472 = fabsf(t245);
-    const float t473 = t422 * 3.8146973e-06f;
+    const float t473 = t452 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t472 > t473))) {
         return CHAIN8_MASS_RANK;
     }
     const float t474 = fabsf(t211);
-    const float t475 = t416 * 3.8146973e-06f;
+    const float t475 = t450 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t474 > t475))) {
         return CHAIN8_MASS_RANK;
     }
     const float t476 = fabsf(t190);
-    const float t477 = t409 * 3.8146973e-06f;
+    const float t477 = t432 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t476 > t477))) {
         return CHAIN8_MASS_RANK;
     }
@@ -2352,100 +2352,100 @@ chain8_status chain8_multipliers_sc_f(const chain8_trig_f *sc, const float q[8],
     const float t402 = l * t401;
     const float t403 = t190 + t402;
     const float t404 = fabsf(t403);
-    const float t405 = fabsf(J);
-    const float t406 = fabsf(c);
-    const float t407 = m * t406;
-    const float t408 = t406 * t407;
-    const float t409 = t405 + t408;
-    const float t410 = 2.0f * t409;
-    const float t411 = fabsf(l);
-    const float t412 = 2.0f * t407;
-    const float t413 = m * t411;
-    const float t414 = t412 + t413;
-    const float t415 = t411 * t414;
-    const float t416 = t410 + t415;
-    const float t417 = t409 + t416;
-    const float t418 = 2.0f * t414;
-    const float t419 = 2.0f * t413;
-    const float t420 = t418 + t419;
-    const float t421 = t411 * t420;
-    const float t422 = t417 + t421;
-    const float t423 = t409 + t422;
-    const float t424 = t407 + t414;
-    const float t425 = t419 + t424;
+    const float t405 = fabsf(l);
+    const float t406 = m * t405;
+    const float t407 = 6.0f * t406;
+    const float t408 = fabsf(c);
+    const float t409 = m * t408;
+    const float t410 = 5.0f * t406;
+    const float t411 = 4.0f * t406;
+    const float t412 = 3.0f * t406;
+    const float t413 = 2.0f * t406;
+    const float t414 = 2.0f * t409;
+    const float t415 = t406 + t414;
+    const float t416 = t409 + t415;
+    const float t417 = t413 + t416;
+    const float t418 = t409 + t417;
+    const float t419 = t412 + t418;
+    const float t420 = t409 + t419;
+    const float t421 = t411 + t420;
+    const float t422 = t409 + t421;
+    const float t423 = t410 + t422;
+    const float t424 = t409 + t423;
+    const float t425 = t407 + t424;
     const float t426 = 2.0f * t425;
-    const float t427 = 3.0f * t413;
+    const float t427 = 7.0f * t406;
     const float t428 = t426 + t427;
-    const float t429 = t411 * t428;
-    const float t430 = t423 + t429;
-    const float t431 = t409 + t430;
-    const float t432 = t407 + t425;
-    const float t433 = t427 + t432;
-    const float t434 = 2.0f * t433;
-    const float t435 = 4.0f * t413;
-    const float t436 = t434 + t435;
-    const float t437 = t411 * t436;
-    const float t438 = t431 + t437;
-    const float t439 = t409 + t438;
-    const float t440 = t407 + t433;
-    const float t441 = t435 + t440;
-    const float t442 = 2.0f * t441;
-    const float t443 = 5.0f * t413;
-    const float t444 = t442 + t443;
-    const float t445 = t411 * t444;
-    const float t446 = t439 + t445;
-    const float t447 = t409 + t446;
-    const float t448 = t407 + t441;
-    const float t449 = t443 + t448;
-    const float t450 = 2.0f * t449;
-    const float t451 = 6.0f * t413;
-    const float t452 = t450 + t451;
-    const float t453 = t411 * t452;
-    const float t454 = t447 + t453;
-    const float t455 = t409 + t454;
-    const float t456 = t407 + t449;
-    const float t457 = t451 + t456;
-    const float t458 = 2.0f * t457;
-    const float t459 = 7.0f * t413;
-    const float t460 = t458 + t459;
-    const float t461 = t411 * t460;
-    const float t462 = t455 + t461;
+    const float t429 = t405 * t428;
+    const float t430 = fabsf(J);
+    const float t431 = t408 * t409;
+    const float t432 = t430 + t431;
+    const float t433 = 2.0f * t423;
+    const float t434 = t407 + t433;
+    const float t435 = t405 * t434;
+    const float t436 = 2.0f * t421;
+    const float t437 = t410 + t436;
+    const float t438 = t405 * t437;
+    const float t439 = 2.0f * t419;
+    const float t440 = t411 + t439;
+    const float t441 = t405 * t440;
+    const float t442 = 2.0f * t417;
+    const float t443 = t412 + t442;
+    const float t444 = t405 * t443;
+    const float t445 = 2.0f * t415;
+    const float t446 = t413 + t445;
+    const float t447 = t405 * t446;
+    const float t448 = t405 * t415;
+    const float t449 = 2.0f * t432;
+    const float t450 = t448 + t449;
+    const float t451 = t432 + t450;
+    const float t452 = t447 + t451;
+    const float t453 = t432 + t452;
+    const float t454 = t444 + t453;
+    const float t455 = t432 + t454;
+    const float t456 = t441 + t455;
+    const float t457 = t432 + t456;
+    const float t458 = t438 + t457;
+    const float t459 = t432 + t458;
+    const float t460 = t435 + t459;
+    const float t461 = t432 + t460;
+    const float t462 = t429 + t461;
     const float t463 = t462 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t404 > t463))) {
         return CHAIN8_MASS_RANK;
     }
     const float t464 = fabsf(t381);
-    const float t465 = t454 * 3.8146973e-06f;
+    const float t465 = t460 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t464 > t465))) {
         return CHAIN8_MASS_RANK;
     }
     const float t466 = fabsf(t347);
-    const float t467 = t446 * 3.8146973e-06f;
+    const float t467 = t458 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t466 > t467))) {
         return CHAIN8_MASS_RANK;
     }
     const float t468 = fabsf(t313);
-    const float t469 = t438 * 3.8146973e-06f;
+    const float t469 = t456 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t468 > t469))) {
         return CHAIN8_MASS_RANK;
     }
     const float t470 = fabsf(t279);
-    const float t471 = t430 * 3.8146973e-06f;
+    const float t471 = t454 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t470 > t471))) {
         return CHAIN8_MASS_RANK;
     }
     const float t472 = fabsf(t245);
-    const float t473 = t422 * 3.8146973e-06f;
+    const float t473 = t452 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t472 > t473))) {
         return CHAIN8_MASS_RANK;
     }
     const float t474 = fabsf(t211);
-    const float t475 = t416 * 3.8146973e-06f;
+    const float t475 = t450 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t474 > t475))) {
         return CHAIN8_MASS_RANK;
     }
     const float t476 = fabsf(t190);
-    const float t477 = t409 * 3.8146973e-06f;
+    const float t477 = t432 * 3.8146973e-06f;
     if (CHAIN8_RARELY_F(!(t476 > t477))) {
         return CHAIN8_MASS_RANK;
     }

@@ -539,7 +539,7 @@ five_bar_status five_bar_forward_dynamics_f(const float q[4], const float qd[4],
     const float t90 = 0.0256f * t89;
     const float t91 = t84 + t90;
     const float t92 = fabsf(t91);
-    const float t93 = 0.024557f + J_m;
+    const float t93 = 0.019873f + J_m;
     const float t94 = t93 * 1.9073486e-06f;
     if (FIVE_BAR_RARELY_F(!(t92 > t94))) {
         return FIVE_BAR_MASS_RANK;
@@ -551,7 +551,7 @@ five_bar_status five_bar_forward_dynamics_f(const float q[4], const float qd[4],
     const float t100 = 0.0256f * t99;
     const float t101 = t84 + t100;
     const float t102 = fabsf(t101);
-    const float t103 = 0.09127442f + J_m;
+    const float t103 = 0.077833f + J_m;
     const float t104 = t103 * 1.9073486e-06f;
     if (FIVE_BAR_RARELY_F(!(t102 > t104))) {
         return FIVE_BAR_MASS_RANK;
@@ -603,10 +603,10 @@ five_bar_status five_bar_forward_dynamics_f(const float q[4], const float qd[4],
     const float t130 = t114 + t129;
     const float t109 = 0.16f * t108;
     const float t113 = 0.16f * t112;
-    if (FIVE_BAR_RARELY_F(!(0.003782f > 9.407043e-09f))) {
+    if (FIVE_BAR_RARELY_F(!(0.003782f > 0.0f))) {
         return FIVE_BAR_MASS_RANK;
     }
-    if (FIVE_BAR_RARELY_F(!(0.023342f > 5.151638e-08f))) {
+    if (FIVE_BAR_RARELY_F(!(0.023342f > 0.0f))) {
         return FIVE_BAR_MASS_RANK;
     }
     const float t131 = 1.0f / t130;
@@ -1023,7 +1023,7 @@ five_bar_status five_bar_multipliers_f(const float q[4], const float qd[4], cons
     const float t90 = 0.0256f * t89;
     const float t91 = t84 + t90;
     const float t92 = fabsf(t91);
-    const float t93 = 0.024557f + J_m;
+    const float t93 = 0.019873f + J_m;
     const float t94 = t93 * 1.9073486e-06f;
     if (FIVE_BAR_RARELY_F(!(t92 > t94))) {
         return FIVE_BAR_MASS_RANK;
@@ -1035,7 +1035,7 @@ five_bar_status five_bar_multipliers_f(const float q[4], const float qd[4], cons
     const float t100 = 0.0256f * t99;
     const float t101 = t84 + t100;
     const float t102 = fabsf(t101);
-    const float t103 = 0.09127442f + J_m;
+    const float t103 = 0.077833f + J_m;
     const float t104 = t103 * 1.9073486e-06f;
     if (FIVE_BAR_RARELY_F(!(t102 > t104))) {
         return FIVE_BAR_MASS_RANK;
@@ -1087,10 +1087,10 @@ five_bar_status five_bar_multipliers_f(const float q[4], const float qd[4], cons
     const float t130 = t114 + t129;
     const float t109 = 0.16f * t108;
     const float t113 = 0.16f * t112;
-    if (FIVE_BAR_RARELY_F(!(0.003782f > 9.407043e-09f))) {
+    if (FIVE_BAR_RARELY_F(!(0.003782f > 0.0f))) {
         return FIVE_BAR_MASS_RANK;
     }
-    if (FIVE_BAR_RARELY_F(!(0.023342f > 5.151638e-08f))) {
+    if (FIVE_BAR_RARELY_F(!(0.023342f > 0.0f))) {
         return FIVE_BAR_MASS_RANK;
     }
     const float t131 = 1.0f / t130;

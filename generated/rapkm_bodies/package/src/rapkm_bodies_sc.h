@@ -510,42 +510,42 @@ rapkm_bodies_status rapkm_bodies_forward_dynamics_sc(const rapkm_bodies_trig *sc
     const double t168 = t167 * t167;
     const double t169 = t165 + t168;
     const double t203 = fabs(l_2);
-    const double m_payload = p->m_payload;
-    const double t204 = m_payload * t203;
     const double m_2 = p->m_2;
-    const double t205 = m_2 * t203;
+    const double t204 = m_2 * t203;
+    const double m_payload = p->m_payload;
+    const double t208 = m_payload * t203;
     const double J_2 = p->J_2;
-    const double t212 = fabs(J_2);
-    const double t213 = t203 * t205;
-    const double t214 = 0.25 * t213;
-    const double t215 = t212 + t214;
-    const double t216 = t203 * t204;
-    const double t217 = t215 + t216;
+    const double t202 = fabs(J_2);
+    const double t205 = t203 * t204;
+    const double t206 = 0.25 * t205;
+    const double t207 = t202 + t206;
+    const double t209 = t203 * t208;
+    const double t210 = t207 + t209;
     const double t175 = m_2 + m_payload;
     const double m_1 = p->m_1;
     const double t195 = 0.25 * m_1;
-    const double t202 = fabs(l_1);
+    const double t211 = fabs(l_1);
     const double J_1 = p->J_1;
     const double t218 = fabs(J_1);
-    const double t219 = t202 * t195;
-    const double t220 = t202 * t219;
+    const double t219 = t211 * t195;
+    const double t220 = t211 * t219;
     const double t221 = t218 + t220;
     const double J_motor = p->J_motor;
     const double t222 = J_motor + t221;
-    const double t206 = 0.5 * t205;
-    const double t207 = t204 + t206;
-    const double t208 = 2.0 * t207;
-    const double t209 = t175 * t202;
-    const double t210 = t208 + t209;
-    const double t211 = t202 * t210;
+    const double t212 = 0.5 * t204;
+    const double t213 = t212 + t208;
+    const double t214 = 2.0 * t213;
+    const double t215 = t175 * t211;
+    const double t216 = t214 + t215;
+    const double t217 = t211 * t216;
     const double t223 = t217 + t222;
-    const double t224 = t211 + t223;
+    const double t224 = t210 + t223;
     const double t225 = t224 * 5.329070518200751e-15;
-    const double t238 = m_2 * t202;
-    const double t239 = t205 + t238;
-    const double t240 = t202 * t239;
-    const double t241 = t215 + t222;
-    const double t242 = t240 + t241;
+    const double t238 = m_2 * t211;
+    const double t239 = t204 + t238;
+    const double t240 = t211 * t239;
+    const double t241 = t240 + t222;
+    const double t242 = t207 + t241;
     const double t243 = t242 * 5.329070518200751e-15;
     const double t170 = t142 * t142;
     const double t171 = t143 * t143;
@@ -610,12 +610,12 @@ rapkm_bodies_status rapkm_bodies_forward_dynamics_sc(const rapkm_bodies_trig *sc
     if (RAPKM_BODIES_RARELY(!(t252 > t243))) {
         return RAPKM_BODIES_MASS_RANK;
     }
-    const double t254 = t217 * 5.329070518200751e-15;
+    const double t254 = t210 * 5.329070518200751e-15;
     const double t253 = fabs(t186);
     if (RAPKM_BODIES_RARELY(!(t253 > t254))) {
         return RAPKM_BODIES_MASS_RANK;
     }
-    const double t256 = t215 * 5.329070518200751e-15;
+    const double t256 = t207 * 5.329070518200751e-15;
     const double t255 = fabs(t184);
     if (RAPKM_BODIES_RARELY(!(t255 > t256))) {
         return RAPKM_BODIES_MASS_RANK;
@@ -1546,29 +1546,29 @@ rapkm_bodies_status rapkm_bodies_multipliers_sc(const rapkm_bodies_trig *sc, con
     const double t199 = J_motor + t198;
     const double t200 = t194 + t199;
     const double t201 = fabs(t200);
-    const double t202 = fabs(l_1);
+    const double t202 = fabs(J_2);
     const double t203 = fabs(l_2);
-    const double t204 = m_payload * t203;
-    const double t205 = m_2 * t203;
-    const double t206 = 0.5 * t205;
-    const double t207 = t204 + t206;
-    const double t208 = 2.0 * t207;
-    const double t209 = t175 * t202;
-    const double t210 = t208 + t209;
-    const double t211 = t202 * t210;
-    const double t212 = fabs(J_2);
-    const double t213 = t203 * t205;
-    const double t214 = 0.25 * t213;
-    const double t215 = t212 + t214;
-    const double t216 = t203 * t204;
-    const double t217 = t215 + t216;
+    const double t204 = m_2 * t203;
+    const double t205 = t203 * t204;
+    const double t206 = 0.25 * t205;
+    const double t207 = t202 + t206;
+    const double t208 = m_payload * t203;
+    const double t209 = t203 * t208;
+    const double t210 = t207 + t209;
+    const double t211 = fabs(l_1);
+    const double t212 = 0.5 * t204;
+    const double t213 = t212 + t208;
+    const double t214 = 2.0 * t213;
+    const double t215 = t175 * t211;
+    const double t216 = t214 + t215;
+    const double t217 = t211 * t216;
     const double t218 = fabs(J_1);
-    const double t219 = t202 * t195;
-    const double t220 = t202 * t219;
+    const double t219 = t211 * t195;
+    const double t220 = t211 * t219;
     const double t221 = t218 + t220;
     const double t222 = J_motor + t221;
     const double t223 = t217 + t222;
-    const double t224 = t211 + t223;
+    const double t224 = t210 + t223;
     const double t225 = t224 * 5.329070518200751e-15;
     if (RAPKM_BODIES_RARELY(!(t201 > t225))) {
         return RAPKM_BODIES_MASS_RANK;
@@ -1585,11 +1585,11 @@ rapkm_bodies_status rapkm_bodies_multipliers_sc(const rapkm_bodies_trig *sc, con
     const double t235 = l_1 * t234;
     const double t236 = t199 + t235;
     const double t237 = fabs(t236);
-    const double t238 = m_2 * t202;
-    const double t239 = t205 + t238;
-    const double t240 = t202 * t239;
-    const double t241 = t215 + t222;
-    const double t242 = t240 + t241;
+    const double t238 = m_2 * t211;
+    const double t239 = t204 + t238;
+    const double t240 = t211 * t239;
+    const double t241 = t240 + t222;
+    const double t242 = t207 + t241;
     const double t243 = t242 * 5.329070518200751e-15;
     if (RAPKM_BODIES_RARELY(!(t237 > t243))) {
         return RAPKM_BODIES_MASS_RANK;
@@ -1607,12 +1607,12 @@ rapkm_bodies_status rapkm_bodies_multipliers_sc(const rapkm_bodies_trig *sc, con
         return RAPKM_BODIES_MASS_RANK;
     }
     const double t253 = fabs(t186);
-    const double t254 = t217 * 5.329070518200751e-15;
+    const double t254 = t210 * 5.329070518200751e-15;
     if (RAPKM_BODIES_RARELY(!(t253 > t254))) {
         return RAPKM_BODIES_MASS_RANK;
     }
     const double t255 = fabs(t184);
-    const double t256 = t215 * 5.329070518200751e-15;
+    const double t256 = t207 * 5.329070518200751e-15;
     if (RAPKM_BODIES_RARELY(!(t255 > t256))) {
         return RAPKM_BODIES_MASS_RANK;
     }

@@ -496,11 +496,11 @@ rolling_disc_status rolling_disc_forward_dynamics_f(const float q[6], const floa
     const float t83 = t7 * t82;
     const float t84 = fabsf(t83);
     const float t85 = fabsf(J);
-    const float t86 = t85 * 2.2888184e-05f;
+    const float t86 = t85 * 1.1444092e-05f;
     if (ROLLING_DISC_RARELY_F(!(t84 > t86))) {
         return ROLLING_DISC_MASS_RANK;
     }
-    const float t87 = t85 * 1.1444092e-05f;
+    const float t87 = t85 * 5.722046e-06f;
     if (ROLLING_DISC_RARELY_F(!(t85 > t87))) {
         return ROLLING_DISC_MASS_RANK;
     }
@@ -971,11 +971,11 @@ rolling_disc_status rolling_disc_multipliers_f(const float q[6], const float qd[
     const float t83 = t5 * t82;
     const float t84 = fabsf(t83);
     const float t85 = fabsf(J);
-    const float t86 = t85 * 2.2888184e-05f;
+    const float t86 = t85 * 1.1444092e-05f;
     if (ROLLING_DISC_RARELY_F(!(t84 > t86))) {
         return ROLLING_DISC_MASS_RANK;
     }
-    const float t87 = t85 * 1.1444092e-05f;
+    const float t87 = t85 * 5.722046e-06f;
     if (ROLLING_DISC_RARELY_F(!(t85 > t87))) {
         return ROLLING_DISC_MASS_RANK;
     }

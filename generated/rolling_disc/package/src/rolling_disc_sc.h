@@ -333,11 +333,11 @@ rolling_disc_status rolling_disc_forward_dynamics_sc(const rolling_disc_trig *sc
     const double t83 = cos_beta * t82;
     const double t84 = fabs(t83);
     const double t85 = fabs(J);
-    const double t86 = t85 * 4.263256414560601e-14;
+    const double t86 = t85 * 2.1316282072803006e-14;
     if (ROLLING_DISC_RARELY(!(t84 > t86))) {
         return ROLLING_DISC_MASS_RANK;
     }
-    const double t87 = t85 * 2.1316282072803006e-14;
+    const double t87 = t85 * 1.0658141036401503e-14;
     if (ROLLING_DISC_RARELY(!(t85 > t87))) {
         return ROLLING_DISC_MASS_RANK;
     }
@@ -790,11 +790,11 @@ rolling_disc_status rolling_disc_multipliers_sc(const rolling_disc_trig *sc, con
     const double t83 = cos_beta * t82;
     const double t84 = fabs(t83);
     const double t85 = fabs(J);
-    const double t86 = t85 * 4.263256414560601e-14;
+    const double t86 = t85 * 2.1316282072803006e-14;
     if (ROLLING_DISC_RARELY(!(t84 > t86))) {
         return ROLLING_DISC_MASS_RANK;
     }
-    const double t87 = t85 * 2.1316282072803006e-14;
+    const double t87 = t85 * 1.0658141036401503e-14;
     if (ROLLING_DISC_RARELY(!(t85 > t87))) {
         return ROLLING_DISC_MASS_RANK;
     }

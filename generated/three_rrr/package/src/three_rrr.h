@@ -1124,14 +1124,14 @@ three_rrr_status three_rrr_forward_dynamics(const double q[9], const double qd[9
     const double t412 = 0.25 * t411;
     const double t413 = t408 + t412;
     const double t414 = fabs(J_1);
-    const double t415 = J_motor + t414;
-    const double t416 = fabs(l_1);
-    const double t417 = m_2 * t416;
-    const double t418 = t410 + t417;
-    const double t419 = t416 * t401;
-    const double t420 = t418 + t419;
-    const double t421 = t416 * t420;
-    const double t422 = t415 + t421;
+    const double t415 = fabs(l_1);
+    const double t416 = m_2 * t415;
+    const double t417 = t410 + t416;
+    const double t418 = t415 * t401;
+    const double t419 = t417 + t418;
+    const double t420 = t415 * t419;
+    const double t421 = J_motor + t420;
+    const double t422 = t414 + t421;
     const double t423 = t413 + t422;
     const double t424 = t423 * 7.993605777301127e-15;
     if (THREE_RRR_RARELY(!(t407 > t424))) {
@@ -3057,14 +3057,14 @@ three_rrr_status three_rrr_multipliers(const double q[9], const double qd[9], co
     const double t412 = 0.25 * t411;
     const double t413 = t408 + t412;
     const double t414 = fabs(J_1);
-    const double t415 = J_motor + t414;
-    const double t416 = fabs(l_1);
-    const double t417 = m_2 * t416;
-    const double t418 = t410 + t417;
-    const double t419 = t416 * t401;
-    const double t420 = t418 + t419;
-    const double t421 = t416 * t420;
-    const double t422 = t415 + t421;
+    const double t415 = fabs(l_1);
+    const double t416 = m_2 * t415;
+    const double t417 = t410 + t416;
+    const double t418 = t415 * t401;
+    const double t419 = t417 + t418;
+    const double t420 = t415 * t419;
+    const double t421 = J_motor + t420;
+    const double t422 = t414 + t421;
     const double t423 = t413 + t422;
     const double t424 = t423 * 7.993605777301127e-15;
     if (THREE_RRR_RARELY(!(t407 > t424))) {
