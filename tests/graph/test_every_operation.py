@@ -14,6 +14,7 @@ from symgen.graph.evaluate import FUNCTIONS, Evaluator
 from symgen.graph.scalar import Graph, Scalar
 from symgen.graph.traverse import rebuild
 from symgen.ir.kernel import OperationName
+from symgen.ir.wide_functions import WIDE
 
 POINT = {"x": 0.37, "y": 0.82}
 TWO = {"add", "sub", "mul", "div", "copysign", "ratio_or_zero", "min", "max", "atan2"}
@@ -22,7 +23,8 @@ STEP = 1e-6
 
 def operations() -> list[str]:
     """Those of kernels, and those of graphs that are no statements."""
-    kernels = {name for op in get_args(OperationName) for name in (("sin", "cos") if op == "sincos" else (op,))}
+    plain = set(get_args(OperationName)) - set(WIDE.values())
+    kernels = {name for op in plain for name in (("sin", "cos") if op == "sincos" else (op,))}
     return sorted(kernels | set(FUNCTIONS))
 
 
