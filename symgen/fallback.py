@@ -38,7 +38,7 @@ TOO_LONG = "not tried: it takes many times as long to derive"
 MARGIN = FACTOR / 2
 # What keeping a margin may cost, in operations.
 MARGIN_WORTH = Fraction(1, 2)
-# Ways that are tried once more with twice the digits, and what the longest one counts: an operation is a call then.
+# Ways that are tried once more with twice the digits, and what the longest one counts.
 WIDENED = 3
 LONGEST = 40_000
 Kernels: TypeAlias = Mapping[Scalar, Kernel]

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen.emit.scalars import C_TYPE
-from symgen.emit.statements import CStatements
+from symgen.emit.statements import c_body
 from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
 from symgen.ir.wide_functions import works_with_pairs
-from symgen.naming import c_identifiers, macro_name
+from symgen.naming import macro_name
 from symgen.records import dataclass
 
 # Values in a vector of 16 bytes, which every 64-bit processor has.
@@ -77,10 +77,7 @@ def pair_names(name: str, suffix: str) -> set[str]:
 
 def pair_body(scalar: Scalar, function: Function, name: str) -> tuple[str, tuple[str, ...]]:
     """Parameter and lines of the function `name` that sets `*sine` and `*cosine`."""
-    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
-    names = c_identifiers(own, {"sine", "cosine", name})
-    printer = CStatements(scalar, names, frozenset(own))
-    body = [line for statement in function.statements for line in printer.statement(statement)]
+    names, body = c_body(scalar, function, {"sine", "cosine", name})
     sine, cosine = (names[result] for result in function.results)
     return names[function.parameters[0]], (*body, f"*sine = {sine};", f"*cosine = {cosine};")
 

@@ -9,11 +9,10 @@ from symgen.emit.literals import decimal_text
 from symgen.emit.locals import Names, all_statements, array_arguments, names_of, used_locals
 from symgen.emit.quantities import BATCHED, meaning
 from symgen.emit.render import render
-from symgen.emit.statements import NumpyStatements
+from symgen.emit.statements import NumpyStatements, numpy_body
 from symgen.ir.kernel import Function, Kernel, OperationName, Program, Status
 from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
 from symgen.model.model import Model
-from symgen.naming import c_identifiers
 from symgen.records import dataclass
 
 _SINCOS = "_sincos"
@@ -155,20 +154,14 @@ def _c_files(model: Model, program: Program) -> tuple[str, ...]:
 
 
 def _sincos(function: Function) -> tuple[str, tuple[str, ...]]:
-    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
-    names = c_identifiers(own, {"np"})
-    printer = NumpyStatements(names, frozenset(own))
-    body = [line for statement in function.statements for line in printer.statement(statement)]
+    names, body = numpy_body(function)
     sine, cosine = function.results
     return names[function.parameters[0]], (*body, f"return {names[sine]}, {names[cosine]}")
 
 
 def _wide(operation: OperationName) -> WideView:
     function = wide_function(operation)
-    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
-    names = c_identifiers(own, {"np"})
-    printer = NumpyStatements(names, frozenset(own))
-    body = tuple(line for statement in function.statements for line in printer.statement(statement))
+    names, body = numpy_body(function)
     parameters, results = (tuple(names[one] for one in part) for part in (function.parameters, function.results))
     return WideView(f"_{operation}", parameters, body, results)
 

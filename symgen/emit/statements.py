@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from symgen.emit.literals import c_literal, numpy_literal
 from symgen.emit.scalars import C_TYPE
-from symgen.ir.kernel import Block, Check, Literal, Local, Operand, Scalar, Statement, Status
+from symgen.ir.kernel import Block, Check, Function, Literal, Local, Operand, Scalar, Statement, Status
 from symgen.ir.wide_functions import is_wide
+from symgen.naming import c_identifiers
 from symgen.records import dataclass
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
@@ -164,3 +165,22 @@ class NumpyStatements:
             *(f"    {line}" for line in self.block(check.first, mask)),
             f"    status = _first(status, {mask}, {int(check.status)})",
         )
+
+
+def c_body(scalar: Scalar, function: Function, taken: Collection[str]) -> tuple[Mapping[str, str], tuple[str, ...]]:
+    """The names in a helper's body in C, none of them `taken`, and its lines."""
+    names = _names(function, taken)
+    printer = CStatements(scalar, names, frozenset(names))
+    return names, tuple(line for statement in function.statements for line in printer.statement(statement))
+
+
+def numpy_body(function: Function) -> tuple[Mapping[str, str], tuple[str, ...]]:
+    """The same in NumPy."""
+    names = _names(function, {"np"})
+    printer = NumpyStatements(names, frozenset(names))
+    return names, tuple(line for statement in function.statements for line in printer.statement(statement))
+
+
+def _names(function: Function, taken: Collection[str]) -> dict[str, str]:
+    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
+    return c_identifiers(own, taken)

@@ -12,11 +12,10 @@ from heapq import heappop, heappush
 
 from symgen.emit.literals import c_literal
 from symgen.emit.scalars import C_TYPE
-from symgen.emit.statements import CStatements
-from symgen.ir.kernel import Kernel, Literal, Local, Operand, OperationName, Program, Scalar
+from symgen.emit.statements import CStatements, c_body
+from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Program, Scalar
 from symgen.ir.split import names_in, names_of_check
 from symgen.ir.wide_functions import is_wide_operation, wide_function, works_with_pairs
-from symgen.naming import c_identifiers
 from symgen.records import dataclass
 
 # Of a step: what it sets and what it reads at most.
@@ -227,10 +226,7 @@ def _wide_name(pair: str, operation: OperationName) -> str:
 
 def _function(operation: OperationName, scalar: Scalar, pair: str) -> WideFunction:
     function = wide_function(operation, scalar)
-    own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
-    names = c_identifiers(own, {"pair"})
-    printer = CStatements(scalar, names, frozenset(own))
+    names, body = c_body(scalar, function, {"pair"})
     parameters = tuple(f"const {C_TYPE[scalar]} {names[one]}" for one in function.parameters)
-    body = tuple(line for statement in function.statements for line in printer.statement(statement))
-    value, rest = (printer.operand(Local(result)) for result in function.results)
+    value, rest = (names[result] for result in function.results)
     return WideFunction(_wide_name(pair, operation), parameters, body, value, rest)

@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, OperationName, Statement, Status
 from symgen.ir.lifted import Lifted, same_kernel
-from symgen.ir.split import names_in
+from symgen.ir.split import pruned
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.records import dataclass
 
@@ -53,9 +53,9 @@ def given_trig(kernel: Kernel) -> GivenTrig | None:
     blocks = tuple(rewriter.block(block) for block in kernel.blocks)
     changed = replace(kernel, loads=(*kernel.loads, *rewriter.loads), blocks=blocks)
     changed = replace(changed, outputs=tuple(map(rewriter.operand, kernel.outputs)))
-    pruned = _pruned(changed)
-    same_kernel(f"sines and cosines given to {kernel.name}", Lifted(kernel), Lifted(pruned))
-    return GivenTrig(pruned, tuple(given))
+    made = pruned(changed)
+    same_kernel(f"sines and cosines given to {kernel.name}", Lifted(kernel), Lifted(made))
+    return GivenTrig(made, tuple(given))
 
 
 def _sums(kernel: Kernel, coordinates: Mapping[str, Load]) -> dict[Operand, Sum]:
@@ -190,28 +190,6 @@ class _Rewriter:
             emit(plus, emit("mul", sine, c), emit("mul", cosine, s)),
             emit(minus, emit("mul", cosine, c), emit("mul", sine, s)),
         )
-
-
-def _pruned(kernel: Kernel) -> Kernel:
-    """The kernel without statements and loads that nothing needs."""
-    used = names_in(kernel.outputs)
-    blocks = [_kept(block, used) for block in reversed(kernel.blocks)]
-    loads = tuple(load for load in kernel.loads if load.local in used)
-    return replace(kernel, loads=loads, blocks=tuple(reversed(blocks)))
-
-
-def _kept(block: Block, used: set[str]) -> Block:
-    """The block without statements that nothing after them needs; what it needs itself is added to `used`."""
-    checks = []
-    for check in reversed(block.checks):
-        used |= names_in((check.value, check.limit))
-        checks.append(check if check.first is None else replace(check, first=_kept(check.first, used)))
-    statements = []
-    for statement in reversed(block.statements):
-        if not used.isdisjoint(statement.targets):
-            used |= names_in(statement.operands)
-            statements.append(statement)
-    return Block(tuple(reversed(statements)), tuple(reversed(checks)))
 
 
 def _all_statements(block: Block) -> Iterator[Statement]:

@@ -11,18 +11,7 @@ import struct
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
-from symgen.ir.kernel import (
-    Block,
-    Check,
-    Function,
-    Kernel,
-    Literal,
-    Operand,
-    OperationName,
-    Scalar,
-    Statement,
-    Status,
-)
+from symgen.ir.kernel import Block, Check, Function, Kernel, Literal, Operand, Scalar, Statement, Status
 from symgen.ir.wide_functions import is_wide, wide_function
 
 
@@ -102,7 +91,6 @@ class Interpreter:
         self._sincos = sincos
         self._scalar: Scalar = scalar
         self._round: Callable[[float], float] = float if scalar == "float64" else round_float32
-        self._wide: dict[OperationName, _Steps] = {}
 
     def run(
         self, kernel: Kernel, arguments: Mapping[str, Sequence[float]], parameters: Sequence[float]
@@ -156,51 +144,21 @@ class Interpreter:
         if statement.operation == "sincos":
             results = self._pair(operands[0])
         elif is_wide(statement):
-            results = self._on_pairs(statement.operation, operands)
+            results = self._called(wide_function(statement.operation, self._scalar), operands)
         else:
             results = (self._round(OPERATIONS[statement.operation](*operands)),)
         values.update(zip(statement.targets, results, strict=True))
 
-    def _on_pairs(self, operation: OperationName, operands: Sequence[float]) -> tuple[float, ...]:
-        if operation not in self._wide:
-            self._wide[operation] = _Steps(wide_function(operation, self._scalar), self._scalar)
-        return self._wide[operation].results(operands, self._round)
-
     def _pair(self, x: float) -> tuple[float, ...]:
         if self._sincos is None:
             return self._round(_guarded(math.sin)(x)), self._round(_guarded(math.cos)(x))
-        values = dict(zip(self._sincos.parameters, (x,), strict=True))
-        for statement in self._sincos.statements:
-            self._statement(statement, values)
-        return tuple(values[name] for name in self._sincos.results)
+        return self._called(self._sincos, (x,))
 
-
-class _Steps:
-    """A function that is called thousands of times: operations of two numbers, by the places of their operands."""
-
-    def __init__(self, function: Function, scalar: Scalar) -> None:
-        places: dict[Operand | str, int] = {name: place for place, name in enumerate(function.parameters)}
-        self._numbers: list[float] = []
+    def _called(self, function: Function, operands: Sequence[float]) -> tuple[float, ...]:
+        values = dict(zip(function.parameters, operands, strict=True))
         for statement in function.statements:
-            for operand in statement.operands:
-                if isinstance(operand, Literal) and operand not in places:
-                    places[operand] = len(function.parameters) + len(self._numbers)
-                    self._numbers.append(round_literal(operand.value, scalar))
-        for place, statement in enumerate(function.statements, len(places)):
-            places[statement.targets[0]] = place
-
-        def at(operand: Operand) -> int:
-            return places[operand if isinstance(operand, Literal) else operand.name]
-
-        self._steps = [(OPERATIONS[one.operation], [*map(at, one.operands)]) for one in function.statements]
-        self._results = [places[name] for name in function.results]
-
-    def results(self, operands: Sequence[float], rounding: Callable[[float], float]) -> tuple[float, ...]:
-        """What the function gives."""
-        values = [*operands, *self._numbers]
-        for call, places in self._steps:
-            values.append(rounding(call(*[values[place] for place in places])))
-        return tuple(values[place] for place in self._results)
+            self._statement(statement, values)
+        return tuple(values[name] for name in function.results)
 
 
 def interpret(

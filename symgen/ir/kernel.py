@@ -76,6 +76,12 @@ class Literal:
 
     value: Fraction
 
+    @property
+    def is_power_of_two(self) -> bool:
+        """Whether products with it are exact."""
+        parts = abs(self.value.numerator), self.value.denominator
+        return all(part > 0 and part & (part - 1) == 0 for part in parts)
+
 
 Operand: TypeAlias = Local | Literal
 

@@ -40,18 +40,29 @@ def split(kernel: Kernel) -> Split:
 def without_first(kernel: Kernel) -> Kernel:
     """The kernel whose checks only pass or fail: what tells one failure from another goes, with all it alone needs."""
     blocks = [replace(block, checks=tuple(_plain(c) for c in block.checks)) for block in kernel.blocks]
-    needed = names_in(kernel.outputs)
-    kept: list[Block] = []
-    for block in reversed(blocks):
-        needed |= names_in(operand for check in block.checks for operand in (check.value, check.limit))
-        statements = []
-        for statement in reversed(block.statements):
-            if needed.intersection(statement.targets):
-                needed |= names_in(statement.operands)
-                statements.append(statement)
-        kept.append(replace(block, statements=tuple(reversed(statements))))
-    loads = tuple(load for load in kernel.loads if load.local in needed)
-    return replace(kernel, loads=loads, blocks=tuple(reversed(kept)))
+    return pruned(replace(kernel, blocks=tuple(blocks)))
+
+
+def pruned(kernel: Kernel) -> Kernel:
+    """The kernel without statements and loads that nothing needs."""
+    used = names_in(kernel.outputs)
+    blocks = [_kept(block, used) for block in reversed(kernel.blocks)]
+    loads = tuple(load for load in kernel.loads if load.local in used)
+    return replace(kernel, loads=loads, blocks=tuple(reversed(blocks)))
+
+
+def _kept(block: Block, used: set[str]) -> Block:
+    """The block without statements that nothing after them needs; what it needs itself is added to `used`."""
+    checks = []
+    for check in reversed(block.checks):
+        used |= names_in((check.value, check.limit))
+        checks.append(check if check.first is None else replace(check, first=_kept(check.first, used)))
+    statements = []
+    for statement in reversed(block.statements):
+        if not used.isdisjoint(statement.targets):
+            used |= names_in(statement.operands)
+            statements.append(statement)
+    return Block(tuple(reversed(statements)), tuple(reversed(checks)))
 
 
 def _plain(check: Check) -> Check:

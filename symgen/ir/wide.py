@@ -8,7 +8,7 @@ argument does.  What functions of the library round themselves stays.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TypeAlias
@@ -16,7 +16,7 @@ from typing import TypeAlias
 from symgen.ir.interpret import round_literal
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, OperationName, Scalar, Statement, Status
 from symgen.ir.lifted import Lifted, same_kernel
-from symgen.ir.split import names_in, names_of_check
+from symgen.ir.split import pruned
 from symgen.ir.wide_functions import HALF, ONE, WIDE, Lines
 
 ZERO = Literal(Fraction(0))
@@ -32,7 +32,7 @@ def widened(kernel: Kernel, scalar: Scalar) -> Kernel:
     blocks = [replace(block, statements=writer.block(block.statements)) for block in kernel.blocks]
     last, outputs = writer.rounded(kernel.outputs)
     blocks[-1] = replace(blocks[-1], statements=(*blocks[-1].statements, *last))
-    made = replace(kernel, blocks=_needed(blocks, outputs), outputs=outputs, alike=())
+    made = pruned(replace(kernel, blocks=tuple(blocks), outputs=outputs, alike=()))
     same_kernel(f"twice the digits in {kernel.name}", Lifted(kernel), Lifted(made), squares_roots=True)
     return made
 
@@ -146,7 +146,7 @@ class _Writer:
     def _wide(self, statement: Statement) -> None:
         """A sum, product, quotient or root; multiples by powers of two are exact."""
         (target,), operands = statement.targets, statement.operands
-        factors = [x for x in operands if isinstance(x, Literal) and _is_power_of_two(x.value)]
+        factors = [x for x in operands if isinstance(x, Literal) and x.is_power_of_two]
         if statement.operation == "mul" and factors:
             self._lines.statements.append(statement)
             other = operands[0] if factors[0] is operands[1] else operands[1]
@@ -287,11 +287,6 @@ _RULES: dict[OperationName, _Rule] = {
 }
 
 
-def _is_power_of_two(value: Fraction) -> bool:
-    a, b = abs(value.numerator), value.denominator
-    return a > 0 and a & (a - 1) == 0 and b & (b - 1) == 0
-
-
 def _targets(blocks: Sequence[Block]) -> set[str]:
     """Every local that is assigned, where a check fails too."""
     found: set[str] = set()
@@ -299,19 +294,3 @@ def _targets(blocks: Sequence[Block]) -> set[str]:
         found |= {target for statement in block.statements for target in statement.targets}
         found |= _targets([check.first for check in block.checks if check.first is not None])
     return found
-
-
-def _needed(blocks: Sequence[Block], outputs: Collection[Operand]) -> tuple[Block, ...]:
-    """The blocks without statements of which nothing makes use."""
-    used = names_in(outputs)
-    kept: list[Block] = []
-    for block in reversed(blocks):
-        for check in block.checks:
-            used |= names_of_check(check)
-        statements: list[Statement] = []
-        for statement in reversed(block.statements):
-            if not used.isdisjoint(statement.targets):
-                used |= names_in(statement.operands)
-                statements.append(statement)
-        kept.append(replace(block, statements=tuple(reversed(statements))))
-    return tuple(reversed(kept))

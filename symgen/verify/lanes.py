@@ -6,7 +6,6 @@ whose last bits differ between machines: no verdict rests on them.
 
 from __future__ import annotations
 
-import operator
 import random
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
@@ -14,6 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Statement
+from symgen.verify.many_states import VECTORISED
 
 # A float64 for each state; slopes have a row for each combination of outputs, too.
 Lanes: TypeAlias = Any
@@ -111,13 +111,8 @@ def _shares(kernel: Kernel, values: Mapping[str, Lanes], signs: Lanes) -> tuple[
 
 def _is_exact(statement: Statement) -> bool:
     """Whether nothing is rounded: signs, choices and multiples by powers of two."""
-    literals = [x.value for x in statement.operands if isinstance(x, Literal)]
-    powers = any(_is_power(x.numerator) and _is_power(x.denominator) for x in literals)
+    powers = any(isinstance(x, Literal) and x.is_power_of_two for x in statement.operands)
     return statement.operation in EXACT or (statement.operation == "mul" and powers)
-
-
-def _is_power(number: int) -> bool:
-    return number != 0 and abs(number) & (abs(number) - 1) == 0
 
 
 def _ratio(a: Lanes, b: Lanes) -> Lanes:
@@ -133,17 +128,8 @@ def _sign(x: Lanes) -> Lanes:
 
 
 _VALUES: dict[OperationName, Callable[..., Lanes]] = {
-    "add": operator.add,
-    "sub": operator.sub,
-    "mul": operator.mul,
-    "div": np.divide,
-    "neg": operator.neg,
-    "abs": np.abs,
-    "sqrt": np.sqrt,
-    "copysign": np.copysign,
+    **VECTORISED,
     "ratio_or_zero": _ratio,
-    "min": np.minimum,
-    "max": np.maximum,
     "tan": np.tan,
     "asin": np.arcsin,
     "acos": np.arccos,

@@ -71,7 +71,7 @@ class _Run:
                 results = self._pair(operands[0])
             elif is_wide(statement):
                 results = self._called(wide_function(statement.operation, self._scalar), operands)
-            elif (vectorised := _VECTORISED.get(statement.operation)) is not None:
+            elif (vectorised := VECTORISED.get(statement.operation)) is not None:
                 results = (vectorised(*operands),)
             else:
                 results = (self._one_by_one(OPERATIONS[statement.operation], operands),)
@@ -114,7 +114,8 @@ def _ratio_or_zero(a: _Lanes, b: _Lanes) -> _Lanes:
     return np.where(b == 0, b.dtype.type(0), np.divide(a, b))
 
 
-_VECTORISED: dict[OperationName, Callable[..., _Lanes]] = {
+# Operations whose bits are those of every IEEE machine.
+VECTORISED: dict[OperationName, Callable[..., _Lanes]] = {
     "add": operator.add,
     "sub": operator.sub,
     "mul": operator.mul,

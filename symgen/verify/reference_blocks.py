@@ -91,10 +91,9 @@ def sum_of_minors(grams: Sequence[Any], size: int) -> Any:
     if size == count:
         return prod((determinant(gram) for gram in grams), start=arb(1))
     if len(grams) > 1:
-        *first, last = [sums_of_minors(gram) for gram in grams]
         whole: list[Any] = [arb(1)]
-        for polynomial in (*first, last):
-            whole = product(whole, polynomial, size)
+        for gram in grams:
+            whole = product(whole, sums_of_minors(gram), size)
         return whole[size] if size < len(whole) else arb(0)
     (gram,) = grams
     if comb(count, size) > MOST_DETERMINANTS:
