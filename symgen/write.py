@@ -72,7 +72,8 @@ def write_files(directory: Path, files: Mapping[str, str | bytes], tell: Tell = 
         removed = [path for path in stale if checksum_of(_read(directory / path) or b"") == known[path]]
         kept = {path: checksum for path, checksum in known.items() if path not in stale and _exists(directory / path)}
         made = kept | {path: checksum_of(content) for path, content in contents.items()}
-        contents[FILES] = manifest_text(directory.name, made).encode()
+        if _keeps_a_list(directory, contents):
+            contents[FILES] = manifest_text(directory.name, made).encode()
         _replace(directory, contents, removed)
         if others := _others(directory, contents, made):
             more = f" and {len(others) - _MOST_TOLD} more" if len(others) > _MOST_TOLD else ""
@@ -112,6 +113,13 @@ def recover_folders(out: Path, tell: Tell = _complain) -> None:
         with folder_lock(folder, tell):
             if done := recover(folder):
                 tell(done)
+
+
+def _keeps_a_list(directory: Path, contents: Collection[str]) -> bool:
+    """Whether the list of files is written: a measurement does not begin the list of a folder that came without one,
+    since everything that is not on a list is the user's.
+    """
+    return read_manifest(directory) is not None or _DERIVED in contents or not _exists(directory / _DERIVED)
 
 
 def _known(directory: Path, contents: Mapping[str, bytes]) -> dict[str, str]:

@@ -14,7 +14,7 @@ import pytest
 
 from symgen.folders.journal import STAGING
 from symgen.folders.lock import LOCK, LockedError, folder_lock
-from symgen.folders.manifest import FILES
+from symgen.folders.manifest import FILES, read_manifest
 from symgen.write import ForeignFileError, compare, recover_folders, write_files
 
 OLD = {f"c/part{k}.c": f"old {k}\n" for k in range(3)} | {"c/gone.c": "old\n", "derivation.json": "{}\n"}
@@ -80,6 +80,16 @@ def test_folders_of_earlier_versions_are_taken_over_and_lose_nothing(tmp_path: P
     write_files(tmp_path, NEW, told.append)
     assert tree(tmp_path) == dict(sorted((NEW | {"c/gone.c": "old\n"}).items()))
     assert "c/gone.c" in told[0]
+
+
+def test_a_measurement_in_a_folder_of_a_repository_leaves_its_files_to_symgen(tmp_path: Path) -> None:
+    """Repositories keep no list: what is made there first may be a measurement, and the next run replaces all."""
+    write_files(tmp_path, OLD)
+    (tmp_path / FILES).unlink()
+    write_files(tmp_path, {"target.json": "{}\n", "stress.svg": "<svg/>\n"})
+    write_files(tmp_path, NEW)
+    assert tree(tmp_path) == dict(sorted((OLD | NEW | {"target.json": "{}\n", "stress.svg": "<svg/>\n"}).items()))
+    assert read_manifest(tmp_path) is not None
 
 
 def test_the_list_is_one_that_sha256sum_checks(tmp_path: Path) -> None:
