@@ -18,10 +18,12 @@ test: $(VENV)/installed
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --dist loadgroup
 
+# Every model; git keeps four whole folders, and of the others the derivation and the checksums of their files.
 generated: $(VENV)/installed
 	$(BIN)/symgen models/*.yaml
+	$(BIN)/python tools/generated_checksums.py generated $(MODELS:models/%.yaml=%)
 
 # Every mechanism given by bodies at more states than `make generated` takes, and the longer witnesses; minutes.
 mechanisms: robots

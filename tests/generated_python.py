@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+import tempfile
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from shipped import ROOT
+import shipped
 
 
 def load_generated(path: Path) -> ModuleType:
@@ -25,4 +26,7 @@ def load_generated(path: Path) -> ModuleType:
 @cache
 def generated_python(name: str) -> ModuleType:
     """The module of a shipped model."""
-    return load_generated(ROOT / "generated" / name / "python" / f"{name}.py")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{name}.py"
+        path.write_text(shipped.generated(name)[f"python/{name}.py"], encoding="utf-8")
+        return load_generated(path)
