@@ -87,12 +87,12 @@ skipping: $(VENV)/installed
 # Every kernel of every model under libFuzzer and the sanitizers, a minute each: raw bits in, see proof/*_fuzz.c.
 FUZZ_SECONDS ?= 60
 fuzz: $(VENV)/installed
-	$(BIN)/symgen $(MODELS) --only c,proof --no-verify --quiet --out build/fuzz
+	$(BIN)/symgen $(MODELS) --only c,proof --recorded generated --out build/fuzz > /dev/null
 	$(BIN)/python tools/fuzz_campaign.py build/fuzz $(FUZZ_SECONDS) $(CAMPAIGN) --sums $(MECHANISMS:models/%.yaml=%)
 
 # u in float32 under Frama-C Eva and Gappa, every model: a table of what is proved, what was measured, what remains.
 proof: $(VENV)/installed
-	$(BIN)/symgen $(MODELS) --only c,proof --no-verify --quiet --out build/proof
+	$(BIN)/symgen $(MODELS) --only c,proof --recorded generated --out build/proof > /dev/null
 	$(BIN)/python tools/proof_table.py build/proof generated $(MODELS:models/%.yaml=%)
 
 # The marked blocks of README.md and the generated pages of docs/, with times measured on this machine.

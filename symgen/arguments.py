@@ -41,11 +41,9 @@ def add_models(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
 
 
-def add_out(parser: argparse.ArgumentParser) -> None:
+def add_out(parser: argparse.ArgumentParser, does: str = "writes DIR/<model>/ (default: generated)") -> None:
     """--out."""
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, default=Path("generated"), help="writes DIR/<model>/ (default: generated)"
-    )
+    parser.add_argument("--out", metavar="DIR", type=Path, default=Path("generated"), help=does)
 
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:

@@ -12,7 +12,7 @@ from io import StringIO, TextIOWrapper
 from pathlib import Path
 
 from symgen import __version__
-from symgen.arguments import add_form, add_generation, add_models, chosen_forms, make_parser, names, parts
+from symgen.arguments import add_form, add_generation, add_models, add_out, chosen_forms, make_parser, names, parts
 from symgen.ir.kernel import Scalar
 from symgen.measuring import bench, simulate, stress, target
 from symgen.model.names import did_you_mean
@@ -130,6 +130,12 @@ def _generate(arguments: list[str]) -> int:
     parser.add_argument("--only", metavar="PARTS", type=parts, default=PARTS, help="of c,python,report,package,proof")
     parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
     parser.add_argument(
+        "--recorded",
+        metavar="DIR",
+        type=Path,
+        help="in place of verification, take what it led to from DIR/<model>/derivation.json",
+    )
+    parser.add_argument(
         "--check",
         action="store_true",
         help="write nothing; exit 1 and list what differs from the disk (no verification)",
@@ -140,12 +146,12 @@ def _generate(arguments: list[str]) -> int:
         outputs=given.outputs,
         scalars=_SCALARS[given.scalar],
         parts=given.only,
-        verify=given.verify and not given.check,
+        verify=given.verify and not given.check and given.recorded is None,
         states=given.states,
         forms=chosen_forms(given.forms),
         trig=given.trig,
-        measured=given.out,
-        as_recorded=given.check,
+        measured=given.recorded or given.out,
+        as_recorded=given.check or given.recorded is not None,
     )
     finish = _check_files if given.check else _write_files
     recover_folders(given.out)
@@ -175,6 +181,7 @@ def _explain(arguments: list[str]) -> int:
     parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file")
     parser.add_argument("quantity", metavar="QUANTITY", nargs="?", help="one quantity (default: an overview)")
     add_form(parser)
+    add_out(parser, "takes what verification led to from DIR/<model>/ (default: generated)")
     given = parser.parse_args(arguments)
 
     check_present([given.model])
@@ -183,7 +190,7 @@ def _explain(arguments: list[str]) -> int:
         from symgen.pipeline import explain
 
         progress = Progress(given.model.stem, quiet=not sys.stderr.isatty())
-        text = explain(given.model, given.quantity, progress, chosen_forms(given.forms))
+        text = explain(given.model, given.quantity, progress, chosen_forms(given.forms), given.out)
         progress.done()
         print(text)
         return DONE

@@ -6,23 +6,29 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from symgen.activity import working
 from symgen.dynamics.alternatives import Alternative
-from symgen.dynamics.select import Choice, Derivations, Rejection
-from symgen.dynamics.structure import Structure
+from symgen.dynamics.select import Choice, Derivations, NoSuchFormError, Rejection, derive_quantities
+from symgen.dynamics.structure import Structure, analyse
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
 from symgen.records import dataclass
-from symgen.results import Trig
+from symgen.results import Options, Trig, WrongUseError
 
 if TYPE_CHECKING:
     from symgen.verify.certificate import LeftOut
 
+REJECTED = "verification rejects it"
+
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way."""
+    """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way.
+
+    `notice` says why it does not hold what an earlier verification led to, where that was asked for.
+    """
 
     model: Model
     derivations: Derivations
@@ -30,6 +36,14 @@ class Draft:
     programs: Mapping[Scalar, Program]
     trig: Trig
     left_out: tuple[LeftOut, ...] = ()
+    notice: str = ""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be told of a draft that is not verified again: its notice, and what was left out before."""
+        left_out = self.derivations.left_out
+        told = (f"{name} is left out in {' and '.join(types)}: {REJECTED} in every way" for name, types in left_out)
+        return (*((self.notice,) if self.notice else ()), *told)
 
     @property
     def program(self) -> Program:
@@ -125,3 +139,18 @@ class Draft:
     def rejecting(self, rejected: tuple[Rejection, ...]) -> Draft:
         """The draft that tells of more ways which verification rejected."""
         return replace(self, derivations=replace(self.derivations, rejected=(*self.derivations.rejected, *rejected)))
+
+
+def draft_of(model: Model, outputs: Sequence[str], options: Options) -> Draft:
+    """What derivation chooses; raises WrongUseError for a form that the model does not have."""
+    try:
+        derivations = derive_quantities(model, tuple(outputs), options.forms)
+    except NoSuchFormError as reason:
+        raise WrongUseError(f"{model.name} has {reason}") from reason
+    with working("what is not needed"):
+        structure = analyse(derivations.mechanics, derivations.generic)
+    scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
+    programs = schedule(derivations.mechanics, derivations.quantities, scalars)
+    if options.trig == "libm":
+        programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
+    return Draft(model, derivations, structure, programs, options.trig)

@@ -12,10 +12,10 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from symgen.diagnostics import SymgenBug
-from symgen.draft import Draft
+from symgen.draft import REJECTED, Draft
 from symgen.dynamics.alternatives import TIERS, Alternative, Alternatives
 from symgen.dynamics.catalogue import scalars
 from symgen.dynamics.select import Choice, Rejection
@@ -32,7 +32,6 @@ from symgen.verify.interpreted import measured
 from symgen.verify.searched import Search
 from symgen.verify.tolerance import FACTOR
 
-REJECTED = "verification rejects it"
 TOO_LONG = "not tried: it takes many times as long to derive"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
@@ -257,27 +256,3 @@ def _check_algebra(kernel: Kernel, way: str, expected: Expected, worst: int) -> 
     """Raises SymgenBug where a rejected kernel computes something else: falling back would hide wrong algebra."""
     if wrong := difference(kernel, expected, worst):
         raise SymgenBug(f"{kernel.name} by {way}: {wrong}, in exact arithmetic")
-
-
-def as_recorded(draft: Draft, recorded: Mapping[str, Any]) -> Draft:
-    """The draft with what an earlier verification of the same model rejected, as its derivation.json tells it.
-
-    Without verification, files can only be compared with those on disk if they are made the way these were.
-    """
-    if recorded.get("model_sha256") != draft.model.text_hash:
-        return draft
-    rejected = tuple(Rejection(r["quantity"], r["way"], r["why"]) for r in recorded.get("rejected", ()))
-    left_out = {one["quantity"]: tuple(one["scalars"]) for one in recorded.get("left_out", ())}
-    present = {choice.quantity for choice in draft.derivations.choices}
-    others = Alternatives(draft.model, draft.derivations.generic, draft.derivations.inverse)
-    for quantity in dict.fromkeys(one.quantity for one in rejected if one.quantity in present):
-        kernel = recorded["kernels"].get(quantity)
-        way = None if kernel is None else others.named(quantity, kernel["way"])
-        if way is None or draft.choice(quantity).way == way.choice.way:
-            way = draft.taken(quantity)
-        if kernel is not None:
-            way = replace(way, choice=replace(way.choice, wide=tuple(kernel.get("twice_the_digits", ()))))
-            draft = draft.along(way, draft.kernels_along(way, tuple(draft.programs)))
-        if quantity in left_out:
-            draft = draft.without(quantity, left_out[quantity], REJECTED)
-    return draft.rejecting(rejected)

@@ -8,23 +8,22 @@ What a run does not need is not imported: the way from model to C uses the stand
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from symgen.activity import each, working
 from symgen.dense_motion import dense_motions
 from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
-from symgen.draft import Draft
+from symgen.draft import Draft, draft_of
 from symgen.dynamics.catalogue import BY_NAME
 from symgen.dynamics.everything import OF_ALL
 from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.inverse import FormChoice
-from symgen.dynamics.select import Derivations, NoSuchFormError, derive_quantities, short_of_inputs
-from symgen.dynamics.structure import analyse
+from symgen.dynamics.select import Derivations, short_of_inputs
 from symgen.emit.c import emit_c
 from symgen.emit.c_batch import emit_c_batch
 from symgen.emit.c_prepared import emit_c_prepared
@@ -32,9 +31,7 @@ from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.literals import LiteralRangeError
 from symgen.emit.operations import count_operations
 from symgen.garbage import let_go_and_keep
-from symgen.ir.kernel import Kernel, Scalar
-from symgen.ir.library_trig import with_library_trig
-from symgen.ir.schedule import schedule
+from symgen.ir.kernel import Kernel
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.load import load_model
 from symgen.model.model import Model
@@ -130,10 +127,17 @@ def _finished(
     return replace(result, files={**result.files, **report.files}, notices=(*result.notices, *report.notices))
 
 
-def explain(path: Path, quantity: str | None, progress: Progress, forms: Mapping[str, str] | None = None) -> str:
+def explain(
+    path: Path,
+    quantity: str | None,
+    progress: Progress,
+    forms: Mapping[str, str] | None = None,
+    out: Path | None = None,
+) -> str:
     """Structure and closed forms as text for the terminal; of one quantity when it is named.
 
-    `forms` are those whose validity is told, by quantity.
+    `forms` are those whose validity is told, by quantity.  Kernels are those of OUT/<model>, where a run has verified
+    some.
     """
     from symgen.closedform.limits import TooLargeError
     from symgen.explain import forms_text, overview, quantity_text
@@ -146,7 +150,9 @@ def explain(path: Path, quantity: str | None, progress: Progress, forms: Mapping
     if quantity is not None:
         model = replace(model, outputs=(*model.outputs, quantity))
     progress("deriving")
-    draft = _derive(model, ("all",), Options(scalars=("float64",), forms=forms or {}))
+    from symgen.recorded import as_recorded
+
+    draft = as_recorded(model, ("all",), Options(scalars=("float64",), forms=forms or {}, measured=out))
     progress("closed forms")
     try:
         report = gather(model, _facts(draft))
@@ -155,7 +161,9 @@ def explain(path: Path, quantity: str | None, progress: Progress, forms: Mapping
     text = overview(report) if quantity is None else quantity_text(report, quantity)
     told = dict.fromkeys(("inverse_dynamics", *(forms or ())) if quantity is None else (quantity,))
     compared = ((name, _compared(draft, name)) for name in told)
-    return "\n".join([text, *(forms_text(name, choice) for name, choice in compared if choice is not None)])
+    parts = [text, *(forms_text(name, choice) for name, choice in compared if choice is not None)]
+    notices = [*draft.notes, *(notice.message for notice in _replaced(draft, None if quantity is None else told))]
+    return "\n".join([*parts, *(f"\n{notice}" for notice in notices)])
 
 
 def _compared(draft: Draft, quantity: str) -> FormChoice | None:
@@ -185,33 +193,11 @@ def _unknown_quantity(name: str) -> WrongUseError:
 
 
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:
-    try:
-        derivations = derive_quantities(model, outputs, options.forms)
-    except NoSuchFormError as reason:
-        raise WrongUseError(f"{model.name} has {reason}") from reason
-    with working("what is not needed"):
-        structure = analyse(derivations.mechanics, derivations.generic)
-    scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
-    programs = schedule(derivations.mechanics, derivations.quantities, scalars)
-    if options.trig == "libm":
-        programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
-    draft = Draft(model, derivations, structure, programs, options.trig)
-    recorded = _recorded(model, options)
-    if recorded is None or not recorded.get("rejected"):
-        return draft
-    from symgen.fallback import as_recorded
-
-    return as_recorded(draft, recorded)
-
-
-def _recorded(model: Model, options: Options) -> Any:
-    """derivation.json of an earlier run, where files are compared with those on disk."""
     if not options.as_recorded or options.measured is None:
-        return None
-    try:
-        return json.loads((options.measured / model.name / "derivation.json").read_bytes())
-    except (OSError, ValueError):
-        return None
+        return draft_of(model, outputs, options)
+    from symgen.recorded import as_recorded
+
+    return as_recorded(model, outputs, options)
 
 
 def _code(draft: Draft, options: Options) -> dict[str, str | bytes]:
@@ -407,7 +393,8 @@ def _notices(draft: Draft, options: Options, certificate: Certificate | None) ->
     idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
     unverified = () if certificate is None else certificate.notes
     ways = (*_replaced(draft), *_short(draft), *dense_motions(draft, options))
-    told = (*absent, *ways, *_size(draft, options), *idle, *map(Notice, unverified))
+    recorded = draft.notes if options.as_recorded else ()
+    told = (*absent, *ways, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
     return (*_renamed(draft.model), *told)
 
 
@@ -419,12 +406,12 @@ def _renamed(model: Model) -> tuple[Notice, ...]:
     return (Notice(f"its files and functions are called {model.c_name}: {why}"),)
 
 
-def _replaced(draft: Draft) -> tuple[Notice, ...]:
-    """The quantities that take another way than the cheapest, because verification rejected that."""
+def _replaced(draft: Draft, quantities: Container[str] | None = None) -> tuple[Notice, ...]:
+    """The quantities (None: all) that take another way than the cheapest, because verification rejected that."""
     found = []
     left_out = {one.quantity for one in draft.left_out}
     for choice in draft.derivations.choices:
-        if choice.quantity in left_out:
+        if choice.quantity in left_out or (quantities is not None and choice.quantity not in quantities):
             continue
         tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
         if tried:

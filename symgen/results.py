@@ -42,7 +42,7 @@ class Options:
 
     `measured` is where an earlier run may have left measurements (`<model>/target.json`), for the PDF.
     `trig` says whose sine and cosine the code calls: its own, with the same bits everywhere, or the library's.
-    `as_recorded` takes over what the earlier run's verification rejected, so that its files can be compared with.
+    `as_recorded` takes over what the earlier run's verification led to, see `symgen.recorded`.
     """
 
     outputs: tuple[str, ...] | None = None

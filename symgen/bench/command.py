@@ -26,7 +26,7 @@ def run_bench(path: Path, out: Path, states: int, quiet: bool, progress: Progres
     file and WrongUseError without gcc.
     """
     try:
-        result = benchmark(path, states, progress)
+        result = benchmark(path, states, progress, out)
     except (ReferenceValueError, VerificationError, BuildError) as fault:
         progress("")
         print(f"{path}: {fault}", file=sys.stderr)
@@ -52,7 +52,7 @@ def run_mechanism_bench(path: Path, out: Path, quiet: bool, progress: Progress) 
     Raises ModelError for mistakes in the file and WrongUseError without gcc or inputs.
     """
     try:
-        result = mechanism_benchmark(path, progress).to_json()
+        result = mechanism_benchmark(path, progress, out).to_json()
     except BuildError as fault:
         progress("")
         print(f"{path}: {fault}", file=sys.stderr)
@@ -62,4 +62,6 @@ def run_mechanism_bench(path: Path, out: Path, quiet: bool, progress: Progress) 
     written = write_files(out / result["model"], {"bench.bodies.json": text})
     if not quiet:
         print(table_of(result), "written:", *(f"  {file}" for file in written), "", sep="\n")
+    for note in result["notes"]:
+        print(f"{path}: {note}", file=sys.stderr)
     return 0

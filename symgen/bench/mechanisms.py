@@ -20,10 +20,8 @@ from symgen.bench.callgrind import count_instructions, find_valgrind
 from symgen.bench.candidate import Task
 from symgen.bench.peers.mechanism_roster import mechanism_peers
 from symgen.bench.peers.pinocchio_program import Timed, pinocchio_time
-from symgen.bench.symgen_kernels import symgen_candidates
+from symgen.bench.symgen_kernels import generated, symgen_candidates
 from symgen.bench.workload import Workload
-from symgen.dynamics.select import derive_quantities
-from symgen.ir.schedule import schedule
 from symgen.model.allocation import without_allocation
 from symgen.model.load import load_model
 from symgen.model.mechanics import default_values
@@ -58,16 +56,19 @@ class MechanismBenchmark:
     kernels: tuple[Kernel, ...]
     left_out: tuple[tuple[str, str], ...]
     pinocchio: tuple[float, float] | str
+    notes: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """A JSON-able form."""
         return {"symgen": symgen.__version__, **asdict(self)}
 
 
-def mechanism_benchmark(path: Path, progress: Progress) -> MechanismBenchmark:
+def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None) -> MechanismBenchmark:
     """Measure u of one mechanism.
 
-    Raises ModelError for mistakes in the file, WrongUseError without gcc or without inputs.
+    symgen's kernel is that of OUT/<model>, where a run has verified one; without `out`, what derivation chooses.
+
+    Raises ModelError for mistakes in the file, WrongUseError without gcc, or where there is no u.
     """
     import numpy as np
 
@@ -80,9 +81,11 @@ def mechanism_benchmark(path: Path, progress: Progress) -> MechanismBenchmark:
     states = drawn_states(model, TIMED_STATES)
     load = Workload("float64", np.array(states), np.zeros((len(states), model.m)), np.zeros((len(states), model.m)), [])
     progress("deriving u")
-    derived = derive_quantities(model, (TASK,))
-    form = derived.choices[0].way
-    programs = {form: schedule(derived.mechanics, derived.quantities, ("float64",))}
+    draft = generated(model, task, ("float64",), out)
+    if draft.derivations.left_out:
+        raise WrongUseError(f"{path}: nothing to measure: {'; '.join(draft.notes)}")
+    form = draft.choice(TASK).way
+    programs = {form: draft.programs}
     progress("writing peers")
     found, left_out = mechanism_peers(model, load.states)
     candidates = [*symgen_candidates(model, programs, "float64"), *found]
@@ -111,9 +114,10 @@ def mechanism_benchmark(path: Path, progress: Progress) -> MechanismBenchmark:
     timed = pinocchio_time(model, states)
     if isinstance(timed, Timed):
         return MechanismBenchmark(
-            model.name, form, tuple(kernels), left_out, (timed.nanoseconds, _difference(np.array(timed.u), exact))
+            model.name, form, tuple(kernels), left_out, (timed.nanoseconds, _difference(np.array(timed.u), exact)),
+            draft.notes,
         )
-    return MechanismBenchmark(model.name, form, tuple(kernels), left_out, timed)
+    return MechanismBenchmark(model.name, form, tuple(kernels), left_out, timed, draft.notes)
 
 
 def drawn_states(model: Model, count: int) -> list[list[float]]:

@@ -17,8 +17,9 @@ from symgen.bench.candidate import CCandidate, PythonCandidate, Task
 from symgen.bench.pareto import pareto_front
 from symgen.bench.peers.roster import in_single, peers, python_peers
 from symgen.bench.python_timing import run_python
-from symgen.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
+from symgen.bench.symgen_kernels import generated, programs_of, symgen_candidates, symgen_python
 from symgen.bench.workload import Errors, Workload, admissible_samples, beyond_tolerance, errors_of, workload
+from symgen.draft import Draft
 from symgen.ir.kernel import Program, Scalar
 from symgen.model.allocation import without_allocation
 from symgen.model.load import load_model
@@ -103,8 +104,10 @@ class Benchmark:
         }
 
 
-def benchmark(path: Path, states: int, progress: Progress) -> Benchmark:
+def benchmark(path: Path, states: int, progress: Progress, out: Path | None = None) -> Benchmark:
     """Measure every quantity of interest of one model.
+
+    symgen's kernels are those of OUT/<model>, where a run has verified some; without `out`, what derivation chooses.
 
     Raises ModelError for mistakes in the file and WrongUseError where there is no gcc or nothing to measure.
     """
@@ -120,9 +123,13 @@ def benchmark(path: Path, states: int, progress: Progress) -> Benchmark:
     notes = [] if find_valgrind() else ["there is no valgrind: instructions were not counted"]
     comparisons = []
     for task in tasks:
-        chosen = samples if task.quantity == "inverse_dynamics" else samples[:OTHER_STATES]
-        comparisons.append(_compare(model, reference, task, chosen, progress))
-    return Benchmark(model.name, tuple(comparisons), tuple(notes))
+        progress(f"deriving {task.quantity}")
+        draft = generated(model, task, SCALARS, out)
+        notes += draft.notes
+        if not draft.derivations.left_out:
+            chosen = samples if task.quantity == "inverse_dynamics" else samples[:OTHER_STATES]
+            comparisons.append(_compare(model, reference, task, draft, chosen, progress))
+    return Benchmark(model.name, tuple(comparisons), tuple(dict.fromkeys(notes)))
 
 
 def _task(model: Model, quantity: str) -> Task:
@@ -131,11 +138,11 @@ def _task(model: Model, quantity: str) -> Task:
 
 
 def _compare(
-    model: Model, reference: Reference, task: Task, samples: Sequence[Sample], progress: Progress
+    model: Model, reference: Reference, task: Task, draft: Draft, samples: Sequence[Sample], progress: Progress
 ) -> Comparison:
     loads = {scalar: workload(reference, samples, task, scalar, progress) for scalar in SCALARS}
     progress(f"writing {task.quantity}")
-    programs = programs_of(model, task, SCALARS)
+    programs = programs_of(model, task, SCALARS, draft)
     full_rank = reference.ranks.constraints == model.r
     left_out: tuple[tuple[str, str], ...] = () if full_rank else (("peers", "the constraints depend on each other"),)
     candidates = [c for scalar in SCALARS for c in symgen_candidates(model, programs, scalar)]
@@ -216,7 +223,7 @@ def _measure(
 
 
 def _python(
-    model: Model, task: Task, programs: dict[str, dict[Scalar, Program]], full_rank: bool
+    model: Model, task: Task, programs: Mapping[str, Mapping[Scalar, Program]], full_rank: bool
 ) -> list[PythonCandidate]:
     return [*symgen_python(model, programs, task), *(python_peers(model, task) if full_rank else [])]
 

@@ -2,41 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
+from pathlib import Path
 from typing import Any
 
 from symgen.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
+from symgen.draft import Draft
 from symgen.dynamics.catalogue import Derived
 from symgen.dynamics.compared import motions_of
 from symgen.dynamics.inverse import forms_of
 from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.select import ABSOLUTE, derive_quantities
+from symgen.dynamics.select import ABSOLUTE
 from symgen.emit.c import emit_c
 from symgen.emit.c_causes import cause_names
 from symgen.emit.operations import count_operations
 from symgen.emit.pairs import pair_names
 from symgen.emit.python import emit_python
 from symgen.emit.scalars import SUFFIX
-from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.ir.kernel import Kernel, Literal, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
 from symgen.model.model import Model
+from symgen.recorded import as_recorded
+from symgen.results import Options
 from symgen.verify.python_module import PythonModule
 
 PORTABLE, LIBRARY = "portable", "libm"
 
 
-def programs_of(model: Model, task: Task, scalars: Sequence[Scalar]) -> dict[str, dict[Scalar, Program]]:
-    """The task's kernel alone, by form; the first is what symgen generates, the others are those it did not take."""
-    derivations = derive_quantities(model, (task.quantity,))
-    choice = derivations.choices[0]
+def generated(model: Model, task: Task, scalars: Sequence[Scalar], out: Path | None) -> Draft:
+    """The task's kernel as a verified run left it in OUT/<model>; without one, or `out`, as derivation chooses it."""
+    return as_recorded(model, (task.quantity,), Options(scalars=tuple(scalars), measured=out))
+
+
+def programs_of(
+    model: Model, task: Task, scalars: Sequence[Scalar], draft: Draft | None = None
+) -> dict[str, Mapping[Scalar, Program]]:
+    """The task's kernel alone, by form; the first is the `draft` that symgen generates, the others it did not take."""
+    draft = draft or generated(model, task, scalars, None)
+    choice = draft.choice(task.quantity)
     absolute = " in absolute angles" if choice.form and choice.way == ABSOLUTE else ""
-    found = {(choice.form or choice.way) + absolute: schedule(derivations.mechanics, derivations.quantities, scalars)}
+    name = (choice.form or choice.way) + absolute + choice.digits
+    found: dict[str, Mapping[Scalar, Program]] = {name: draft.programs}
     for form, (mechanics, quantity) in _forms(model, task.quantity):
         if form not in found:
-            found[form] = schedule(mechanics, [quantity], scalars)
+            programs = schedule(mechanics, [quantity], scalars)
+            if not any(map(_never_valid, programs.values())):
+                found[form] = programs
     return found
+
+
+def _never_valid(program: Program) -> bool:
+    """Whether a form divides by 0 at every state: one through the inverse of G, where a coordinate has no mass."""
+    statements = (statement for kernel in program.kernels for statement in kernel.statements)
+    divisors = (statement.operands[1] for statement in statements if statement.operation == "div")
+    return any(isinstance(divisor, Literal) and divisor.value == 0 for divisor in divisors)
 
 
 def _forms(model: Model, quantity: str) -> Iterator[tuple[str, tuple[Mechanics, Derived]]]:
@@ -51,7 +72,7 @@ def _forms(model: Model, quantity: str) -> Iterator[tuple[str, tuple[Mechanics, 
 
 
 def symgen_candidates(
-    model: Model, programs: dict[str, dict[Scalar, Program]], scalar: Scalar
+    model: Model, programs: Mapping[str, Mapping[Scalar, Program]], scalar: Scalar
 ) -> tuple[CCandidate, ...]:
     """The C of every way for one scalar type."""
     found = []
@@ -66,7 +87,7 @@ def symgen_candidates(
 
 
 def symgen_python(
-    model: Model, programs: dict[str, dict[Scalar, Program]], task: Task
+    model: Model, programs: Mapping[str, Mapping[Scalar, Program]], task: Task
 ) -> tuple[PythonCandidate, ...]:
     """The NumPy modules of every form, first the one that symgen generates."""
     return tuple(

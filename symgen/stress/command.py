@@ -22,7 +22,7 @@ def run_stress(path: Path, out: Path, steps: int, quiet: bool, progress: Progres
     """
     model = without_allocation(load_model(path))
     try:
-        result = stress(model, steps, progress)
+        result = stress(model, steps, progress, out)
     except (ReferenceValueError, VerificationError) as fault:
         progress("")
         print(f"{path}: {fault}", file=sys.stderr)

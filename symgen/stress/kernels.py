@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from symgen.dynamics.catalogue import CATALOGUE
-from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel, Program, Scalar
-from symgen.ir.schedule import schedule
 from symgen.model.model import Model
+from symgen.recorded import as_recorded
+from symgen.results import Options
 from symgen.verify.compile import CFunction, Compilation, Outcome, c_array, find_compiler
 from symgen.verify.reference import State
 from symgen.verify.run import generated_sources
@@ -51,7 +51,8 @@ class Runner:
         self.files: dict[str, str] = {}
         for program in programs.values():
             self.files |= emit_c(model, program)
-        self.names = tuple(kernel.name for kernel in programs["float64"].kernels)
+        everywhere = set.intersection(*({kernel.name for kernel in program.kernels} for program in programs.values()))
+        self.names = tuple(kernel.name for kernel in programs["float64"].kernels if kernel.name in everywhere)
         self.compiler = find_compiler()
         self._kernels = {(s, k.name): k for s, program in programs.items() for k in program.kernels}
         self._functions: dict[tuple[Scalar, str], CFunction] = {}
@@ -85,16 +86,25 @@ class Runner:
 
 
 class Kernels:
-    """Kernels by quantity name and scalar type, and the C they are made of (`files`, by path)."""
+    """Kernels by quantity name and scalar type, and the C they are made of (`files`, by path).
 
-    def __init__(self, model: Model, folder: Path, quantities: Sequence[str] = (*PIECES, *STRESSED, *DRIVEN)) -> None:
-        self.model = model
+    They are those of OUT/<model>, where a run has verified some; `notes` say what is to be told of that.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        folder: Path,
+        quantities: Sequence[str] = (*PIECES, *STRESSED, *DRIVEN),
+        out: Path | None = None,
+    ) -> None:
+        self.model, self.out = model, out
         known = {entry.name for entry in CATALOGUE}
-        derivations = derive_quantities(model, tuple(name for name in quantities if name in known))
-        self.programs: dict[Scalar, Program] = dict(
-            schedule(derivations.mechanics, derivations.quantities, SCALARS).items()
-        )
-        self._ways = tuple(_Way(choice.quantity, choice.way) for choice in derivations.choices)
+        wanted = tuple(name for name in quantities if name in known)
+        draft = as_recorded(model, wanted, Options(scalars=SCALARS, measured=out))
+        self.notes = draft.notes
+        self.programs: Mapping[Scalar, Program] = draft.programs
+        self._ways = tuple(_Way(choice.quantity, choice.way) for choice in draft.derivations.choices)
         self.runner = Runner(model, self.programs, folder)
         self.files, self.names, self.compiler = self.runner.files, self.runner.names, self.runner.compiler
 

@@ -91,8 +91,12 @@ class Stress:
         }
 
 
-def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Stress:
+def stress(
+    model: Model, steps: int, progress: Progress = lambda _: None, out: Path | None = None
+) -> Stress:
     """Put a model under stress; `steps` of the long run, 0 for none.
+
+    The kernels are those of OUT/<model>, where a run has verified some; without `out`, what derivation chooses.
 
     Raises ReferenceValueError or VerificationError where no regular states are found.
     """
@@ -100,7 +104,7 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
     with tempfile.TemporaryDirectory(prefix="symgen-stress-") as name:
         folder = Path(name)
         progress("deriving and compiling")
-        kernels = Kernels(model, folder)
+        kernels = Kernels(model, folder, out=out)
         progress("looking for singularities")
         searched = search(reference)
         forms = FormKernels(model, folder, kernels.names)
@@ -141,7 +145,7 @@ def stress(model: Model, steps: int, progress: Progress = lambda _: None) -> Str
         no_run=no_run,
         rule=rule,
         failures=(*swept.failures, *breaches(rule), *wrong_units, *wrong_numbers, *complaints(runs)),
-        limits=(*swept.limits, *forms.left_out),
+        limits=(*kernels.notes, *swept.limits, *forms.left_out),
     )
 
 

@@ -72,7 +72,7 @@ def scaling(reference: Reference, kernels: Kernels, folder: Path) -> tuple[tuple
         other = Reference(turned, reference.ranks)
         converted = [_in_degrees(model, state) for state in states]
         (folder / "degrees").mkdir()
-        names_other = Kernels(turned, folder / "degrees", names)
+        names_other = Kernels(turned, folder / "degrees", names, kernels.out)
         found += _compare("rad in deg", reference, kernels, other, names_other, states, converted, names, False)
     return tuple(found), tuple(_failures(found))
 

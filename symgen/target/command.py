@@ -30,7 +30,7 @@ def run_target(
     require(cores)
     model = load_model(path)
     try:
-        report = measure(model, cores, progress)
+        report = measure(model, cores, progress, out)
     except (ToolError, ReferenceValueError, VerificationError) as fault:
         progress("")
         print(f"{path}: {fault}", file=sys.stderr)

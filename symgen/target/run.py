@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
-from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.c_sc import emit_c_sc
 from symgen.ir.kernel import Program, Scalar
-from symgen.ir.schedule import schedule
 from symgen.model.model import Model
 from symgen.processes import ToolError
+from symgen.recorded import as_recorded
+from symgen.results import Options
 from symgen.target.build import STACK_WATCHED, Workshop
 from symgen.target.compare import Units, compare, units_of, uses_library
 from symgen.target.cores import LEVELS, Compiler, Core
@@ -99,22 +99,22 @@ class _Kernels:
 class _Bench:
     """Sources, states and the host's results of one model in a folder."""
 
-    def __init__(self, model: Model, folder: Path, vectors: Vectors, progress: Progress) -> None:
-        derivations = derive_quantities(model, model.outputs)
-        programs = dict(schedule(derivations.mechanics, derivations.quantities, SCALARS).items())
+    def __init__(self, model: Model, out: Path | None, folder: Path, vectors: Vectors, progress: Progress) -> None:
+        draft = as_recorded(model, model.outputs, Options(scalars=SCALARS, measured=out))
+        programs = {scalar: program for scalar, program in draft.programs.items() if program.kernels}
         self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
-        self.programs = programs
+        self.programs, self.notes = programs, draft.notes
         self.known: dict[Selection, _Kernels] = {}
         self.beyond = tuple(kernel.name for kernel in beyond_pairs(programs["float64"]))
         self.published = self._files(programs, emit_c)
-        self.states = {scalar: vectors.rounded(scalar) for scalar in SCALARS}
+        self.states = {scalar: vectors.rounded(scalar) for scalar in programs}
         self.inputs = self._written("states", self.states)
         self.counter = build_counter(folder)
         self.harnesses = Lock()  # builds run side by side and share drivers and boards
         base = {trig: _Build(None, *BASE, trig) for trig in (PORTABLE, LIBM)}
         images = {trig: self.image(build, painted=False)[1] for trig, build in base.items()}
         self.expected = {trig: self._run(build, images[trig]) for trig, build in base.items()}
-        self.units = {scalar: self._units(scalar, images[PORTABLE]) for scalar in SCALARS}
+        self.units = {scalar: self._units(scalar, images[PORTABLE]) for scalar in programs}
 
     def kernels(self, chosen: Selection) -> _Kernels:
         """What a selection is built of."""
@@ -204,17 +204,21 @@ class _Bench:
         return units_of(entries, scalar, *made)
 
 
-def measure(model: Model, cores: Sequence[Core], progress: Progress = lambda _: None) -> TargetReport:
+def measure(
+    model: Model, cores: Sequence[Core], progress: Progress = lambda _: None, out: Path | None = None
+) -> TargetReport:
     """Conformance of every build, cost at -O2 and -Os, footprint at -Os.
 
-    Raises ToolError when a compiler or an emulator fails, and VerificationError or ReferenceValueError where no
-    states are found.
+    The kernels are those of OUT/<model>, where a run has verified some; without `out`, what derivation chooses.
+
+    Raises ToolError when a compiler or an emulator fails, and VerificationError or ReferenceValueError where no states
+    are found.
     """
     with tempfile.TemporaryDirectory(prefix="symgen-target-") as name:
         progress("looking for states and singularities")
         vectors = vectors_of(Reference(model))
         progress("the host")
-        bench = _Bench(model, Path(name), vectors, progress)
+        bench = _Bench(model, out, Path(name), vectors, progress)
         builds = [build for build in _builds(cores) if selected(build.selection, bench.programs)]
         progress("compiling and running")
         package = package_of(model, bench.programs) if has_cmake() else None
@@ -353,8 +357,8 @@ def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
 
 
 def _notes(bench: _Bench, cores: Sequence[Core]) -> tuple[str, ...]:
-    """What was left out."""
-    found = []
+    """What was left out, and what is not as in the folder of the model."""
+    found = [*bench.notes]
     without = [core.name for core in cores if not has_unit(core)]
     if bench.beyond and without:
         found.append(
