@@ -1,4 +1,4 @@
-"""generated/ is what symgen makes of models/ today: four folders byte for byte, the others by the checksums of files."""
+"""generated/ is what symgen makes of models/ today: four folders byte for byte, the others by checksums."""
 
 from __future__ import annotations
 
