@@ -26,8 +26,11 @@ CLOSING = 4  # Newton steps: each doubles the digits that floats have left
 
 @dataclass(frozen=True, slots=True)
 class _Limits:
-    """What is nothing: an energy beside its terms, beside what entries of G usually are, and a pivot of G."""
+    """What is nothing: a component of a motion of length 1, an energy beside its terms, beside what entries of G
+    usually are, and a pivot of G.
+    """
 
+    component: float
     rounding: float
     energy: float
     pivot: float
@@ -35,9 +38,9 @@ class _Limits:
 
 
 # rounding in G itself is of second order where the places of masses cancel
-IN_FLOATS = _Limits(1e-12, 1e-24, RELATIVE, (RELATIVE,))
+IN_FLOATS = _Limits(1e-13, 1e-12, 1e-24, RELATIVE, (RELATIVE,))
 # masses that are 1e18 apart count, and rounding of the file's numbers to 16 digits does not, squared as it is in G
-IN_MANY_DIGITS = _Limits(1e-60, 1e-28, 1e-24, (1e-24, 1e-12, RELATIVE))
+IN_MANY_DIGITS = _Limits(1e-60, 1e-60, 1e-28, 1e-24, (1e-24, 1e-12, RELATIVE))
 
 
 def check_masses(
@@ -123,8 +126,10 @@ class _Masses:
 
     def _along(self, mass: Rows, jacobian: Rows) -> Rows:
         """W^T G W for an orthonormal basis W of the velocities that the constraints allow; what is nothing is 0."""
-        basis = null_space(jacobian, len(mass))
         limits = self._limits
+        # rounded zeros of rows let a motion of no mass take masses along
+        found = null_space(jacobian, len(mass))
+        basis = [[x if abs(x) > limits.component else 0.0 for x in vector] for vector in found]
         bounds = [
             [max(limits.rounding * abs(a), limits.energy * b) for a, b in zip(*rows, strict=True)]
             for rows in zip(mass, self._usual, strict=True)

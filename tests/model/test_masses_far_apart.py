@@ -63,6 +63,25 @@ configuration: {{a: 0.8, b: -0.3, c: 1.7, s: 0.1}}
 """
 
 
+# a pin turns about its own axis, on which the rod that holds it begins; in floats the rod's row is not 0 for that turn
+PIN = """model: pin
+parameters: {m: 2.6, l: 0.39, reach: 0.78}
+gravity: [0, -9.81, 0]
+joints:
+  post: {type: revolute, axis: y, coordinate: a}
+  slide: {type: prismatic, parent: post, at: [1.1, 0, 0], axis: y, coordinate: s}
+  pin: {type: revolute, parent: slide, at: [l, 0, 0], axis: x, coordinate: b}
+bodies:
+  post: {mass: 7, com: [0.5, 0, 0], inertia: {xx: 0.02, yy: 0.02, zz: 0.02}}
+  slide: {mass: m, com: [l/2, 0, 0], inertia: {xx: 0.05, yy: 0.01, zz: 0.05}}
+points:
+  end: {frame: pin, at: [reach, 0, 0]}
+  hook: {at: [0.3, 1.4, 0.7]}
+loops: {rod: {type: distance, between: [end, hook], length: 2.3}}
+inputs: {drive: {joint: a}}
+"""
+
+
 def _load(text: str, *values: str) -> Model:
     return load_text(text.format(*values), "sliders.yaml")
 
@@ -96,6 +115,11 @@ def test_a_light_block_between_a_linkage_and_a_heavy_one_is_a_mass() -> None:
 def test_a_linkage_whose_motion_moves_nothing_is_told_where_a_loop_closes_up_to_rounding() -> None:
     with pytest.raises(ModelError, match=r"no mass moves where `s`, `p` move together"):
         _load(FOUR_BAR, "1e-3", "0")
+
+
+def test_a_pin_that_turns_about_its_own_axis_has_no_mass_for_rounding() -> None:
+    with pytest.raises(ModelError, match=r"no mass moves where `b` does"):
+        load_text(PIN, "pin.yaml")
 
 
 @pytest.mark.parametrize(
