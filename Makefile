@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run test generated mechanisms fuzz proof firmware firmware-goals bench bench-mechanisms generation stress skipping trig zoo zoo-case docs lock robots
+.PHONY: run test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping trig zoo zoo-case docs lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -25,17 +25,24 @@ generated: $(VENV)/installed
 	$(BIN)/symgen models/*.yaml
 	$(BIN)/python tools/generated_checksums.py generated $(MODELS:models/%.yaml=%)
 
+# What takes minutes is recorded in tests/campaigns.json with a hash of what went in; see tools/campaigns.py.
+RECORDED := $(BIN)/python tools/campaigns.py
+
+# All that is recorded; and what has changed since then with a sample of the rest, which must give the same.
+campaigns: robots
+	$(RECORDED) run
+
+campaigns-changed: robots
+	$(RECORDED) changed $(shell git rev-list --count HEAD)
+
 # Every mechanism given by bodies at more states than `make generated` takes, and the longer witnesses; minutes.
 mechanisms: robots
-	$(BIN)/symgen $(MECHANISMS) $(wildcard tests/mechanisms/*.yaml) --only c,python --states 32 --quiet \
-	    --out build/mechanisms
-	$(BIN)/pytest tests/mechanisms -m "mechanisms or not mechanisms"
+	$(RECORDED) run mechanisms
 
 # Run time against error of every model beside other tools: docs/bench, measured on this machine.
 BENCHED := $(CAMPAIGN_FILES) docs/bench/rapkm_without_payload.yaml
 bench: $(VENV)/installed
-	$(BIN)/pytest tests/bench -m bench
-	$(BIN)/symgen bench $(BENCHED) --quiet
+	$(RECORDED) run bench
 	$(BIN)/python tools/bench_pages.py generated $(BENCHED)
 
 # u of mechanisms given by bodies beside peers that walk their frames: docs/bench/mechanisms.md.
@@ -50,22 +57,16 @@ generation: $(VENV)/installed
 
 # The portable sine and cosine at every float32, a minute on two cores.
 trig: $(VENV)/installed
-	SYMGEN_TRIG_STRIDE=1 $(BIN)/pytest tests/toolchain/test_portable_pair.py -k everywhere -n 2
+	$(RECORDED) run trig
 
 # Numerical stability of every model: docs/stress, measured on this machine.
 stress: $(VENV)/installed
-	$(BIN)/symgen stress $(CAMPAIGN_FILES) --quiet; status=$$?; \
+	$(RECORDED) run stress; status=$$?; \
 	    $(BIN)/python tools/stress_pages.py generated $(CAMPAIGN_FILES) && exit $$status
 
 # Every model on every emulated core, the goals of cost, the example firmware.
 firmware: $(VENV)/installed
-	$(MAKE) --no-print-directory --keep-going --jobs $$(nproc) firmware-goals $(MODELS:models/%.yaml=target-%)
-
-firmware-goals: $(VENV)/installed
-	$(BIN)/pytest tests/target -m firmware
-
-target-%: models/%.yaml $(VENV)/installed
-	$(BIN)/symgen target $< --cpu all --quiet
+	$(RECORDED) run firmware
 
 # Random systems through the whole command, each ending looked at: a chunk of a campaign, or as much as fits in a time.
 ZOO_SEED ?= $(shell git rev-list --count HEAD)
@@ -92,8 +93,7 @@ fuzz: $(VENV)/installed
 
 # u in float32 under Frama-C Eva and Gappa, every model: a table of what is proved, what was measured, what remains.
 proof: $(VENV)/installed
-	$(BIN)/symgen $(MODELS) --only c,proof --recorded generated --out build/proof > /dev/null
-	$(BIN)/python tools/proof_table.py build/proof generated $(MODELS:models/%.yaml=%)
+	$(RECORDED) run proof; status=$$?; cat build/campaigns/proof-*.log; exit $$status
 
 # The marked blocks of README.md and the generated pages of docs/, with times measured on this machine.
 docs: $(VENV)/installed

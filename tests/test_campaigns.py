@@ -1,0 +1,131 @@
+"""Campaigns: a changed kernel, a changed campaign, a removed record are noticed, and a sample is run again."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from campaign_members import all_members
+from campaigns import SAMPLED, Member, read_record, run_and_record, run_changed
+
+ROOT = Path(__file__).resolve().parent.parent
+COUNT = "open('runs.txt', 'a').write('{0} ')"
+
+
+def member(name: str, **changed: Any) -> Member:
+    def result(root: Path) -> str:
+        return (root / "result.txt").read_text()
+
+    command = (sys.executable, "-c", COUNT.format(name))
+    files = (f"generated/{name}/files.sha256", "code")
+    return replace(Member("weighing", name, (command,), files, ("scales",), result), **changed)
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    for name in ("a", "b"):
+        (tmp_path / f"generated/{name}").mkdir(parents=True)
+        (tmp_path / f"generated/{name}/files.sha256").write_text("1234  c/x.c\n")
+    (tmp_path / "code").mkdir()
+    (tmp_path / "code/weigh.py").write_text("1\n")
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "result.txt").write_text("heavy")
+    return tmp_path
+
+
+def version(_: str) -> str:
+    return "scales 1"
+
+
+def ran(root: Path) -> list[str]:
+    path = root / "runs.txt"
+    found = sorted(path.read_text().split()) if path.exists() else []
+    path.unlink(missing_ok=True)
+    return found
+
+
+NOT_SAMPLED = SAMPLED - 1
+
+
+def test_what_was_recorded_is_not_run_again(root: Path) -> None:
+    members = [member("a"), member("b")]
+    assert run_changed(root, members, NOT_SAMPLED, version) == 0
+    assert ran(root) == ["a", "b"]  # nothing is recorded yet
+    assert run_and_record(root, members, version) == 0
+    assert ran(root) == ["a", "b"]
+    assert run_changed(root, members, NOT_SAMPLED, version) == 0
+    assert ran(root) == []
+
+
+def test_every_change_is_noticed(root: Path) -> None:
+    members = [member("a"), member("b")]
+    run_and_record(root, members, version)
+    ran(root)
+
+    (root / "generated/b/files.sha256").write_text("1235  c/x.c\n")  # one byte of a kernel
+    assert run_changed(root, members, NOT_SAMPLED, version) == 0
+    assert ran(root) == ["b"]
+    (root / "generated/b/files.sha256").write_text("1234  c/x.c\n")
+
+    (root / "code/weigh.py").write_text("2\n")
+    run_changed(root, members, NOT_SAMPLED, version)
+    assert ran(root) == ["a", "b"]
+    (root / "code/weigh.py").rename(root / "code/moved.py")
+    (root / "code/moved.py").write_text("1\n")
+    run_changed(root, members, NOT_SAMPLED, version)
+    assert ran(root) == ["a", "b"]
+    (root / "code/moved.py").rename(root / "code/weigh.py")
+
+    run_changed(root, members, NOT_SAMPLED, lambda _: "scales 2")
+    assert ran(root) == ["a", "b"]
+    run_changed(root, [member("a", environment=(("STRIDE", "1"),)), member("b")], NOT_SAMPLED, version)
+    assert ran(root) == ["a"]
+
+    record = read_record(root)
+    del record["weighing"]["a"]
+    (root / "tests/campaigns.json").write_text(json.dumps(record))
+    run_changed(root, members, NOT_SAMPLED, version)
+    assert ran(root) == ["a"]
+    (root / "tests/campaigns.json").unlink()
+    run_changed(root, members, NOT_SAMPLED, version)
+    assert ran(root) == ["a", "b"]
+
+
+def test_the_sample_goes_round_and_must_give_the_same(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    members = [member("a"), member("b", alone=True)]
+    run_and_record(root, members, version)
+    ran(root)
+    seen = []
+    for count in range(100, 100 + SAMPLED):
+        assert run_changed(root, members, count, version) == 0
+        seen += ran(root)
+    assert seen == ["a", "b"] or seen == ["b", "a"]
+    (root / "result.txt").write_text("light")
+    capsys.readouterr()
+    assert run_changed(root, members, 0, version) == 1
+    assert 'recorded: "heavy"\nnow: "light"' in capsys.readouterr().out
+
+
+def test_a_failure_ends_in_1_and_is_not_recorded(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    broken = member("b", commands=((sys.executable, "-c", "print('too light'); raise SystemExit(3)"),))
+    assert run_and_record(root, [member("a"), broken], version) == 1
+    assert list(read_record(root)["weighing"]) == ["a"]
+    assert "too light" in capsys.readouterr().out
+    assert run_changed(root, [member("a"), broken], NOT_SAMPLED, version) == 1
+
+
+def test_each_model_is_in_the_campaigns_and_all_that_they_read_exists() -> None:
+    members = all_members(ROOT)
+    assert len({(one.campaign, one.name) for one in members}) == len(members)
+    models = {path.stem for path in (ROOT / "models").glob("*.yaml")}
+    for campaign in ("firmware", "proof"):
+        assert models <= {one.name for one in members if one.campaign == campaign}
+    assert models <= {one.name for one in members if one.campaign in ("stress", "mechanisms")}
+    assert [path for one in members for path in one.files if not (ROOT / path).exists()] == []
+    record = read_record(ROOT)
+    known = {(campaign, name) for campaign, found in record.items() for name in found}
+    assert known <= {(one.campaign, one.name) for one in members}, "run `make campaigns`"
