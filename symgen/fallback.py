@@ -28,7 +28,7 @@ from symgen.verify.certificate import Certificate, ErrorRecord, Fault, LeftOut
 from symgen.verify.comparison import INACCURATE
 from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
-from symgen.verify.interpreted import measured
+from symgen.verify.interpreted import Measurements
 from symgen.verify.searched import Search
 from symgen.verify.tolerance import FACTOR
 
@@ -61,6 +61,7 @@ class Fallback:
         self._progress = progress
         self._alternatives: Alternatives | None = None
         self._search: Search | None = None
+        self.measurements = Measurements()
         self._searched: dict[str, Kernels] = {}
         self._left: dict[tuple[str, int], Iterator[Alternative]] = {}
         self._passing: defaultdict[str, list[_Candidate]] = defaultdict(list)
@@ -211,7 +212,7 @@ class Fallback:
         worst = 0.0
         for scalar, kernel in kernels.items():
             if scalar in expected.scalars:
-                record, fault = measured(kernel, draft.programs[scalar].sincos, scalar, expected)
+                record, fault = self.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)
                 if fault is not None:
                     name = way.choice.way + way.choice.digits
                     _check_algebra(kernels["float64"], name, expected, record.worst_state)

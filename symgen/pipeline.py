@@ -8,15 +8,14 @@ What a run does not need is not imported: the way from model to C uses the stand
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Container, Mapping
-from contextlib import nullcontext
+from collections.abc import Callable, Container, Iterator, Mapping
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symgen.activity import each, working
+from symgen.activity import working
 from symgen.dense_motion import dense_motions
-from symgen.derivation_file import derivation_json
 from symgen.diagnostics import ModelError, Notice
 from symgen.draft import Draft, draft_of
 from symgen.dynamics.catalogue import BY_NAME
@@ -24,14 +23,11 @@ from symgen.dynamics.everything import OF_ALL
 from symgen.dynamics.forms.motions import BY_FRAMES
 from symgen.dynamics.inverse import FormChoice
 from symgen.dynamics.select import Derivations, short_of_inputs
-from symgen.emit.c import emit_c
-from symgen.emit.c_batch import emit_c_batch
-from symgen.emit.c_prepared import emit_c_prepared
-from symgen.emit.c_sc import emit_c_sc
 from symgen.emit.literals import LiteralRangeError
 from symgen.emit.operations import count_operations
+from symgen.files import files_of, is_c, sources_of
 from symgen.garbage import let_go_and_keep
-from symgen.ir.kernel import Kernel
+from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.load import load_model
 from symgen.model.model import Model
@@ -55,6 +51,8 @@ BYTES_A_STEP = 14
 LARGEST_CODE = 64_000
 # Scalars, at half a kilobyte each: derivations of fewer leave little behind.
 LARGE_GRAPH = 100_000
+# Statements of all kernels in all scalar types: trying them is nothing beside writing and compiling their C.
+LONG = 50_000
 
 Progress = Callable[[str], None]
 
@@ -79,14 +77,21 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 draft = _derive(model, outputs, options)
                 if len(draft.derivations.mechanics.graph) > LARGE_GRAPH:
                     let_go_and_keep()
+                if options.verify and {"c", "python"} & {*options.parts} and _is_long(draft.programs):
+                    from symgen.trial import Trial
+
+                    with _literals_in_range(path):
+                        trial = Trial(path, draft, options, progress)
+                    fallback, expected = trial.fallback, trial.expected
+                    draft, tried = trial.settled(draft)
+                    if not draft.program.kernels:
+                        return _result(draft, options, {}, replace(tried, left_out=draft.left_out))
             if reporting is not None:
                 reporting.send(_facts(draft))
             progress("writing")
-            try:
-                files = _code(draft, options)
-            except LiteralRangeError as error:
-                raise ModelError(str(path), "", (beyond_range(error),)) from error
-            certificate, expected = _verified(draft, files, options, progress, expected)
+            with _literals_in_range(path):
+                sources = sources_of(draft, options)
+            certificate, expected = _verified(draft, sources, options, progress, expected)
             if certificate is not None and expected is None and certificate.faults:
                 raise ModelError(str(path), path.read_text(encoding="utf-8"), (no_states(draft.model, certificate),))
             other = None
@@ -96,6 +101,8 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 fallback = fallback or Fallback(options, progress)
                 other = fallback.other(draft, certificate, expected)
             if other is None or certificate is None:
+                with _literals_in_range(path):
+                    files = files_of(draft, options, sources)
                 return _finished(path, draft, options, files, certificate, reporting, progress)
         # again: with other ways for what was rejected, or in the end without these quantities
         draft = other
@@ -200,48 +207,35 @@ def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:
     return as_recorded(model, outputs, options)
 
 
-def _code(draft: Draft, options: Options) -> dict[str, str | bytes]:
-    files: dict[str, str | bytes] = {}
-    sources: dict[str, str] = {}
-    programs = [program for scalar in options.scalars if (program := draft.programs[scalar]).kernels]
-    if {"c", "package"} & {*options.parts}:
-        for program in programs:
-            for emit in each(f"C in {program.scalar}", (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc)):
-                sources |= emit(draft.model, program)
-    if "c" in options.parts:
-        files |= sources
-    if "package" in options.parts:
-        from symgen.package.files import emit_package
+def _is_long(programs: Mapping[Scalar, Program]) -> bool:
+    every = (kernel for program in programs.values() for kernel in program.kernels)
+    return sum(len(block.statements) for kernel in every for block in kernel.blocks) > LONG
 
-        with working("packages"):
-            files |= emit_package(draft.model, programs, sources)
-    if "proof" in options.parts:
-        from symgen.proof.files import emit_proofs
 
-        with working("drivers for proofs"):
-            files |= emit_proofs(draft.model, programs)
-    if "python" in options.parts:
-        from symgen.emit.python import emit_python
-
-        with working("Python"):
-            files |= emit_python(draft.model, draft.program)
-    files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.program)
-    return files
+@contextmanager
+def _literals_in_range(path: Path) -> Iterator[None]:
+    """Numbers of the file that a scalar type does not hold are its author's mistake."""
+    try:
+        yield
+    except LiteralRangeError as error:
+        raise ModelError(str(path), "", (beyond_range(error),)) from error
 
 
 def _verified(
     draft: Draft,
-    files: dict[str, str | bytes],
+    sources: Mapping[str, str],
     options: Options,
     progress: Progress,
     expected: Expected | None,
 ) -> tuple[Certificate | None, Expected | None]:
-    """What is wrong with the files just made, and what is expected at the states; None without code or verification."""
+    """What is wrong with the sources that are asked for, and what is expected at the states; None where there are none,
+    or without verification."""
     if not options.verify:
         return None, None
     from symgen.verify.run import generated_sources, verify_expecting
 
-    c_sources, python_source = generated_sources(draft.model, files)
+    run = {path: text for path, text in sources.items() if "c" in options.parts or not is_c(path)}
+    c_sources, python_source = generated_sources(draft.model, run)
     if not c_sources and python_source is None:
         return None, None
     kernels = {scalar: program.kernels for scalar, program in draft.programs.items()}

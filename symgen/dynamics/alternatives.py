@@ -6,6 +6,7 @@ Each is derived on a graph of its own, so that it depends neither on what was de
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 
 from symgen.dynamics.catalogue import BY_NAME, Derived, derive, scalars
 from symgen.dynamics.compared import MOTIONS, quantities_by
@@ -17,6 +18,7 @@ from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.row_units import in_ordinary_units
 from symgen.dynamics.select import Choice, block_way, finished, ways
 from symgen.effort import TooLongError, at_most, worth_trying
+from symgen.graph.forgetting import START
 from symgen.graph.matrix import flatten
 from symgen.graph.traverse import cost
 from symgen.model.model import Model
@@ -101,21 +103,21 @@ class Alternatives:
             return None
         choice = FormChoice(name, found, ((name, offer.form.weight, found.explanation),))
         mechanics = Mechanics(self._model)
-        derived = finished(mechanics, self._generic, derived_on(mechanics.graph, offer))
-        return Alternative(Choice(derived.name, name, choice.costs), mechanics, derived, choice)
+        return self._alone(derived_on(mechanics.graph, offer), name, choice.costs, mechanics, choice)
 
     def _of_motion(self, quantity: str, name: str) -> Alternative | None:
         """A form of q_ddot or lambda that is valid wherever the motion is determined."""
         from symgen.dynamics.by_name import valid_form
 
         if name not in self._motions:
-            self._motions[name] = quantities_by(self._model, self._generic, name)
+            found = self._motions[name] = quantities_by(self._model, self._generic, name)
+            _forget_others(*found)
         form = valid_form(*self._motions[name], quantity, name)
         if form is None:
             return None
         mechanics = Mechanics(self._model)
-        derived = finished(mechanics, self._generic, moved(mechanics.graph, form.derived))
-        return Alternative(Choice(quantity, name, form.choice.costs, name), mechanics, derived, form.choice)
+        derived = moved(mechanics.graph, form.derived)
+        return self._alone(derived, name, form.choice.costs, mechanics, form.choice, form=name)
 
     def _along(self, quantity: str, name: str) -> Alternative | None:
         """A quantity along a way to the null space."""
@@ -124,9 +126,7 @@ class Alternatives:
         if along is None:
             return None
         derived = derive(BY_NAME[quantity], along)
-        costs = ((name, cost(scalars(derived)).weight),)
-        return Alternative(Choice(quantity, name, costs), mechanics, finished(mechanics, self._generic, derived))
-
+        return self._alone(derived, name, ((name, cost(scalars(derived)).weight),), mechanics)
 
     def _by_elimination(self, quantity: str, name: str) -> Alternative | None:
         """A weighted projection as accelerations."""
@@ -141,8 +141,33 @@ class Alternatives:
             return None
         matrix, guards = found
         derived = Derived(quantity, (len(matrix), len(matrix[0])), flatten(matrix), guards)
-        costs = ((name, cost(scalars(derived)).weight),)
-        return Alternative(Choice(quantity, name, costs), mechanics, finished(mechanics, self._generic, derived))
+        return self._alone(derived, name, ((name, cost(scalars(derived)).weight),), mechanics)
+
+    def _alone(
+        self,
+        derived: Derived,
+        way: str,
+        costs: tuple[tuple[str, int], ...],
+        mechanics: Mechanics,
+        known: FormChoice | None = None,
+        form: str = "",
+    ) -> Alternative:
+        """A quantity as it is scheduled, on a graph that holds nothing else any more."""
+        made = finished(mechanics, self._generic, derived)
+        _forget_others(mechanics, (made,))
+        return Alternative(Choice(derived.name, way, costs, form), mechanics, made, known)
+
+
+def _forget_others(mechanics: Mechanics, quantities: Sequence[Derived]) -> None:
+    """Lets the graph of quantities go of all that they do not hold: no others are derived there."""
+    held = [*mechanics.q, *mechanics.qd, *mechanics.qdd, *mechanics.parameters, *mechanics.u]
+    held += [output for derived in quantities for output in derived.outputs]
+    guards = [guard for derived in quantities for guard in derived.guards]
+    while guards:
+        guard = guards.pop()
+        held += [guard.denominator] if guard.scale is None else [guard.denominator, guard.scale]
+        guards += guard.first
+    mechanics.factoring.forget(START, held)
 
 
 def _tiers(quantity: str) -> tuple[tuple[str, ...], ...]:

@@ -150,6 +150,7 @@ class Derivation:
         # symbols of absolute angles stay where these are the coordinates of this derivation
         made = replace(made, multipliers=completed(made.multipliers))
         made = motion_brought_back(self.graph, apart if own.change is None else None, made)
+        apart.graph.dissolve()
         # `schur_qr` measures ranks itself where rows are many, or depend on each other
         measured = name == "schur_qr" and self.r > min(rank, LONGEST_PRODUCT)
         return replace(made, guards=(*(() if measured else self.space.guards), *made.guards), name=name)

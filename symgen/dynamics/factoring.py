@@ -36,6 +36,7 @@ class Factoring:
         stays = forgetting(self.graph, mark, needed)
         if stays is not None:
             self._fixed = {node: fixed for node, fixed in self._fixed.items() if stays(node)}
+            self._multipliers.clear()
 
     def factors(self, nodes: Iterable[Scalar]) -> dict[Scalar, int]:
         """What depends on parameters only and multiplies what does not: in how many products, as they are met."""

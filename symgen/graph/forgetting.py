@@ -15,6 +15,8 @@ from symgen.graph.traverse import forget_orders
 Stays: TypeAlias = Callable[[Scalar], bool]
 # Fewer are kept: they are met again, and looking for those that are needed takes time, too.
 WORTH = 10_000
+# The mark of a graph that nothing is made on yet.
+START = (0, 0)
 
 
 def forgetting(graph: Graph, mark: tuple[int, int], needed: Iterable[Scalar]) -> Stays | None:

@@ -48,13 +48,18 @@ class Scalar:
             self.constant = payload
             self.is_zero, self.is_one = payload == 0, payload == 1
         # operations of the expression written out, its stand-ins as bits, and its value in the field of fingerprints
-        size = 0 if op == "neg" or not args else 1
-        stands = 0
-        for argument in args:
-            size += argument.size
-            stands |= argument.stands
-        self.size: int = size
-        self.stands: int = stands
+        self.size: int
+        self.stands: int
+        if len(args) == 2:
+            first, second = args
+            self.size, self.stands = first.size + second.size + 1, first.stands | second.stands
+        elif args:
+            self.size = sum(argument.size for argument in args) + (op != "neg")
+            self.stands = 0
+            for argument in args:
+                self.stands |= argument.stands
+        else:
+            self.size = self.stands = 0
         self.value = 0
 
     def __add__(self, other: Number) -> Scalar:
@@ -144,7 +149,11 @@ class Graph:
         spend(SCALAR)
         node = self._nodes[key] = Scalar(self, len(self._serials), op, args, payload)
         self._serials.append(node)
-        if op == "const":
+        if op == "mul":
+            node.value = args[0].value * args[1].value % PRIME
+        elif op == "add":
+            node.value = (args[0].value + args[1].value) % PRIME
+        elif op == "const":
             assert isinstance(payload, Fraction)
             node.value = residue(payload)
         elif op == "symbol":
@@ -198,6 +207,16 @@ class Graph:
             node_there = self._serials[serial]
             if node_there is not None and not stays(node_there):
                 self._serials[serial] = None
+
+    def dissolve(self) -> None:
+        """Lets go of all scalars but those that somebody holds; nothing is made on this graph any more.
+
+        A graph and its scalars hold each other: nobody else would let go of what derivations leave behind.
+        """
+        for known in (self._nodes, self._constants, self._serials, self._by_value, self._turns, self._pairs):
+            known.clear()
+        self.points.clear()
+        self.products.forget(lambda _: False)
 
     def lift(self, value: Number) -> Scalar:
         """A scalar of this graph from a scalar, an integer or a rational number."""

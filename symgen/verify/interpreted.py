@@ -26,6 +26,22 @@ def measured(
     return record, next(faults_of(record, found, samples), None)
 
 
+class Measurements:
+    """What `measured` finds, once for the kernel that a quantity has last been given in a scalar type."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, Scalar], tuple[Kernel, tuple[ErrorRecord, Fault | None]]] = {}
+
+    def of(
+        self, kernel: Kernel, sincos: Function | None, scalar: Scalar, expected: Expected
+    ) -> tuple[ErrorRecord, Fault | None]:
+        """As `measured`."""
+        known = self._known.get((kernel.name, scalar))
+        if known is None or known[0] is not kernel:
+            known = self._known[kernel.name, scalar] = kernel, measured(kernel, sincos, scalar, expected)
+        return known[1]
+
+
 def outcomes(kernel: Kernel, sincos: Function | None, scalar: Scalar, states: Sequence[State]) -> list[Outcome]:
     """What a kernel gives at states of its scalar type: NaN where it refuses."""
     given = [

@@ -10,7 +10,19 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from symgen.ir.interpret import OPERATIONS, round_float32, round_literal
-from symgen.ir.kernel import Block, Check, Function, Kernel, Literal, Operand, OperationName, Scalar, Statement, Status
+from symgen.ir.kernel import (
+    Block,
+    Check,
+    Function,
+    Kernel,
+    Literal,
+    Local,
+    Operand,
+    OperationName,
+    Scalar,
+    Statement,
+    Status,
+)
 from symgen.ir.wide_functions import is_wide, wide_function
 
 # A number of the scalar type for each state.
@@ -35,6 +47,7 @@ class _Run:
         columns = ((load, [one[load.argument][load.index] for one in given]) for load in kernel.loads)
         self._values: dict[str, _Lanes] = {load.local: np.array(column, self._type) for load, column in columns}
         self._numbers: dict[Literal, _Lanes] = {}
+        self._functions: dict[OperationName, _Steps] = {}
 
     def outcomes(self) -> list[tuple[Status, list[float]]]:
         """Of all states."""
@@ -66,13 +79,17 @@ class _Run:
 
     def _statements(self, statements: Iterable[Statement], values: dict[str, _Lanes]) -> None:
         for statement in statements:
-            operands = [self._operand(operand, values) for operand in statement.operands]
+            operands = [
+                values[o.name] if o.__class__ is Local else self._operand(o, values) for o in statement.operands
+            ]
+            if (vectorised := VECTORISED.get(statement.operation)) is not None:
+                values[statement.targets[0]] = vectorised(*operands)
+                continue
+            results: Sequence[_Lanes]
             if statement.operation == "sincos":
                 results = self._pair(operands[0])
             elif is_wide(statement):
-                results = self._called(wide_function(statement.operation, self._scalar), operands)
-            elif (vectorised := VECTORISED.get(statement.operation)) is not None:
-                results = (vectorised(*operands),)
+                results = self._wide(statement.operation)(operands)
             else:
                 results = (self._one_by_one(OPERATIONS[statement.operation], operands),)
             values.update(zip(statement.targets, results, strict=True))
@@ -81,6 +98,11 @@ class _Run:
         if self._sincos is not None:
             return self._called(self._sincos, [angle])
         return tuple(self._one_by_one(function, [angle]) for function in (_sine, _cosine))
+
+    def _wide(self, operation: OperationName) -> _Steps:
+        if operation not in self._functions:
+            self._functions[operation] = _Steps(wide_function(operation, self._scalar), self._scalar)
+        return self._functions[operation]
 
     def _called(self, function: Function, operands: Sequence[_Lanes]) -> tuple[_Lanes, ...]:
         values = dict(zip(function.parameters, operands, strict=True))
@@ -100,6 +122,38 @@ class _Run:
         if operand not in self._numbers:
             self._numbers[operand] = self._type(round_literal(operand.value, self._scalar))
         return self._numbers[operand]
+
+
+class _Steps:
+    """A function of vectorised operations with its operands found by place: kernels with twice the digits call a few
+    of them tens of thousands of times."""
+
+    def __init__(self, function: Function, scalar: Scalar) -> None:
+        places = {name: place for place, name in enumerate(function.parameters)}
+        self._numbers: list[_Lanes] = []
+        literals = {o: None for s in function.statements for o in s.operands if isinstance(o, Literal)}
+        known: dict[Operand, int] = {}
+        for literal in literals:
+            known[literal] = len(places) + len(self._numbers)
+            self._numbers.append(_TYPES[scalar](round_literal(literal.value, scalar)))
+        self._steps: list[tuple[Callable[..., _Lanes], tuple[int, ...]]] = []
+        count = len(places) + len(self._numbers)
+        for statement in function.statements:
+            operands = (known[o] if isinstance(o, Literal) else places[o.name] for o in statement.operands)
+            self._steps.append((VECTORISED[statement.operation], tuple(operands)))
+            (target,) = statement.targets
+            places[target], count = count, count + 1
+        self._results = [places[name] for name in function.results]
+
+    def __call__(self, operands: Sequence[_Lanes]) -> list[_Lanes]:
+        values = [*operands, *self._numbers]
+        for function, given in self._steps:
+            if len(given) == 2:
+                first, second = given
+                values.append(function(values[first], values[second]))
+            else:
+                values.append(function(*(values[place] for place in given)))
+        return [values[place] for place in self._results]
 
 
 def _sine(x: float) -> float:

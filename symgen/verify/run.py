@@ -71,7 +71,23 @@ def verify_expecting(
     back, None where there are no states; a further verification of these quantities, or of some, takes it as it is.
     """
     compiler = find_compiler() if c_sources else None
-    blank = Certificate(
+    blank = blank_certificate(model, compiler, c_sources, python_source)
+    try:
+        with _compilations(compiler, c_sources) as compilations:
+            if expected is None:
+                progress("verifying: looking for states")
+                names = dict.fromkeys(kernel.name for every in kernels.values() for kernel in every)
+                expected = Expected(model, tuple(names), states, progress)
+            return _verified(blank, expected, kernels, c_sources, compilations, python_source, progress), expected
+    except (VerificationError, ReferenceValueError) as fault:
+        return replace(blank, faults=(Fault(str(fault)),)), None
+
+
+def blank_certificate(
+    model: Model, compiler: Compiler | None, c_sources: Mapping[Scalar, CSource], python_source: str | None
+) -> Certificate:
+    """What a certificate tells before anything is run."""
+    return Certificate(
         model=model.name,
         states=0,
         ranks=(),
@@ -83,15 +99,6 @@ def verify_expecting(
         faults=(),
         notes=(NO_COMPILER,) if c_sources and compiler is None else (),
     )
-    try:
-        with _compilations(compiler, c_sources) as compilations:
-            if expected is None:
-                progress("verifying: looking for states")
-                names = dict.fromkeys(kernel.name for every in kernels.values() for kernel in every)
-                expected = Expected(model, tuple(names), states, progress)
-            return _verified(blank, expected, kernels, c_sources, compilations, python_source, progress), expected
-    except (VerificationError, ReferenceValueError) as fault:
-        return replace(blank, faults=(Fault(str(fault)),)), None
 
 
 def _verified(

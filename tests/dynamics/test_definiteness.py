@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 import shipped
 
-from symgen.dynamics.forms.definiteness import indefinite
+from symgen.dynamics.forms.definiteness import indefinite, indefinite_model
 from symgen.dynamics.mechanics import Mechanics
 from symgen.graph import evaluate
 from symgen.model.load import load_text
@@ -34,7 +34,7 @@ def noisy(function: Callable[[float], float], source: random.Random) -> Callable
 
 
 def place(model: Model) -> tuple[tuple[str, float], ...] | None:
-    indefinite.cache_clear()
+    indefinite_model.cache_clear()
     found = indefinite(Mechanics(model))
     return None if found is None else found.state
 

@@ -13,7 +13,7 @@ import pytest
 from linkages import row_of_four_bars
 from shipped import ROOT
 
-from symgen import pipeline
+from symgen import files
 from symgen.cli import main
 from symgen.emit.c import emit_c
 from symgen.ir.kernel import Program
@@ -103,7 +103,7 @@ def test_kernels_that_verification_rejects_are_not_integrated(
     def wrong(model: Model, program: Program) -> dict[str, str]:
         return {path: text.replace(" - ", " + ") for path, text in emit_c(model, program).items()}
 
-    monkeypatch.setattr(pipeline, "emit_c", wrong)
+    monkeypatch.setattr(files, "emit_c", wrong)
     assert run(str(MODELS / "skate.yaml"), "--duration", "0.1", "--out", str(out)) == 1
     told = capsys.readouterr().err
     assert "skate.yaml: not simulated: verification rejects what would be integrated" in told

@@ -11,7 +11,20 @@ import numpy as np
 import pytest
 
 from symgen.ir.interpret import OPERATIONS, Interpreter
-from symgen.ir.kernel import Argument, Block, Check, Kernel, Literal, Load, Local, Scalar, Statement, Status
+from symgen.ir.kernel import (
+    Argument,
+    Block,
+    Check,
+    Kernel,
+    Literal,
+    Load,
+    Local,
+    OperationName,
+    Scalar,
+    Statement,
+    Status,
+)
+from symgen.ir.wide_functions import WIDE
 from symgen.verify.many_states import run_many
 
 SPECIAL = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-40, -3e38, math.inf, -math.inf, math.nan)
@@ -68,3 +81,24 @@ def test_the_first_check_that_fails_tells_the_status(scalar: Scalar) -> None:
     assert met == {
         Status.OK, Status.NOT_FINITE, Status.CONSTRAINT_RANK, Status.ACTUATION_RANK, Status.MASS_RANK
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+@pytest.mark.parametrize("operation", list(WIDE.values()))
+def test_operations_on_pairs_have_the_same_bits(operation: OperationName, scalar: Scalar) -> None:
+    number = np.float32 if scalar == "float32" else np.float64
+    source = random.Random(operation)
+    rest = number(np.finfo(number).eps)
+    values = [*SPECIAL, 0.25, *(source.gauss(0, 2) for _ in range(20))]
+    with np.errstate(all="ignore"):
+        pairs = [(float(number(x)), float(number(number(x) * rest * number(0.3)))) for x in values]
+        given = [{"q": [*one, *other], "p": []} for one, other in product(pairs, repeat=2)]
+    names = ("a", "a_rest") if operation == "wide_sqrt" else ("a", "a_rest", "b", "b_rest")
+    loads = tuple(Load(name, "q", place) for place, name in enumerate(names))
+    statement = Statement(("x", "y"), operation, tuple(map(Local, names)))
+    outputs = (Local("x"), Local("y"))
+    kernel = Kernel("k", (Argument("q", 4),), loads, (Block((statement,), ()),), outputs, (2,))
+    for state, (status, entries) in zip(given, run_many(kernel, None, scalar, given), strict=True):
+        wanted, numbers = Interpreter(None, scalar).run(kernel, state, ())
+        assert status is wanted
+        assert _same(entries, numbers), state

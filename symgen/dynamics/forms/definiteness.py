@@ -23,6 +23,7 @@ from symgen.dynamics.mechanics import Mechanics
 from symgen.graph.evaluate import Evaluator
 from symgen.graph.scalar import Scalar
 from symgen.graph.traverse import topological
+from symgen.model.model import Model
 from symgen.records import dataclass
 
 SEED = 15
@@ -50,13 +51,21 @@ def positive_definite(mechanics: Mechanics) -> bool:
     return indefinite(mechanics) is None
 
 
-@lru_cache(maxsize=2)  # asked for q_ddot and for lambda, along each null space
 def indefinite(mechanics: Mechanics) -> Indefinite | None:
-    """Where G is not positive definite, or None where it is so everywhere.
+    """Where G is not positive definite, or None where it is so everywhere."""
+    return indefinite_model(mechanics.model)
 
-    On a graph of its own, so that no kernel shares the pivots.
-    """
-    mechanics = Mechanics(mechanics.model)
+
+@lru_cache(maxsize=2)  # asked for each quantity, along each way to it
+def indefinite_model(model: Model) -> Indefinite | None:
+    """The same, on a graph of its own, so that no kernel shares the pivots."""
+    mechanics = Mechanics(model)
+    found = _indefinite(mechanics)
+    mechanics.graph.dissolve()
+    return found
+
+
+def _indefinite(mechanics: Mechanics) -> Indefinite | None:
     graph = mechanics.graph
     for i, row in enumerate(mechanics.mass_matrix):
         if row[i].is_zero:

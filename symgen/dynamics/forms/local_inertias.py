@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from symgen.dynamics.articulated import ArticulatedFactor, Six
 from symgen.dynamics.forms.definite import Definite
@@ -22,6 +22,7 @@ from symgen.graph.matrix import Matrix, dot
 from symgen.graph.scalar import Scalar
 from symgen.model.body_checks import unsound_bodies
 from symgen.model.mechanics import default_values
+from symgen.model.model import Model
 
 
 def definite_by_frames(mechanics: Mechanics, factor: ArticulatedFactor) -> bool:
@@ -32,8 +33,16 @@ def definite_by_frames(mechanics: Mechanics, factor: ArticulatedFactor) -> bool:
     single = all(len(own) < 2 for own in factor.directions.values())
     if single and all(definite.holds(own) for own in factor.own.values()):
         return True
-    apart = Mechanics(mechanics.model)  # so that no kernel shares what is looked at here
-    return _Frames(apart, ArticulatedFactor(apart.bodies)).definite
+    return _definite_apart(mechanics.model)
+
+
+@lru_cache(maxsize=2)  # asked for each quantity, along each way to it
+def _definite_apart(model: Model) -> bool:
+    """The same on a graph of its own, so that no kernel shares what is looked at here."""
+    apart = Mechanics(model)
+    found = _Frames(apart, ArticulatedFactor(apart.bodies)).definite
+    apart.graph.dissolve()
+    return found
 
 
 def definite_along_motion(mechanics: Mechanics, factor: ArticulatedFactor) -> bool:

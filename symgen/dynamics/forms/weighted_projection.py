@@ -34,6 +34,7 @@ def weighted_projection(
     solver = SchurQR(Problem(there, ()), generic.rank)
     found = [motion_brought_back(mechanics.graph, changed, motion) for motion in _motions(there, solver, quantity)]
     guards = tuple(dict.fromkeys((*before, *(guard for motion in found for guard in motion.guards))))
+    there.graph.dissolve()
     return transpose(tuple(motion.accelerations for motion in found), mechanics.n), guards
 
 
@@ -60,7 +61,9 @@ def projection_of_bodies(
         columns = [tuple(x + y for x, y in zip(*pair, strict=True)) for pair in zip(units, parts, strict=True)]
     moved = Moved(mechanics.graph)
     guards = tuple(dict.fromkeys((*before, *moved.guards(equations.guards))))
-    return transpose(tuple(map(moved.scalars, columns)), n), guards
+    brought = tuple(map(moved.scalars, columns))
+    there.graph.dissolve()
+    return transpose(brought, n), guards
 
 
 def _motions(mechanics: Mechanics, solver: SchurQR, quantity: str) -> list[Motion]:

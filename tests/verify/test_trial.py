@@ -1,0 +1,136 @@
+"""Long kernels are tried before C is made of them: the same ways are taken as after it, and C is written once."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from symgen import files, pipeline, trial
+from symgen.diagnostics import ModelError
+from symgen.dynamics import derivation
+from symgen.dynamics.forms.motion import Motion
+from symgen.dynamics.mechanics import Mechanics
+from symgen.emit.c import emit_c
+from symgen.ir.kernel import Program
+from symgen.model.model import Model
+from symgen.pipeline import generate
+from symgen.results import Options, Result
+from symgen.verify import run
+from symgen.verify.states import VerificationError
+
+# A ladder slides down between a wall and the ground.
+LADDER = """
+model: ladder
+coordinates:
+  x: {unit: m}
+  y: {unit: m}
+  a: {unit: rad, range: [0.3, 1.2]}
+parameters:
+  l: {value: 2.5, unit: m, range: [2, 3]}
+  m: {value: 9, unit: kg, range: [6, 12]}
+  J: {value: 4, unit: kg*m**2, range: [3, 5]}
+  g: {value: 9.81, unit: m/s**2}
+kinetic_energy: m/2*(x_dot**2 + y_dot**2) + J/2*a_dot**2
+potential_energy: m*g*y
+constraints:
+  geometric:
+    ground: x - l/2*cos(a)
+    wall: y - l/2*sin(a)
+inputs:
+  push: {unit: N, acts_on: {x: 1}}
+configuration: {x: 0.96, y: 0.8, a: 0.69}
+outputs: [inverse_dynamics, forward_dynamics, multipliers, energy]
+"""
+OPTIONS = Options(parts=("c", "python"), states=8)
+
+
+@pytest.fixture
+def ladder(tmp_path: Path, tool: Callable[[str], str]) -> Path:
+    tool("cc")
+    path = tmp_path / "ladder.yaml"
+    path.write_text(LADDER, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The scalar types C was written in."""
+    made: list[str] = []
+
+    def noted(model: Model, program: Program) -> dict[str, str]:
+        made.append(program.scalar)
+        return emit_c(model, program)
+
+    monkeypatch.setattr(files, "emit_c", noted)
+    return made
+
+
+def _spoil(monkeypatch: pytest.MonkeyPatch, factor: Fraction) -> None:
+    """λ of the form that selection takes by itself times 1 + factor (cosh^2 - sinh^2 - 1), which loses digits."""
+    cheapest = derivation.cheapest
+
+    def worse(motions: Any, part: Any, mechanics: Mechanics) -> Motion:
+        found = cheapest(motions, part, mechanics)
+        if part != "multipliers":
+            return found
+        graph = mechanics.graph
+        cosh, sinh = (graph.raw(name, (graph.symbol("a"),)) for name in ("cosh", "sinh"))
+        squares = graph.raw("sub", (graph.raw("mul", (cosh, cosh)), graph.raw("mul", (sinh, sinh))))
+        lost = graph.raw("mul", (graph.const(factor), graph.raw("sub", (squares, graph.one))))
+        spoilt = (graph.raw("add", (x, graph.raw("mul", (x, lost)))) for x in found.multipliers)
+        return replace(found, multipliers=tuple(spoilt))
+
+    monkeypatch.setattr(derivation, "cheapest", worse)
+
+
+def _made(path: Path, monkeypatch: pytest.MonkeyPatch, first: bool) -> Result:
+    monkeypatch.setattr(pipeline, "LONG", 0 if first else 10**9)
+    return generate(path, OPTIONS, lambda _: None)
+
+
+def _derived(result: Result) -> Any:
+    return json.loads(result.files["derivation.json"])
+
+
+@pytest.mark.parametrize("factor", [Fraction(0), Fraction(2**21)])
+def test_the_same_kernels_are_written(
+    factor: Fraction, ladder: Path, written: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _spoil(monkeypatch, factor)
+    after = _made(ladder, monkeypatch, first=False)
+    rounds = len(written)
+    before = _made(ladder, monkeypatch, first=True)
+    assert len(written) - rounds == 2
+    assert rounds == (4 if factor else 2)
+    for path, text in after.files.items():
+        if path not in ("derivation.json", "certificate.json"):
+            assert before.files[path] == text, path
+    assert bool(_derived(before).get("rejected")) is bool(factor)
+    assert [one["way"] for one in _derived(before).get("rejected", [])] == [
+        one["way"] for one in _derived(after).get("rejected", [])
+    ]
+    assert before.certificate == after.certificate
+
+
+def test_what_has_no_states_is_told_before_anything_is_written(
+    ladder: Path, written: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def nothing(*_: object) -> None:
+        raise VerificationError("ladder: only 3 regular configurations were found; give wider ranges")
+
+    monkeypatch.setattr(trial, "Expected", nothing)
+    monkeypatch.setattr(run, "Expected", nothing)
+    told = []
+    for first in (False, True):
+        written.clear()
+        with pytest.raises(ModelError) as refusal:
+            _made(ladder, monkeypatch, first)
+        told.append(refusal.value.mistakes)
+        assert bool(written) is not first
+    assert told[0] == told[1]
