@@ -9,7 +9,8 @@ from typing import Any
 
 from symgen.cli import main
 
-# A swing hangs from a runner on a sloping rail: one row, two degrees of freedom, quotients and sines.
+# A swing hangs from a runner on a sloping rail: one row, two degrees of freedom, quotients and sines, a spring by
+# a table of numbers.
 SWING = """
 model: swing_on_runner
 coordinates:
@@ -24,7 +25,9 @@ parameters:
   k: {value: 60, unit: N/m}
   g: {value: 9.81, unit: m/s**2}
 kinetic_energy: (M + m)/2*s_dot**2 + m/2*l**2*a_dot**2 + m*l*s_dot*a_dot*cos(a + b)
-potential_energy: k/2*s**2 - (M + m)*g*s*sin(b) - m*g*y
+potential_energy: >-
+  k/2*s**2 - (M + m)*g*s*sin(b) - m*g*y
+  + 3.1*s**3 + 5.3*s**4 + 2.7*s**5 + 1.9*s**6 + 0.7*s**7 + 0.37*s**8 + 4.3*a**2 + 1.3*a**3 + 2.3*a**4 + 0.9*a**5
 constraints:
   geometric: {seat: y - l*cos(a)}
 inputs:

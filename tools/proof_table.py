@@ -3,8 +3,9 @@
 Eva's alarms are counted, with the status that it could not prove.  Gappa's bounds of the rounding error stand beside
 the errors measured at random states of the same box.  What intervals cannot keep from 0 is taken from the page of the
 proof folder; where there are alarms without such a denominator, they are told by kind with the statement of the first,
-and with the functions and angles of which intervals know too little.  OUT/<model>/proof.json gets the same, for the
-report.  The exit status is 1 if a tool fails.
+and with the functions and angles of which intervals know too little.  Where u works with twice the digits Eva is not
+run, and that is told: its intervals know nothing of pairs.  OUT/<model>/proof.json gets the same, for the report.  The
+exit status is 1 if a tool fails.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ MOST_FOR_EVA, MOST_FOR_GAPPA = 1000, 500
 SECONDS = 300
 WORKERS = 2
 TOO_LONG, FAILED = "too long", "failed"
+IN_PAIRS = "not run: twice the digits"
 DENOMINATORS, ANGLES = "Denominators that intervals cannot keep from 0", "Angles that make intervals overflow"
 ALARM = re.compile(r"^\[eva:alarm\] (\S+?):(\d+): Warning:\s+([\w ,-]+)\.", re.MULTILINE)
 WITHOUT_BOUNDS = re.compile(r"Neither code nor specification for function (\w+)")
@@ -62,9 +64,11 @@ def examine(folder: Path, model: str) -> Row:
     sources = {
         name: hashlib.sha256((folder / "c" / name).read_bytes()).hexdigest() for name in (f"{model}.c", f"{model}_f.c")
     }
-    size = operations(folder)
+    size, in_pairs = operations(folder), twice_the_digits(folder)
     bounds, measured, without = rounding(folder, model, size <= MOST_FOR_GAPPA)
-    unproven, told = alarms(folder, model) if size <= MOST_FOR_EVA else (TOO_LONG, "")
+    unproven, told = (IN_PAIRS if in_pairs else TOO_LONG), ""
+    if size <= MOST_FOR_EVA and not in_pairs:
+        unproven, told = alarms(folder, model)
     denominators = named(folder, DENOMINATORS)
     others = () if denominators else origins(told, folder)
     return Row(model, sources, unproven, bounds, measured, without, denominators, others)
@@ -82,6 +86,12 @@ def operations(folder: Path) -> int:
     """Of u, as they are counted when it is derived."""
     kernels = json.loads((folder / "derivation.json").read_bytes())["kernels"]
     return sum(kernels["inverse_dynamics"]["operations"].values())
+
+
+def twice_the_digits(folder: Path) -> bool:
+    """Whether u in float32 works with pairs of numbers, of whose rests intervals know nothing."""
+    kernels = json.loads((folder / "derivation.json").read_bytes())["kernels"]
+    return "float32" in kernels["inverse_dynamics"].get("twice_the_digits", ())
 
 
 def alarms(folder: Path, model: str) -> tuple[str, str]:

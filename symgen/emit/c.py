@@ -300,7 +300,7 @@ def _body_of_steps(model: Model, program: Program, kernel: Kernel, names: Names,
     lines += [f"{steps.spelled[load.local]} = {place(load, names)};" for load in kernel.loads]
     for block, part in zip(kernel.blocks, steps.parts, strict=True):
         if part:
-            lines.append(f"{model.c_name}_steps{suffix}(step + {part.start}, {len(part)}, v);")
+            lines.append(f"{model.c_name}_steps{suffix}(step, {part.start}, {part.stop}, v);")
         for check in block.checks:
             # what only a failure computes has names of its own
             inside = {target: names.locals[target] for target in _targets_on_failure(check)}

@@ -20,7 +20,7 @@ from symgen.records import dataclass
 
 # Of a step: what it sets and what it reads at most.
 _SET, _READ = 2, 4
-_VALUES, _STEP, _CONSTANT, _COUNTER = "v", "step", "constant", "k"
+_VALUES, _STEP = "v", "step"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,10 @@ class Table:
     size: int
 
     def lines(self, kind: str) -> Iterator[str]:
-        """Their declarations, up to the constants in their places; `kind` is the type of a step."""
+        """Their declarations, up to the constants in their places; `kind` is the type of a step.
+
+        Constants are set one by one: copied from a table, compilers would call memcpy, and kernels call no library.
+        """
         scalar = C_TYPE[self.scalar]
         if self.rows:
             yield f"static const {kind} {_STEP}[{len(self.rows)}] = {{"
@@ -79,13 +82,7 @@ class Table:
                 yield f"    {{{number}, {', '.join(f'{{{part}}}' for part in found)}}},"
             yield "};"
         yield f"{scalar} {_VALUES}[{max(1, self.size)}];"
-        if self.constants:
-            yield f"static const {scalar} {_CONSTANT}[{len(self.constants)}] = {{"
-            yield from (f"    {text}," for text in self.constants)
-            yield "};"
-            yield f"for (int {_COUNTER} = 0; {_COUNTER} < {len(self.constants)}; ++{_COUNTER}) {{"
-            yield f"    {_VALUES}[{_COUNTER}] = {_CONSTANT}[{_COUNTER}];"
-            yield "}"
+        yield from (f"{_VALUES}[{place}] = {text};" for place, text in enumerate(self.constants))
 
 
 def steps_view(name: str, suffix: str, program: Program) -> StepsView | None:
@@ -115,7 +112,7 @@ def step_names(name: str, suffix: str) -> set[str]:
 def local_names(program: Program) -> set[str]:
     """Names that tables need inside of functions."""
     needed = any(map(works_with_pairs, program.kernels))
-    return {_VALUES, _STEP, _CONSTANT, _COUNTER, "pair"} if needed else set()
+    return {_VALUES, _STEP, "pair"} if needed else set()
 
 
 def table(kernel: Kernel, program: Program) -> Table:
@@ -194,8 +191,8 @@ def _operations(program: Program) -> tuple[OperationName, ...]:
 
 
 def _case(operation: OperationName, printer: CStatements, pair: str, sines: str | None) -> Iterator[str]:
-    read = [f"{_VALUES}[{_STEP}->of[{k}]]" for k in range(_READ)]
-    first, second = (f"{_VALUES}[{_STEP}->to[{k}]]" for k in range(_SET))
+    read = [f"{_VALUES}[of[{k}]]" for k in range(_READ)]
+    first, second = (f"{_VALUES}[to[{k}]]" for k in range(_SET))
     if is_wide_operation(operation):
         given = read[: len(wide_function(operation).parameters)]
         yield f"pair = {_wide_name(pair, operation)}({', '.join(given)});"

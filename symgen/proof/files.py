@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from symgen.emit.locals import array_arguments
 from symgen.ir.kernel import Kernel, Literal, Operand, Program
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model
 from symgen.proof.box import box
 from symgen.proof.eva import MOST_RUNS, emit_eva
@@ -76,6 +77,14 @@ def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> It
         yield "| kernel | angles |"
         yield "|---|---|"
         yield from rows
+        yield ""
+    wide = [f"`{k.name}` in {one.scalar}" for one in programs for k in one.kernels if works_with_pairs(k)]
+    if wide:
+        yield "## Twice the digits"
+        yield ""
+        yield f"Pairs of numbers: {', '.join(wide)}."
+        yield "What is left of a sum or a product is small because both were computed from the same operands, which"
+        yield "intervals forget: expect alarms throughout."
         yield ""
     kernel = next((kernel for kernel in program.kernels if kernel.name == QUANTITY), None)
     if program.scalar == "float32" and kernel is not None and (why := obstacle(model, kernel)):

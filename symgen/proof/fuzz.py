@@ -13,6 +13,7 @@ from symgen.emit.literals import decimal_text
 from symgen.emit.locals import array_arguments
 from symgen.emit.quantities import BATCHED
 from symgen.emit.render import render
+from symgen.emit.scalars import SUFFIX
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
@@ -47,7 +48,8 @@ class KernelView:
 class FuzzView:
     """Everything the template of the fuzz target prints.
 
-    `given` are members of the struct of sines and cosines, each with whether it is a sine and its place in q.
+    `given` are members of the structs of sines and cosines, each with whether it is a sine, its place in q, and the
+    suffixes of the scalar types whose struct has it.
     """
 
     stem: str
@@ -57,7 +59,7 @@ class FuzzView:
     longest: int
     largest_result: int
     members: tuple[str, ...]
-    given: tuple[tuple[str, bool, int], ...]
+    given: tuple[tuple[str, bool, int, tuple[str, ...]], ...]
     ranges: tuple[tuple[str, str, str], ...]
     kernels: tuple[KernelView, ...]
     held: tuple[str, ...]
@@ -67,13 +69,12 @@ def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
     """`proof/<model>_fuzz.c`, which needs the C of both scalar types; `programs` are float64 and float32."""
     program = programs[0]
     ranges = box(model)
-    ready, given = _prepared(programs), _given(program)
+    ready, (given, trig) = _prepared(programs), _given(model, programs)
     named_members = c_members(model, program)
     members = tuple(named_members[parameter.name] for parameter in model.parameters)
-    trig = tuple(_members(model, given))
     sizes = (*((name, len(ranges[name])) for name in ARRAYS), ("sc", len(trig)))
     named = [(f"{name}[{index}]", pair) for name in (*ARRAYS, "p") for index, pair in enumerate(ranges[name])]
-    forms = {PLAIN: program.kernels, PREPARED: ready, GIVEN: tuple(made.kernel for made in given)}
+    forms = {PLAIN: program.kernels, PREPARED: ready, GIVEN: given}
     stem = model.c_name
     view = FuzzView(
         stem=stem,
@@ -98,15 +99,26 @@ def _prepared(programs: Sequence[Program]) -> tuple[Kernel, ...]:
     return tuple(kernel for kernel in made[0] if kernel.name in common)
 
 
-def _given(program: Program) -> tuple[GivenTrig, ...]:
-    made = (given_trig(kernel) for kernel in program.kernels if kernel.name in BATCHED)
-    return tuple(kernel for kernel in made if kernel is not None)
+def _given(
+    model: Model, programs: Sequence[Program]
+) -> tuple[tuple[Kernel, ...], tuple[tuple[str, bool, int, tuple[str, ...]], ...]]:
+    """The kernels that take sines and cosines in both scalar types, and the members of the structs of these."""
+    made = [tuple(_with_trig(program)) for program in programs]
+    common = set.intersection(*({one.kernel.name for one in kernels} for kernels in made))
+    places = {SUFFIX[p.scalar]: {load.index for one in kernels for load in one.coordinates}
+              for p, kernels in zip(programs, made, strict=True)}
+    members = [
+        (f"{half}_{model.coordinates[index].name}", half == "sin", index,
+         tuple(suffix for suffix, known in places.items() if index in known))
+        for index in sorted(set.union(*places.values()))
+        for half in ("sin", "cos")
+    ]
+    return tuple(one.kernel for one in made[0] if one.kernel.name in common), tuple(members) if common else ()
 
 
-def _members(model: Model, given: Sequence[GivenTrig]) -> Iterator[tuple[str, bool, int]]:
-    for index in sorted({load.index for made in given for load in made.coordinates}):
-        yield f"sin_{model.coordinates[index].name}", True, index
-        yield f"cos_{model.coordinates[index].name}", False, index
+def _with_trig(program: Program) -> Iterator[GivenTrig]:
+    found = (given_trig(kernel) for kernel in program.kernels if kernel.name in BATCHED)
+    return (one for one in found if one is not None)
 
 
 def _kernel(kernel: Kernel, form: str) -> KernelView:

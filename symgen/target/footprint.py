@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,29 +25,31 @@ class Footprint:
     undefined: tuple[str, ...]
 
 
-def footprints(workshop: Workshop, target: Path, functions: Sequence[str]) -> dict[str, Footprint]:
-    """Footprints of functions of one object by name."""
+def footprints(
+    workshop: Workshop, target: Path, functions: Sequence[str], deep: Collection[str] = ()
+) -> dict[str, Footprint]:
+    """Footprints of functions of one object by name; a helper of `deep` ones, which run through steps, calls others."""
     frames = _frames(target.with_suffix(".su"))
-    return {name: _footprint(workshop, target, name, frames) for name in functions}
+    return {name: _footprint(workshop, target, name, frames, 2 if name in deep else 1) for name in functions}
 
 
 def deepest_frame(targets: Iterable[Path]) -> int:
-    """The largest sum of two frames in any of the objects that gcc wrote: a function and a helper of its file."""
-    frames = [sorted(_frames(target.with_suffix(".su")).values())[-2:] for target in targets]
+    """The largest sum of three frames in any of the objects that gcc wrote: a function and two helpers of its file."""
+    frames = [sorted(_frames(target.with_suffix(".su")).values())[-3:] for target in targets]
     return max(map(sum, frames), default=0)
 
 
-def _footprint(workshop: Workshop, target: Path, function: str, frames: Mapping[str, int]) -> Footprint:
+def _footprint(workshop: Workshop, target: Path, function: str, frames: Mapping[str, int], depth: int) -> Footprint:
     part = target.with_suffix(f".{function}.o")
     run([workshop.tool("ld"), *_emulation(workshop), "-r", "--gc-sections", "-e", function, "-o", str(part),
          str(target)])
     code, ram = _sections(workshop, part)
     own, undefined = _symbols(workshop, part)
     linked, _ = _sections(workshop, _linked(workshop, part, function)) if undefined else (code, ram)
-    # helpers do not call each other: the chain is the function and the largest of them
-    helpers = max((frames.get(name, 0) for name in own if name != function), default=0)
+    # only what runs through steps calls other helpers: the chain is the function and the largest of them
+    helpers = sorted(frames.get(name, 0) for name in own if name != function)[-depth:]
     part.unlink()
-    return Footprint(code, linked, ram, frames.get(function, 0) + helpers, undefined)
+    return Footprint(code, linked, ram, frames.get(function, 0) + sum(helpers), undefined)
 
 
 def _symbols(workshop: Workshop, part: Path) -> tuple[set[str], tuple[str, ...]]:

@@ -16,6 +16,7 @@ from symgen.emit.c import emit_c
 from symgen.emit.c_prepared import emit_c_prepared
 from symgen.emit.c_sc import emit_c_sc
 from symgen.ir.kernel import Program, Scalar
+from symgen.ir.wide_functions import with_bodies, works_with_pairs
 from symgen.model.model import Model
 from symgen.processes import ToolError
 from symgen.recorded import as_recorded
@@ -329,7 +330,9 @@ def _sizes(shop: Workshop, build: _Build, entries: Entries) -> dict[str, Footpri
     found: dict[str, Footprint] = {}
     for unit in dict.fromkeys(entry.unit for entry in entries.functions):
         target = shop.object(f"{unit}.c", build.level, build.compiler)
-        found |= footprints(shop, target, [entry.function for entry in entries.functions if entry.unit == unit])
+        here = [entry for entry in entries.functions if entry.unit == unit]
+        deep = {entry.function for entry in here if works_with_pairs(entry.kernel)}
+        found |= footprints(shop, target, [entry.function for entry in here], deep)
     return found
 
 
@@ -348,7 +351,7 @@ def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
     if size is not None and cost.stack >= size.frame + BESIDE:
         wrong.append(f"{where} takes more than {size.frame + BESIDE} bytes of stack")
     if cost.scalar in build.core.native and not uses_library(entry, portable=True):
-        chooses = any(statement.operation in CHOICES for statement in entry.kernel.statements)
+        chooses = any(statement.operation in CHOICES for statement in with_bodies(entry.kernel.statements))
         if cost.fewest != cost.most and not chooses:
             wrong.append(f"{where} takes {cost.fewest} to {cost.most} instructions")
         if size is not None and size.undefined:

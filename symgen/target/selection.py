@@ -18,6 +18,7 @@ from typing import Literal, TypeAlias
 from symgen.emit.operations import count_operations
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.target.cores import Compiler, Core
 
 PORTABLE, LIBM = "portable", "libm"
@@ -26,6 +27,8 @@ FAST, SMALL = "-O2", "-Os"
 WITH_LARGE: tuple[tuple[Compiler, str], ...] = (("gcc", FAST), ("gcc", SMALL), ("clang", FAST))
 MOST_OPERATIONS, MOST_OF_U = 150, 1000
 MOST_IN_PAIRS = 3000
+# With twice the digits a kernel is a table, which compilers have done with at once: it is the emulator that takes time.
+MOST_IN_TABLES = 100_000
 CORES_OF_A_BUILD = 2
 
 Share: TypeAlias = tuple[int, int]  # kernels whose number is the first modulo the second
@@ -85,7 +88,7 @@ def small_kernels(program: Program) -> Program:
 
 def beyond_pairs(double: Program) -> tuple[Kernel, ...]:
     """Kernels in float64 that gcc does not build for a core without a unit for it."""
-    return tuple(kernel for kernel in double.kernels if _size(kernel) > MOST_IN_PAIRS)
+    return tuple(kernel for kernel in double.kernels if not _fits(kernel))
 
 
 def _kept(chosen: Selection, scalar: Scalar, program: Program) -> Iterator[Kernel]:
@@ -96,7 +99,7 @@ def _kept(chosen: Selection, scalar: Scalar, program: Program) -> Iterator[Kerne
             if (_is_small(kernel) and kernel.name == "inverse_dynamics") or _falls_into(chosen.small, number):
                 yield kernel
         elif chosen.large is not None and _falls_into(chosen.large, number):
-            fits = chosen.pairs == "all" or (chosen.pairs == "fitting" and _size(kernel) <= MOST_IN_PAIRS)
+            fits = chosen.pairs == "all" or (chosen.pairs == "fitting" and _fits(kernel))
             if scalar == "float32" or fits:
                 yield kernel
 
@@ -104,6 +107,10 @@ def _kept(chosen: Selection, scalar: Scalar, program: Program) -> Iterator[Kerne
 def _falls_into(part: Share, number: int) -> bool:
     turn, parts = part
     return number % parts == turn
+
+
+def _fits(kernel: Kernel) -> bool:
+    return _size(kernel) <= (MOST_IN_TABLES if works_with_pairs(kernel) else MOST_IN_PAIRS)
 
 
 def _is_small(kernel: Kernel) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -11,8 +12,10 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from shipped import SCALARS, model, programs, sources
+from shipped import ROOT, SCALARS, model, programs, sources
+from wide_record import NAME, recorded
 
+from symgen.cli import main
 from symgen.dynamics.select import derive_quantities
 from symgen.emit.c import emit_c
 from symgen.emit.c_prepared import emit_c_prepared
@@ -159,6 +162,34 @@ def test_short_campaign(tool: Callable[[str], str], tmp_path: Path, name: str, c
     assert all(int(compared) > 100 for _, compared, _ in counted)
 
 
+@pytest.mark.parametrize("compiler", [*CAMPAIGNS])
+def test_short_campaign_with_twice_the_digits_in_one_type(
+    tool: Callable[[str], str], tmp_path: Path, compiler: str
+) -> None:
+    """A kernel that takes sines in float64 and, with twice the digits, none in float32."""
+    path, out = recorded(tmp_path, {"inverse_dynamics": ("float32",), "forward_dynamics": ("float32",)})
+    assert main([str(path), "--only", "c,proof", "--recorded", str(out), "--quiet", "--out", str(out)]) == 0
+    folder = out / NAME
+    assert not (folder / "c" / f"{NAME}_sc_f.c").exists()
+    page = (folder / "proof" / "README.md").read_text()
+    assert "`inverse_dynamics` in float32, `forward_dynamics` in float32" in page.partition("## Twice the digits")[2]
+    made = [f"c/{file.name}" for file in (folder / "c").glob("*.c") if "_batch" not in file.name]
+    options = [*SANITIZE, *CAMPAIGNS[compiler], "-Ic", f"proof/{NAME}_fuzz.c", *made, "-o", "fuzz", "-lm"]
+    run(tool(compiler), *options, folder=folder)
+    told = run(folder / "fuzz", "10000")
+    counted = re.findall(r"^(\w+): (\d+) compared, (\d+) beyond", told, re.MULTILINE)
+    often = {kernel for kernel, compared, _ in counted if int(compared) > 100}
+    assert often >= {"inverse_dynamics", "forward_dynamics"}
+
+
+def test_what_works_with_twice_the_digits_is_told_not_to_be_proved(tmp_path: Path) -> None:
+    path, out = recorded(tmp_path, {"inverse_dynamics": ("float32",)})
+    assert main([str(path), "--only", "c,proof", "--recorded", str(out), "--quiet", "--out", str(out)]) == 0
+    table = [sys.executable, ROOT / "tools" / "proof_table.py", out, tmp_path / "found", NAME]
+    row = run(*table).splitlines()[-1]
+    assert f"| {NAME} | not run: twice the digits | no script |" in row
+
+
 @pytest.mark.parametrize("level", ["-O1", "-O2"])
 def test_no_compiler_divides_by_a_length_of_zero(tool: Callable[[str], str], tmp_path: Path, level: str) -> None:
     """clang takes divisions out of branches: with l_2 = 0 rows have no length, and the processor tells."""
@@ -199,4 +230,18 @@ def test_static_analysis_has_listed_deviations_only(tool: Callable[[str], str], 
     assert set(re.findall(r"\[([\w.-]+)\]$", told, re.MULTILINE)) == {"misra-c2012-15.5"}
     checks = "-checks=-*,bugprone-*,cert-*,clang-analyzer-*,-bugprone-easily-swappable-parameters"
     told = run(tool("clang-tidy"), "--quiet", checks, "c/skate.c", "c/skate_f.c", "--", "-std=c99", folder=tmp_path)
+    assert "warning:" not in told
+
+
+def test_static_analysis_of_kernels_with_twice_the_digits(tool: Callable[[str], str], tmp_path: Path) -> None:
+    """Tables of steps and what runs them deviate from no other rule."""
+    path, out = recorded(tmp_path, {"forward_dynamics": ("float64", "float32")})
+    assert main([str(path), "--only", "c", "--recorded", str(out), "--quiet", "--out", str(out)]) == 0
+    sources = [f"out/{NAME}/c/{NAME}{suffix}.c" for suffix in ("", "_f")]
+    assert all("_steps" in (tmp_path / source).read_text() for source in sources)
+    given = ["--std=c99", "--addon=misra", "--enable=warning,style,performance,portability", "-q", sources[1]]
+    told = run(tool("cppcheck"), *given, folder=tmp_path)
+    assert set(re.findall(r"\[([\w.-]+)\]$", told, re.MULTILINE)) == {"misra-c2012-15.5"}
+    checks = "-checks=-*,bugprone-*,cert-*,clang-analyzer-*,-bugprone-easily-swappable-parameters"
+    told = run(tool("clang-tidy"), "--quiet", checks, *sources, "--", "-std=c99", folder=tmp_path)
     assert "warning:" not in told
