@@ -54,6 +54,8 @@ class Walker:
     def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[State], Ranks]:
         """So many regular states, fewer where they are hard to find; and the generic ranks that were met."""
         points = self.points(parameters, 3 * count + 6)
+        if self._stuck(points, parameters):
+            return [], Ranks(0, 0)
         ranks = Ranks(
             max((self._rank(self._numbers(q, parameters)) for q in points), default=0),
             max((self._reached(self._numbers(q, parameters)) for q in points), default=0),
@@ -85,6 +87,20 @@ class Walker:
             else:
                 here = first
         return points
+
+    def _stuck(self, points: list[Any], parameters: Mapping[str, float]) -> bool:
+        """Whether the walk began where branches meet, rows all but vanish there, and every step led back.
+
+        Rounding gives such rows a rank, and nothing can be compared.
+        """
+        if not points or np.ptp(np.array(points), axis=0).max() > DEPENDENT:
+            return False
+        q = points[0]
+        here, *beside = (
+            np.linalg.norm(np.array(self._numbers(place, parameters).rows, dtype=float).reshape(-1, len(q)), axis=1)
+            for place in (q, q + 0.3, q - 0.2)
+        )
+        return bool((here < DEPENDENT * np.max(beside, axis=0)).any())
 
     def is_regular(self, q: Any, parameters: Mapping[str, float]) -> bool:
         """Whether V is smooth at a configuration, of the dimension that its rows there say.

@@ -294,3 +294,30 @@ def test_a_branch_on_which_inputs_span_less_has_a_status(tmp_path: Path) -> None
     json_file.write_text(text.replace('"alpha": 1', '"alpha": 0'), encoding="utf-8")
     (finding, *_) = Witness(TWO, {"x": 0.3, "y": -1.0}).check(tmp_path / "out/two").findings
     assert finding.kind == "witness: status"
+
+
+def test_a_walk_that_does_not_leave_a_singular_start_compares_nothing() -> None:
+    """Three cranks of a parallelogram along its base: two rows vanish there, and rounding gave them a rank."""
+    text = """model: cranks
+joints:
+  c_0: {type: revolute, axis: z, coordinate: a_0}
+  c_1: {type: revolute, axis: z, at: [0.25, 0, 0], coordinate: a_1}
+  c_2: {type: revolute, axis: z, at: [0.5, 0, 0], coordinate: a_2}
+  bar: {type: revolute, axis: z, parent: c_0, at: [0.32, 0, 0], coordinate: b}
+bodies: {c_0: {mass: 1, inertia: {zz: 0.1}}}
+points:
+  tip_1: {frame: c_1, at: [0.32, 0, 0]}
+  end_1: {frame: bar, at: [0.25, 0, 0]}
+  tip_2: {frame: c_2, at: [0.32, 0, 0]}
+  end_2: {frame: bar, at: [0.5, 0, 0]}
+loops:
+  p_1: {type: point, between: [end_1, tip_1]}
+  p_2: {type: point, between: [end_2, tip_2]}
+inputs: {u: {joint: a_0}}
+configuration: {a_0: 0, a_1: 0, a_2: 0, b: 0}
+"""
+    for start, expected in (({}, 0), ({"a_0": 0.7, "a_1": 0.7, "a_2": 0.7, "b": -0.7}, 3)):
+        witness = Witness(text, start)
+        walker = Walker(witness._system, witness._evaluate, witness._start, Dice("states", 0))
+        found, ranks = walker.states(witness._defaults(), 5)
+        assert (len(found), ranks.constraints) == (5 if expected else 0, expected)
