@@ -14,6 +14,7 @@ from symgen.emit.quantities import meaning
 from symgen.emit.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.sincos import ANGLE_LIMIT
+from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model, Range
 from symgen.naming import macro_name
 from symgen.package.single_header import implementation_macro
@@ -152,6 +153,11 @@ def _counts(program: Program, *others: Program) -> Iterator[str]:
             names = ", ".join(f"`{name}`" for name in sorted(missing))
             yield ""
             yield f"Not in {C_TYPE[other.scalar]}, where verification rejects it: {names}."
+    for one in (program, *others):
+        wide = ", ".join(f"`{kernel.name}`" for kernel in one.kernels if works_with_pairs(kernel))
+        if wide:
+            yield ""
+            yield f"With twice the digits in {C_TYPE[one.scalar]}, which takes ten to thirty times as long: {wide}."
 
 
 def _shape(kernel: Kernel) -> str:

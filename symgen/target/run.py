@@ -104,7 +104,8 @@ class _Bench:
         draft = as_recorded(model, model.outputs, Options(scalars=SCALARS, measured=out))
         programs = {scalar: program for scalar, program in draft.programs.items() if program.kernels}
         self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
-        self.programs, self.notes = programs, draft.notes
+        wide = (f"{one.quantity} works{one.digits.lstrip(',')}" for one in draft.derivations.choices if one.wide)
+        self.programs, self.notes = programs, (*draft.notes, *wide)
         self.known: dict[Selection, _Kernels] = {}
         self.beyond = tuple(kernel.name for kernel in beyond_pairs(programs["float64"]))
         self.published = self._files(programs, emit_c)

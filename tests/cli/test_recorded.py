@@ -89,10 +89,13 @@ def test_a_record_that_is_of_no_use_is_told(
 def test_files_are_made_as_recorded_in_another_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, out = recorded(tmp_path, {"forward_dynamics": ["float32"]})
     other = tmp_path / "other"
-    assert main([str(path), "--only", "c,proof", "--recorded", str(out), "--out", str(other)]) == 0
+    assert main([str(path), "--only", "c,package", "--recorded", str(out), "--out", str(other)]) == 0
     assert "derivation.json" not in capsys.readouterr().err
     assert f"{NAME}_steps_f" in (other / NAME / "c" / f"{NAME}_f.c").read_text()
     assert f"{NAME}_steps" not in (other / NAME / "c" / f"{NAME}.c").read_text()
+    page = (other / NAME / "package" / "README.md").read_text()
+    assert "With twice the digits in float, which takes ten to thirty times as long: `forward_dynamics`." in page
+    assert "digits in double" not in page
     assert main([str(path), "--only", "c", "--recorded", str(tmp_path / "none"), "--out", str(other)]) == 0
     assert "derivation.json is missing: kernels are those that derivation chooses" in capsys.readouterr().err
 

@@ -36,6 +36,7 @@ def test_bits_are_those_of_the_host(tool: Callable[[str], str], tmp_path: Path, 
     report = measured(tool, tmp_path, core)
     assert report.failures == ()
     assert not any("derivation chooses" in note for note in report.notes)
+    assert "forward_dynamics works with twice the digits in float64 and float32" in report.notes
     cells = [c for c in report.cells if c.where == core and c.trig == "portable"]
     assert {c.level for c in cells if c.compiler == "gcc"} == {*LEVELS}
     assert all(c.different == 0 for c in cells)
