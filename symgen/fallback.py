@@ -8,7 +8,7 @@ as many.  Where no way passes in float32, float64 stays.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 from symgen.diagnostics import SymgenBug
 from symgen.draft import REJECTED, Draft
-from symgen.dynamics.alternatives import TIERS, Alternative, Alternatives
+from symgen.dynamics.alternatives import TIERS, Alternative, Alternatives, grouped
 from symgen.dynamics.catalogue import scalars
 from symgen.dynamics.select import Choice, Rejection
 from symgen.garbage import let_go, let_go_and_keep
@@ -63,10 +63,11 @@ class Fallback:
         self._search: Search | None = None
         self.measurements = Measurements()
         self._searched: dict[str, Kernels] = {}
-        self._left: dict[tuple[str, int], Iterator[Alternative]] = {}
+        self._left: dict[tuple[str, int], deque[Alternative]] = {}
         self._passing: defaultdict[str, list[_Candidate]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
-        self._kernels: defaultdict[str, list[Kernels]] = defaultdict(list)
+        # by their hashes: kernels that were rejected need not stay
+        self._seen: defaultdict[str, set[int]] = defaultdict(set)
         self._weighed: set[str] = set()
         self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
         self._widened: set[str] = set()
@@ -89,6 +90,12 @@ class Fallback:
                     made = self._with_margin(made, record, expected)
                     let_go()
         return None if made is draft else made
+
+    def settle(self) -> None:
+        """Lets go of what is hardly needed any more, and derived again where it is."""
+        if self._alternatives is not None:
+            self._alternatives.settle()
+            let_go_and_keep()
 
     def _worst(self, draft: Draft, certificate: Certificate, expected: Expected) -> dict[str, tuple[Fault, ...]]:
         """What is wrong with quantities that nothing speaks against, at states where they are worst."""
@@ -119,7 +126,7 @@ class Fallback:
         self._weighed.add(quantity)
         _check_algebra(kernels["float64"], draft.way(quantity), expected, faults[0].state)
         tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})"))
-        self._kernels[quantity].append(kernels)
+        self._seen[quantity].add(_digest(kernels))
         if known == 0 and all(fault.what.startswith(INACCURATE) for fault in faults):
             self._inaccurate[quantity].append(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
@@ -164,7 +171,7 @@ class Fallback:
         self._weighed.add(quantity)
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
         here = _Candidate(record.largest, tuple(kernels), taken, kernels)
-        self._kernels[quantity].append(kernels)
+        self._seen[quantity].add(_digest(kernels))
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
         for one in self._candidates(draft, quantity, 0, expected):
             if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.way.cost <= most:
@@ -182,13 +189,19 @@ class Fallback:
             return
         if (quantity, tier) not in self._left:
             self._progress(f"other ways to {quantity}")
-            self._left[quantity, tier] = iter(self._alternatives.of(quantity, draft.choice(quantity), tier))
-        for way in self._left[quantity, tier]:
+            self._left[quantity, tier] = deque(self._alternatives.of(quantity, draft.choice(quantity), tier))
+        left = self._left[quantity, tier]
+        while left:
+            way = left.popleft()
             self._progress(f"another way to {quantity}, {way.choice.way}")
             kernels = draft.kernels_along(way, tuple(draft.kernels(quantity)))
-            if kernels not in self._kernels[quantity]:
-                self._kernels[quantity].append(kernels)
-                yield self._measured(draft, way, kernels, expected)
+            if (digest := _digest(kernels)) not in self._seen[quantity]:
+                self._seen[quantity].add(digest)
+                one = self._measured(draft, way, kernels, expected)
+                if not way.grouped and "float64" in one.scalars:
+                    way = grouped(way)
+                    one = self._measured(draft, way, draft.kernels_along(way, tuple(kernels)), expected)
+                yield one
 
     def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
         """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
@@ -200,9 +213,10 @@ class Fallback:
         passing.sort(key=lambda one: (one.largest > MARGIN, one.way.cost))
         single: tuple[Scalar, ...] = ("float32",)
         chosen = [(one.way, single) for one in passing]
-        chosen += [(way, scalars) for way in sorted(self._inaccurate[quantity], key=lambda way: way.cost)]
+        chosen += [(way, scalars) for way in sorted(self._inaccurate.pop(quantity, ()), key=lambda way: way.cost)]
         for way, wide in [one for one in chosen if one[0].cost <= LONGEST][:WIDENED]:
             self._progress(f"twice the digits for {quantity}, {way.choice.way}")
+            way = grouped(way)
             way = replace(way, choice=replace(way.choice, wide=wide))
             yield self._measured(draft, way, draft.kernels_along(way, scalars), expected)
 
@@ -246,6 +260,10 @@ class Fallback:
         if "float64" not in without:
             return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
         return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"
+
+
+def _digest(kernels: Kernels) -> int:
+    return hash(tuple(kernels.items()))
 
 
 def _plain(choice: Choice, kernels: Kernels) -> Kernel | None:

@@ -57,6 +57,7 @@ class Trial:
             certificate = self._certificate(draft)
             other = self.fallback.other(draft, certificate, self.expected)
             if other is None or not other.program.kernels:
+                self.fallback.settle()
                 return other or draft, certificate
             draft = other
 

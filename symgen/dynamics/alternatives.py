@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import replace
 
 from symgen.dynamics.catalogue import BY_NAME, Derived, derive, scalars
 from symgen.dynamics.compared import MOTIONS, quantities_by
@@ -16,11 +17,11 @@ from symgen.dynamics.inverse import AUTOMATIC, FormChoice, InverseDynamics, Offe
 from symgen.dynamics.mechanics import Mechanics
 from symgen.dynamics.pivoted import reflected
 from symgen.dynamics.row_units import in_ordinary_units
-from symgen.dynamics.select import Choice, block_way, finished, ways
+from symgen.dynamics.select import Choice, block_way, complete, ways, with_groups
 from symgen.effort import TooLongError, at_most, worth_trying
 from symgen.graph.forgetting import START
 from symgen.graph.matrix import flatten
-from symgen.graph.traverse import cost
+from symgen.graph.traverse import cost, reached
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -29,18 +30,24 @@ INPUTS = (AUTOMATIC, ("printed", "weighted", "kkt"))
 MOTION = (("minor", "schur_qr", "nullspace", BY_FRAMES, BY_BODIES), ("schur_ldl", "shifted", "kkt"))
 OTHERS = (("minors", "householder", "blocks"), ())
 WEIGHTED = (("minors", "householder", "blocks", "schur_qr", BY_FRAMES), ())
+# Scalars of a way beyond which numbers are grouped in what is taken only: that is most of the work there.
+LONG = 6_000
 ELIMINATIONS = ("schur_qr", BY_FRAMES)
 TIERS = 2
 
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """A quantity along another way, on the graph of `mechanics`; `form` is what is known of it where it is a form."""
+    """A quantity along another way, on the graph of `mechanics`; `form` is what is known of it where it is a form.
+
+    A long one has its numbers `grouped` only once it is known to be of use.
+    """
 
     choice: Choice
     mechanics: Mechanics
     derived: Derived
     form: FormChoice | None = None
+    grouped: bool = True
 
     @property
     def cost(self) -> int:
@@ -57,6 +64,10 @@ class Alternatives:
         self._inverse = inverse
         self._motions: dict[str, tuple[Mechanics, tuple[Derived, ...]]] = {}
         self.too_long: dict[str, list[str]] = defaultdict(list)
+
+    def settle(self) -> None:
+        """Lets go of what several quantities share; it is derived again where it is asked for."""
+        self._motions.clear()
 
     def of(self, quantity: str, taken: Choice, tier: int) -> tuple[Alternative, ...]:
         """The ways of a tier to a quantity, but the one taken, that are valid at all regular states.
@@ -82,7 +93,8 @@ class Alternatives:
 
     def named(self, quantity: str, name: str) -> Alternative | None:
         """One way to a quantity by its name; None where the system does not have it."""
-        return self._named(quantity, name) if any(name in tier for tier in _tiers(quantity)) else None
+        found = self._named(quantity, name) if any(name in tier for tier in _tiers(quantity)) else None
+        return None if found is None else grouped(found)
 
     def _named(self, quantity: str, name: str) -> Alternative | None:
         if quantity == "inverse_dynamics":
@@ -153,9 +165,21 @@ class Alternatives:
         form: str = "",
     ) -> Alternative:
         """A quantity as it is scheduled, on a graph that holds nothing else any more."""
-        made = finished(mechanics, self._generic, derived)
-        _forget_others(mechanics, (made,))
-        return Alternative(Choice(derived.name, way, costs, form), mechanics, made, known)
+        made = complete(mechanics, self._generic, derived)
+        found = Alternative(Choice(derived.name, way, costs, form), mechanics, made, known, grouped=False)
+        if len(reached(scalars(made))) > LONG:
+            _forget_others(mechanics, (made,))
+            return found
+        return grouped(found)
+
+
+def grouped(way: Alternative) -> Alternative:
+    """A way with its numbers grouped."""
+    if way.grouped:
+        return way
+    made = with_groups(way.mechanics, way.derived)
+    _forget_others(way.mechanics, (made,))
+    return replace(way, derived=made, grouped=True)
 
 
 def _forget_others(mechanics: Mechanics, quantities: Sequence[Derived]) -> None:

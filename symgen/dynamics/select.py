@@ -259,11 +259,16 @@ def derive_quantities(
 
 
 def finished(mechanics: Mechanics, generic: Genericity, derived: Derived) -> Derived:
-    """A quantity on the graph of `mechanics` as it is scheduled: ranks tested that other branches may exceed, numbers
-    grouped, told what its reader must know, rows in the units of the file."""
+    """A quantity on the graph of `mechanics` as it is scheduled: complete, and numbers grouped."""
+    return with_groups(mechanics, complete(mechanics, generic, derived))
+
+
+def complete(mechanics: Mechanics, generic: Genericity, derived: Derived) -> Derived:
+    """A quantity with ranks tested that other branches may exceed, told what its reader must know, rows in the units of
+    the file."""
     tested = with_test_of_excess(mechanics, generic, derived)
     tested = in_units_of_the_file(mechanics.graph, mechanics.model, tested)
-    return _with_groups(mechanics, _remarked(tested, generic))
+    return _remarked(tested, generic)
 
 
 def _with_alike_bodies(model: Model, derived: Derived) -> Derived:
@@ -308,7 +313,7 @@ def _form_along(derivation: Derivation | None, quantity: str) -> str:
     return (derivation.acceleration if quantity == MOTIONS[0] else derivation.reaction).name
 
 
-def _with_groups(mechanics: Mechanics, derived: Derived) -> Derived:
+def with_groups(mechanics: Mechanics, derived: Derived) -> Derived:
     """The quantity with numbers multiplied into groups of parameters, where that saves operations."""
     # with the scales of denominators, so that they go on sharing what they have in common with results
     scales = [guard.scale for guard in derived.guards if guard.scale is not None]
