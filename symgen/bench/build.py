@@ -164,7 +164,7 @@ def _done(command: Sequence[str], folder: Path | None = None) -> str:
 
 def _code_bytes(target: Path, functions: set[str]) -> int:
     rows = [line.split() for line in _done(["nm", "-S", "--defined-only", str(target)]).splitlines()]
-    return sum(int(row[1], 16) for row in rows if len(row) == 4 and row[2] in "tT" and _base(row[3]) in functions)
+    return sum(int(row[1], 16) for row in rows if len(row) == 4 and row[2] in "tTr" and _base(row[3]) in functions)
 
 
 def _stack_bytes(usage: Path, functions: set[str]) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -20,6 +21,7 @@ from symgen.emit.operations import count_operations
 from symgen.emit.pairs import pair_names
 from symgen.emit.python import emit_python
 from symgen.emit.scalars import SUFFIX
+from symgen.emit.steps import TABLE, step_names
 from symgen.ir.kernel import Kernel, Literal, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.schedule import schedule
@@ -122,7 +124,7 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
     suffix = SUFFIX[program.scalar]
     stem = model.c_name + suffix
     function = f"{model.c_name}_{kernel.name}{suffix}"
-    entry = f"symgen_{way}_{trig}_{program.scalar}".replace("-", "_").replace(" ", "_")
+    entry = re.sub(r"\W", "_", f"symgen_{way}_{trig}_{program.scalar}")
     defaults = f"{model.c_name}_default_params{suffix}"  # every variant brings its own
     headers = {f"{stem}.h": str(files[f"c/{stem}.h"])}
     source = str(files[f"c/{stem}.c"])
@@ -137,6 +139,7 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
         )
         kept = CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"})
         units = (kept, CUnit(adaptor, is_adaptor=True))
-    functions = (function, *cause_names(kernel, function), *sorted(pair_names(model.c_name, suffix)))
+    helpers = pair_names(model.c_name, suffix) | step_names(model.c_name, suffix) | {TABLE}
+    functions = (function, *cause_names(kernel, function), *sorted(helpers))
     operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}
     return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, functions, operations)

@@ -20,7 +20,8 @@ from symgen.records import dataclass
 
 # Of a step: what it sets and what it reads at most.
 _SET, _READ = 2, 4
-_VALUES, _STEP = "v", "step"
+_VALUES = "v"
+TABLE = _STEP = "step"  # the name of a table inside of a function
 
 
 @dataclass(frozen=True, slots=True)
