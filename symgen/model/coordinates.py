@@ -43,6 +43,7 @@ def read_coordinates(
                 ranges.get(f"{name}_dot", UNIT_RANGE),
                 ranges.get(f"{name}_ddot", UNIT_RANGE),
                 key.span,
+                name in ranges,
             )
         )
     for joint in joints:
@@ -50,8 +51,9 @@ def read_coordinates(
         usual = ANGLE_RANGE if is_angle else UNIT_RANGE
         name = joint.name
         rates = ranges.get(f"{name}_dot", UNIT_RANGE), ranges.get(f"{name}_ddot", UNIT_RANGE)
+        where = ranges.get(name, usual)
         coordinates.append(
-            Coordinate(name, joint.unit, joint.description, is_angle, ranges.get(name, usual), *rates, joint.span)
+            Coordinate(name, joint.unit, joint.description, is_angle, where, *rates, joint.span, name in ranges)
         )
     return tuple(coordinates)
 

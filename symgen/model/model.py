@@ -32,6 +32,7 @@ class Coordinate:
     rate_range: Range
     acceleration_range: Range
     span: Span | None = None
+    has_range: bool = True  # told, not taken for granted
 
     @property
     def rate(self) -> str:

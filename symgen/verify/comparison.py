@@ -18,6 +18,7 @@ Results: TypeAlias = Mapping[str, Sequence[Outcome]]
 INFINITE = float("inf")
 # How faults begin that are a matter of digits.
 INACCURATE = "error"
+VIOLATES = "violates"
 
 
 def compare(quantity: str, target: str, expected: Sequence[Expectation], outcomes: Sequence[Outcome]) -> ErrorRecord:

@@ -8,6 +8,7 @@ from typing import TypeAlias
 from symgen.activity import each, working
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
+from symgen.verify.modes import modes
 from symgen.verify.reference import Reference
 from symgen.verify.states import USUAL_STATES, Sample, affordable_states, rounded, sample_states
 from symgen.verify.tolerance import Expectation, expectations
@@ -28,7 +29,9 @@ class Expected:
         self._quantities = tuple(quantities)
         self._progress = progress
         count = states if states > USUAL_STATES else affordable_states(self.reference, quantities, states)
-        doubles = sample_states(self.reference, quantities, count)
+        with working("assembly modes"):
+            self.modes = modes(self.reference)
+        doubles = sample_states(self.reference, quantities, count, modes=self.modes)
         self._samples: dict[Scalar, tuple[Sample, ...]] = {"float64": doubles}
         self._values: dict[Scalar, list[dict[str, Expectation]]] = {}
 

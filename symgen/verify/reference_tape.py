@@ -152,6 +152,7 @@ class Replay:
     inputs: Callable[[Sequence[Any]], tuple[Any, ...]]
     groups: tuple[tuple[str, Callable[[Sequence[Any]], Any], Callable[[Sequence[Any]], Any] | None], ...]
     outputs: Callable[[Sequence[Any]], tuple[Any, ...]]
+    operations: int
 
     def run(self, inputs: Sequence[Any], functions: Mapping[str, Callable[..., Any]] | None = None) -> tuple[Any, ...]:
         """The outputs, in balls of the working precision; `inputs` are balls.
@@ -204,6 +205,7 @@ def replay_of(tape: Tape, outputs: Iterable[Register]) -> Replay:
         picker([tape.records[r][1] for r in inputs]),
         tuple(groups),
         picker([place[r] for r in wanted]),
+        sum(map(len, kinds.values())),
     )
 
 

@@ -1,5 +1,7 @@
 """Regular configurations on the constraint manifold V: from starts all over the ranges, then by steps along V.
 
+Parameters are drawn from their ranges and, in two of five states, those of the file: lengths that are equal or zero
+there make a mechanism special, and users start with them.
 Where a mechanism moves there are as many as are asked for, however little of V the starts reach: from one that is
 known a step along an admissible direction, closed again, leads to the next.
 """
@@ -32,6 +34,10 @@ TYPICAL_POINTS = 8
 PROJECTED = ("admissible_velocity", "admissible_acceleration")
 # Steps along V, in widths of the ranges.
 LONGEST_STEP, SHORTEST_STEP = 0.2, 1e-5
+# Of so many starts one is drawn where loops have to be closed; others lie beside the state before.
+FRESH = 4
+# Of so many starts one lies in an assembly mode, and in some the parameters are those of the file.
+CYCLE, MODE, DEFAULTS = 5, 2, (2, 3)
 # Starts of the parts of a system that lead elsewhere than to regular states, while the others stay.
 ATTEMPTS = 12
 CLOSED, BRANCH, TURNED = "do not close", "lie on other branches", "lie turns outside of the ranges"
@@ -63,8 +69,10 @@ class _Sizes:
 class Search:
     """The search for `count` regular states of a model, the same for the same seed; `told` says what it met."""
 
-    def __init__(self, reference: Reference, count: int, seed: int) -> None:
-        self._reference, self._system = reference, reference.system
+    def __init__(
+        self, reference: Reference, count: int, seed: int, modes: Sequence[Sequence[float]] = ()
+    ) -> None:
+        self._reference, self._system, self._modes = reference, reference.system, modes
         self._count = count
         self._generator = random.Random(f"states {seed}")
         self._points = starts(self._system, self._generator, 6 * count + 60)
@@ -87,9 +95,14 @@ class Search:
         """Regular states, and whether the coordinates lie in their ranges."""
         last: list[Any] | None = None
         for index, point in enumerate(self._points):
-            parameters = self._parameters(vary=index > 0)
-            moving = last is not None and index % 4 and self._system.r_geometric
-            found = self._found(self._step(last) if moving and last is not None else point, parameters)
+            parameters = self._parameters(vary=index > 0 and index % CYCLE not in DEFAULTS)
+            if self._modes and index % CYCLE == MODE:
+                start: Sequence[Any] = self._modes[index // CYCLE % len(self._modes)]
+            elif last is not None and index % FRESH and self._system.r_geometric:
+                start = self._step(last)
+            else:
+                start = point
+            found = self._found(start, parameters)
             if found is not None:
                 last = found[0]
                 yield found[1:]

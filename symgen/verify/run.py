@@ -19,7 +19,7 @@ from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.verify.batch import run_batch
 from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, Fault, InvariantRecord
-from symgen.verify.comparison import Results, check_laws, compare, faults_of
+from symgen.verify.comparison import VIOLATES, Results, check_laws, compare, faults_of
 from symgen.verify.compile import (
     CFunction,
     Compilation,
@@ -141,7 +141,7 @@ def _verified(
         for record in records:
             faults += faults_of(record, made[record.quantity], samples[scalar])
         faults += [
-            Fault(f"violates {law.name}: {law.largest:.3g} times the allowed defect", law.quantity, target)
+            Fault(f"{VIOLATES} {law.name}: {law.largest:.3g} times the allowed defect", law.quantity, target)
             for law in found
             if not law.largest <= 1
         ]

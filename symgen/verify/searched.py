@@ -26,7 +26,7 @@ from symgen.verify.states import Sample, rounded
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
 
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
-DRAWN, ALIGNED = 512, 256
+DRAWN, ALIGNED, IN_MODES = 512, 256, 256
 NUMBERS = 4_000_000
 # Of the worst of them, how many go further, and in how many directions.
 KEPT, DIRECTIONS = 32, 8
@@ -81,8 +81,12 @@ class Search:
 
     def _estimated(self, kernel: Kernel) -> tuple[Nearby, Lanes]:
         """States, and the rounding errors that are estimated there."""
-        count = min(DRAWN + ALIGNED, NUMBERS // (len(kernel.statements) + 1))
-        states = self._drawn.only(slice(max(len(self._surroundings.samples), count)))
+        count = NUMBERS // (len(kernel.statements) + 1)
+        states = self._drawn
+        if len(states) > count:
+            samples = len(self._surroundings.samples)
+            others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
+            states = states.only(np.append(np.arange(samples), others))
         units = estimates(kernel, states.parts)
         if units.max() > DOUBTFUL:
             worst = states.only(_worst(units, KEPT))
@@ -93,12 +97,14 @@ class Search:
 
     @cached_property
     def _surroundings(self) -> Surroundings:
-        return Surroundings(self._expected.reference, self._expected.samples("float64"))
+        expected = self._expected
+        return Surroundings(expected.reference, expected.samples("float64"), expected.modes)
 
     @cached_property
     def _drawn(self) -> Nearby:
         around = self._surroundings
-        return joined(joined(around.samples, around.aligned(ALIGNED)), around.drawn(DRAWN))
+        found = joined(around.samples, around.aligned(ALIGNED))
+        return joined(joined(found, around.in_modes(IN_MODES)), around.drawn(DRAWN))
 
     @cached_property
     def _settling(self) -> Settling:

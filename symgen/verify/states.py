@@ -47,8 +47,14 @@ def affordable_states(reference: Reference, quantities: Sequence[str], wanted: i
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
 
 
-def sample_states(reference: Reference, quantities: Sequence[str], count: int, seed: int = 0) -> tuple[Sample, ...]:
-    """`count` states (fewer when V is hard to find), rounded to float64.
+def sample_states(
+    reference: Reference,
+    quantities: Sequence[str],
+    count: int,
+    seed: int = 0,
+    modes: Sequence[Sequence[float]] = (),
+) -> tuple[Sample, ...]:
+    """`count` states (fewer when V is hard to find), rounded to float64; one in five starts at one of the `modes`.
 
     Rates and accelerations are projected onto the constraints in the even ones and arbitrary in the others; every
     fourth is moved off V by about 1e-3, as measured states are, unless the constraints depend on each other or the
@@ -58,7 +64,7 @@ def sample_states(reference: Reference, quantities: Sequence[str], count: int, s
     with precision(SAMPLING_BITS):
         inside: list[Sample] = []
         outside: list[Regular] = []
-        search = Search(reference, count, seed)
+        search = Search(reference, count, seed, modes)
         with working("", count) as work:
             for found_state, in_range in search.candidates():
                 if not in_range:

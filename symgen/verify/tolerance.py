@@ -2,18 +2,25 @@
 
 |y - y*| <= 16 (d + eps |y*|), where d is the largest |y*(x + dx) - y*| over 8 random dx with |dx_i| = eps |x_i| in
 all inputs, run-time parameters and literals of the model.  So d holds the condition of the quantity at this state.
+
+Literals that the scalar type holds are no more rounded than small integers are, such as the ones in the direction of a
+slide along [1, 1, 0]: it stays parallel to the axis of its joint.  Moved they would make an over-constrained linkage
+count as ill-conditioned where nothing that is rounded makes it so.
 """
 
 from __future__ import annotations
 
 import random
+import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from flint import arb, arb_mat
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
+from symgen.model.expression import Pi
 from symgen.verify.reference import Reference, State
 from symgen.verify.reference_linear import norm
 from symgen.verify.reference_tape import ball, precision
@@ -68,7 +75,8 @@ def expectations(
 def perturbed(reference: Reference, state: State, scalar: Scalar, signs: Sequence[int]) -> tuple[State, list[Any]]:
     """The state and the literals with every number x moved by +-eps |x| (rounded to the working precision).
 
-    `signs` are 1 for outwards and 0 for inwards, one a number: q, q_dot, q_ddot, u, parameters, literals.
+    `signs` are 1 for outwards and 0 for inwards, one a number: q, q_dot, q_ddot, u, parameters, literals.  Literals
+    that the scalar type holds stay as they are.
     """
     eps = ball(UNIT_ROUNDOFF[scalar])
     factors = (arb(1) - eps, arb(1) + eps)
@@ -78,7 +86,19 @@ def perturbed(reference: Reference, state: State, scalar: Scalar, signs: Sequenc
         return tuple((ball(x) * factors[next(sign)]).mid() for x in values)
 
     parts = [move(part) for part in _parts(state)]
-    return State(*parts), list(move(reference.literals()))
+    held = [not isinstance(literal, Pi) and _is_held(literal.value, scalar) for literal in reference.system.literals]
+    exact = reference.literals()
+    literals = [x if stays else moved for stays, x, moved in zip(held, exact, move(exact), strict=True)]
+    return State(*parts), literals
+
+
+def _is_held(value: Fraction, scalar: Scalar) -> bool:
+    """Whether the scalar type has this number."""
+    try:
+        nearest = float(value)
+        return Fraction(nearest if scalar == "float64" else struct.unpack("f", struct.pack("f", nearest))[0]) == value
+    except OverflowError:
+        return False
 
 
 def _parts(state: State) -> tuple[Sequence[Any], ...]:

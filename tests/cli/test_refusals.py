@@ -40,7 +40,7 @@ def test_where_no_states_are_found_the_row_is_named(
 ) -> None:
     """Loading found a configuration, and verification finds no others."""
 
-    def none(*_: object) -> None:
+    def none(*_: object, **__: object) -> None:
         raise VerificationError("steep: only 0 regular configurations were found; give a start")
 
     monkeypatch.setattr("symgen.verify.expected.sample_states", none)
