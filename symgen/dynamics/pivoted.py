@@ -1,9 +1,10 @@
 """The null space of B where rows depend on each other: Householder reflections that pivot by arithmetic.
 
-rho reflections, rho = the generic rank, each towards the row of which most of its own length is left beside the
-directions already taken (Golub and Van Loan, 5.4; the selection is a product with 0 or 1 made by copysign, hence the
-same code for every state).  What rounding leaves of a long row that follows from others may be longer than a short row
-of its own.  A fixed choice of rows would be a parametrisation; this one follows the configuration.  What is left of the
+rho reflections, rho = the generic rank, each towards the row of which most is left beside the directions already taken,
+times the share that this is of its own length (Golub and Van Loan, 5.4; the selection is a product with 0 or 1 made by
+copysign, hence the same code for every state).  By length alone, what rounding leaves of a long row that follows from
+others may be longer than a short row of its own; by shares alone, a row that is all but 0 here, and of which rounded
+angles leave few digits, is as good as the longest.  A fixed choice of rows would be a parametrisation; this one follows the configuration.  What is left of the
 other rows, zero on V and of the size of the drift beside it, is dropped.  With B = L Q_1^T, L of full column rank,
 B^+ = Q_1 L^+ comes from a second factorisation, of L (complete orthogonal decomposition).
 
@@ -38,7 +39,8 @@ class PivotedReflections(Reflections):
         for k in range(rank):
             left = [dot(graph, row[k:], row[k:]) for row in remaining]
             shares = [graph.function("ratio_or_zero", pair) for pair in zip(left, squares, strict=True)]
-            chosen = longest(graph, shares if own else left)
+            # long rows are known to more digits than short ones that hold the same
+            chosen = longest(graph, [a * b for a, b in zip(left, shares, strict=True)] if own else left)
             pairs = list(zip(chosen, remaining, strict=True))
             tail = tuple(graph.sum(c * row[i] for c, row in pairs) for i in range(k, n))
             self.lengths.append(graph.sum(c * square for c, square in zip(chosen, squares, strict=True)))

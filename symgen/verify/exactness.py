@@ -101,6 +101,20 @@ def exact_outputs(kernel: Kernel, state: State) -> list[Any]:
     return [operand(which) for which in kernel.outputs]
 
 
+def _ratio_or_zero(a: Any, b: Any) -> Any:
+    """a / b, and 0 for b = 0; what is either of two numbers by last digits, as x / x at x = 0, is all between them."""
+    if b == 0:
+        return arb(0)
+    return arb(0.5, 0.5) if a is b and b.contains(0) else a / b
+
+
+def _copysign(a: Any, b: Any) -> Any:
+    """Raises ZeroDivisionError where a division by what may be 0 has left no sign."""
+    if not b.is_finite():
+        raise ZeroDivisionError
+    return abs(a) if b >= 0 else -abs(a)
+
+
 EXACT: dict[str, Callable[..., Any]] = {
     "add": operator.add,
     "sub": operator.sub,
@@ -109,8 +123,8 @@ EXACT: dict[str, Callable[..., Any]] = {
     "neg": operator.neg,
     "abs": abs,
     "sqrt": arb.sqrt,
-    "copysign": lambda a, b: abs(a) if b >= 0 else -abs(a),
-    "ratio_or_zero": lambda a, b: arb(0) if b == 0 else a / b,
+    "copysign": _copysign,
+    "ratio_or_zero": _ratio_or_zero,
     "min": lambda a, b: a if a < b else b,
     "max": lambda a, b: a if a > b else b,
     "tan": arb.tan,

@@ -9,10 +9,12 @@ import pytest
 from symgen.dynamics.select import derive_quantities
 from symgen.ir.kernel import Kernel
 from symgen.ir.schedule import schedule
+from symgen.ir.wide import widened
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
+from symgen.verify.interpreted import measured
 
 # A crank, one that turns with it and one that turns with that: two rows say what the others do, on V alone.
 CRANKS = """
@@ -69,3 +71,36 @@ def test_another_function_is_told(name: str, quantity: str) -> None:
     first, second, *others = kernel.outputs
     exchanged = replace(kernel, outputs=(second, first, *others))
     assert "differs from the reference by" in difference(exchanged, expected)
+
+
+# Wheels that turn to one heading: of each pair of rows one is all but 0 somewhere, and shares of lengths are all equal.
+HEADINGS = """
+model: headings
+coordinates: {a: {unit: rad}, b: {unit: rad}, c: {unit: rad}, d: {unit: rad}, e: {unit: rad}}
+parameters: {l: 0.32, J: 0.25}
+kinetic_energy: J/2*(a_dot**2 + b_dot**2 + c_dot**2 + d_dot**2 + e_dot**2)
+constraints:
+  geometric:
+    x_1: l*cos(a) - l*cos(b)
+    y_1: l*sin(a) - l*sin(b)
+    x_2: l*cos(a) - l*cos(c)
+    y_2: l*sin(a) - l*sin(c)
+    x_3: l*cos(c) - l*cos(d)
+    y_3: l*sin(c) - l*sin(d)
+    x_4: l*cos(a) - l*cos(e)
+    y_4: l*sin(a) - l*sin(e)
+inputs: {M: {acts_on: {c: 1}}}
+configuration: {a: -2.83, b: -2.83, c: -2.83, d: -2.83, e: -2.83}
+"""
+
+
+def test_pivots_that_are_equal_choose_by_what_is_known_best_and_are_the_same_with_twice_the_digits() -> None:
+    model = load_text(HEADINGS, "headings.yaml")
+    derivations = derive_quantities(model, ("nullspace_projector",), {"nullspace_projector": "householder"})
+    programs = schedule(derivations.mechanics, derivations.quantities, ("float64", "float32"))
+    expected = Expected(model, ("nullspace_projector",), 64, lambda _: None)
+    for scalar, program in programs.items():
+        (kernel,) = program.kernels
+        assert measured(kernel, program.sincos, scalar, expected)[1] is None
+        assert difference(kernel, expected) == ""
+        assert difference(widened(kernel, scalar), expected) == ""
