@@ -4,9 +4,10 @@ rho reflections, rho = the generic rank, each towards the row of which most is l
 times the share that this is of its own length (Golub and Van Loan, 5.4; the selection is a product with 0 or 1 made by
 copysign, hence the same code for every state).  By length alone, what rounding leaves of a long row that follows from
 others may be longer than a short row of its own; by shares alone, a row that is all but 0 here, and of which rounded
-angles leave few digits, is as good as the longest.  A fixed choice of rows would be a parametrisation; this one follows the configuration.  What is left of the
-other rows, zero on V and of the size of the drift beside it, is dropped.  With B = L Q_1^T, L of full column rank,
-B^+ = Q_1 L^+ comes from a second factorisation, of L (complete orthogonal decomposition).
+angles leave few digits, is as good as the longest.  A fixed choice of rows would be a parametrisation; this one follows
+the configuration.  What is left of the other rows, zero on V and of the size of the drift beside it, is dropped.  With
+B = L Q_1^T, L of full column rank, B^+ = Q_1 L^+ comes from a second factorisation, of L (complete orthogonal
+decomposition).
 
 Rows of what inputs do along the constraints are no rows of their own: they are components in an orthonormal basis, one
 of which may vanish at any configuration.  Of those the longest is taken as it is.
