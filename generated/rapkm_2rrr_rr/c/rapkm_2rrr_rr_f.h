@@ -40,7 +40,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                  73    128      1      0      6      0
- * minimal_coriolis_matrix           11964   4899      4      0      6      0
+ * minimal_coriolis_matrix             338    539      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix               25     56      1      0      6      0
@@ -162,7 +162,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_applied_force_f(const float q[6], c
 /* Ḡ: mass matrix in the independent velocities, (9); 2 x 2, row-major */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float G_bar[4]);
 
-/* C̄: Coriolis matrix in the independent velocities, (9); works with twice the digits; 2 x 2, row-major */
+/* C̄: Coriolis matrix in the independent velocities, (9); 2 x 2, row-major */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_bar[4]);
 
 /* Q̄: potential forces on the independent velocities, (9); length 2 */
