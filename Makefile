@@ -74,12 +74,12 @@ ZOO_FIRST ?= 0
 ZOO_DRAWS ?= 1000
 ZOO_SECONDS ?= 0
 zoo: $(VENV)/installed
-	$(BIN)/python -m symgen.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --draws $(ZOO_DRAWS) --seconds $(ZOO_SECONDS) \
+	$(BIN)/python -m symgen.laboratory.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --draws $(ZOO_DRAWS) --seconds $(ZOO_SECONDS) \
 	    --out build/zoo
 
 # A failing draw made small and kept as a test: make zoo-case ZOO_SEED=3 ZOO_FIRST=14 CASE=name
 zoo-case: $(VENV)/installed
-	$(BIN)/python -m symgen.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --store tests/zoo/cases/$(CASE).yaml --out build/zoo
+	$(BIN)/python -m symgen.laboratory.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --store tests/zoo/cases/$(CASE).yaml --out build/zoo
 
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed

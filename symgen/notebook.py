@@ -59,7 +59,7 @@ class Quantities(Mapping[str, Value], Generic[Value]):
         return "\n".join([f"{self._kind} by quantity name:", *lines])
 
 
-class Derived:
+class NotebookModel:
     """A model and what was derived from it: `model`, `sympy`, `casadi`, `closed_forms`."""
 
     def __init__(self, model: Model) -> None:
@@ -109,9 +109,9 @@ class Derived:
         )
 
 
-def derive(model: str | Path | Model) -> Derived:
+def derive(model: str | Path | Model) -> NotebookModel:
     """The quantities of a model file or model; ModelError with every mistake of the file, OSError without a file."""
-    return Derived(model if isinstance(model, Model) else load_model(Path(model)))
+    return NotebookModel(model if isinstance(model, Model) else load_model(Path(model)))
 
 
 def _chooses(form: ClosedForm) -> bool:

@@ -14,39 +14,39 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symgen.activity import working
-from symgen.dense_motion import dense_motions
+from symgen.backends.literals import LiteralRangeError
+from symgen.backends.operations import count_operations
 from symgen.diagnostics import ModelError, Notice
-from symgen.draft import Draft, draft_of
-from symgen.dynamics.catalogue import BY_NAME
-from symgen.dynamics.everything import OF_ALL
-from symgen.dynamics.forms.motions import BY_FRAMES
-from symgen.dynamics.inverse import FormChoice
-from symgen.dynamics.select import Derivations, short_of_inputs
-from symgen.emit.literals import LiteralRangeError
-from symgen.emit.operations import count_operations
-from symgen.files import files_of, is_c, sources_of
-from symgen.garbage import let_go_and_keep
+from symgen.generation.dense_motion import dense_motions
+from symgen.generation.draft import Draft, draft_of
+from symgen.generation.files import files_of, is_c, sources_of
+from symgen.generation.refusals import beyond_range, no_states
+from symgen.generation.results import FORMS, LargestError, Options, Result, Summary, WrongUseError
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.wide_functions import works_with_pairs
+from symgen.methods.forward_dynamics.motions import BY_FRAMES
+from symgen.methods.selection import MethodChoice
+from symgen.model.expressions.names import did_you_mean
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.model.names import did_you_mean
-from symgen.refusals import beyond_range, no_states
-from symgen.results import FORMS, LargestError, Options, Result, Summary, WrongUseError
+from symgen.quantities.catalogue import BY_NAME
+from symgen.quantities.everything import OF_ALL
+from symgen.quantities.select import Selection, short_of_inputs
+from symgen.runtime.activity import working
+from symgen.runtime.garbage import let_go_and_keep
 
 if TYPE_CHECKING:
-    from symgen.background import Background, Receive
-    from symgen.fallback import Fallback
+    from symgen.generation.fallback import Fallback
     from symgen.report.facts import Facts, ReportFiles
     from symgen.report.proof import ProofFacts
     from symgen.report.targets import TargetCore
+    from symgen.runtime.background import Background, Receive
     from symgen.verify.certificate import Certificate
     from symgen.verify.expected import Expected
 
 # Measured on a chain of 16 links: 6336 operations in 45.6 kB with the single precision of a Cortex-M4, gcc -O2.
 BYTES_AN_OPERATION = 7
-# What a step of `emit/steps.py` takes in its table.
+# What a step of `backends/c/steps.py` takes in its table.
 BYTES_A_STEP = 14
 LARGEST_CODE = 64_000
 # Scalars, at half a kilobyte each: derivations of fewer leave little behind.
@@ -78,7 +78,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 if len(draft.derivations.mechanics.graph) > LARGE_GRAPH:
                     let_go_and_keep()
                 if options.verify and {"c", "python"} & {*options.parts} and _is_long(draft.programs):
-                    from symgen.trial import Trial
+                    from symgen.generation.trial import Trial
 
                     with _literals_in_range(path):
                         trial = Trial(path, draft, options, progress)
@@ -96,7 +96,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 raise ModelError(str(path), path.read_text(encoding="utf-8"), (no_states(draft.model, certificate),))
             other = None
             if certificate is not None and expected is not None:
-                from symgen.fallback import Fallback
+                from symgen.generation.fallback import Fallback
 
                 fallback = fallback or Fallback(options, progress)
                 other = fallback.other(draft, certificate, expected)
@@ -146,8 +146,8 @@ def explain(
     `forms` are those whose validity is told, by quantity.  Kernels are those of OUT/<model>, where a run has verified
     some.
     """
-    from symgen.closedform.limits import TooLargeError
-    from symgen.explain import forms_text, overview, quantity_text
+    from symgen.closedform.algebra.limits import TooLargeError
+    from symgen.generation.explain import forms_text, overview, quantity_text
     from symgen.report.gather import gather
 
     if quantity is not None and quantity not in BY_NAME:
@@ -157,7 +157,7 @@ def explain(
     if quantity is not None:
         model = replace(model, outputs=(*model.outputs, quantity))
     progress("deriving")
-    from symgen.recorded import as_recorded
+    from symgen.generation.recorded import as_recorded
 
     draft = as_recorded(model, ("all",), Options(scalars=("float64",), forms=forms or {}, measured=out))
     progress("closed forms")
@@ -173,12 +173,12 @@ def explain(
     return "\n".join([*parts, *(f"\n{notice}" for notice in notices)])
 
 
-def _compared(draft: Draft, quantity: str) -> FormChoice | None:
+def _compared(draft: Draft, quantity: str) -> MethodChoice | None:
     """What is known of the forms of a quantity; of the one asked for alone, where one was asked for."""
     derivations = draft.derivations
     if quantity == "inverse_dynamics":
         return derivations.form
-    from symgen.dynamics.by_name import forms_compared
+    from symgen.methods.by_name import forms_compared
 
     taken = {choice.quantity: choice.form for choice in derivations.choices}
     named = dict(derivations.named)
@@ -202,7 +202,7 @@ def _unknown_quantity(name: str) -> WrongUseError:
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:
     if not options.as_recorded or options.measured is None:
         return draft_of(model, outputs, options)
-    from symgen.recorded import as_recorded
+    from symgen.generation.recorded import as_recorded
 
     return as_recorded(model, outputs, options)
 
@@ -265,7 +265,7 @@ def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
     # articulated inertias are taken only where G is definite, and then no form fails
     moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]
     if moving:
-        from symgen.dynamics.by_name import failing_motions
+        from symgen.methods.by_name import failing_motions
 
         for name, why in failing_motions(derivations.mechanics):
             asked = " ".join(f"--form {quantity}={name}" for quantity in moving)
@@ -274,14 +274,14 @@ def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
 
 
 def _reporting(model: Model, measured: bool) -> Background[ReportFiles]:
-    from symgen.background import Background
-    from symgen.emit import render
+    from symgen.backends import render
+    from symgen.runtime.background import Background
 
     render.load()
     return Background(lambda receive: _report(model, receive, measured))
 
 
-def _forms(derivations: Derivations, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+def _forms(derivations: Selection, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
     """Whether forms that were asked for are not valid at every regular state; if not, those of u that `failed`."""
     form = derivations.form
     asked = ((("u", form),) if form is not None else ()) + derivations.named

@@ -13,10 +13,10 @@ from collections.abc import Sequence
 from itertools import zip_longest
 from typing import TextIO
 
-from symgen.activity import told
-from symgen.clock import Clock
 from symgen.diagnostics import Notice
-from symgen.results import Summary
+from symgen.generation.results import Summary
+from symgen.runtime.activity import told
+from symgen.runtime.clock import Clock
 
 _ERROR_NOTE = "  * in units of what rounding the inputs and the result does to it"
 _CLEAR_LINE = "\r\x1b[K"

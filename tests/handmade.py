@@ -20,7 +20,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
-from symgen.model.expression import Binary, Call, Expression, Name, Number, Pi
+from symgen.model.expressions.expression import Binary, Call, Expression, Name, Number, Pi
 from symgen.model.model import Coordinate, Input, Model, Parameter
 
 

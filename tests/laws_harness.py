@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
-from symgen.dynamics.select import Derivations, derive_quantities
 from symgen.ir.interpret import Interpreter, round_float32
 from symgen.ir.kernel import Kernel, Program, Scalar, Status
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify.reference import Reference, State
-from symgen.verify.reference_system import parameters_from
+from symgen.quantities.select import Selection, derive_quantities
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.reference.system import parameters_from
 from symgen.verify.tolerance import FACTOR, expectations
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -29,7 +29,7 @@ class System:
 
     def __init__(self, text: str, outputs: Sequence[str] = ("all",)) -> None:
         self.model: Model = load_text(text, "laws.yaml")
-        self.derivations: Derivations = derive_quantities(self.model, outputs)
+        self.derivations: Selection = derive_quantities(self.model, outputs)
         self.reference = Reference(self.model)
         self._programs: dict[Scalar, Program] = {}
 

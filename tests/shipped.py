@@ -5,18 +5,18 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.c import emit_c
-from symgen.emit.c_batch import emit_c_batch
-from symgen.emit.c_prepared import emit_c_prepared
-from symgen.emit.c_sc import emit_c_sc
-from symgen.emit.python import emit_python
+from symgen.backends.c.batch import emit_c_batch
+from symgen.backends.c.given_sines import emit_c_sc
+from symgen.backends.c.plain import emit_c
+from symgen.backends.c.prepared import emit_c_prepared
+from symgen.backends.python.module import emit_python
+from symgen.generation.results import Options
 from symgen.ir.kernel import Program, Scalar
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.pipeline import generate
-from symgen.results import Options
+from symgen.quantities.select import derive_quantities
 
 ROOT = Path(__file__).resolve().parent.parent
 ALL = tuple(sorted(path.stem for path in (ROOT / "models").glob("*.yaml")))

@@ -9,7 +9,7 @@ import shipped
 from generated_checksums import CHECKSUMS, checksums_text
 from kernel_growth import grown
 
-from symgen.write import compare, is_measured
+from symgen.output.write import compare, is_measured
 
 GENERATED = shipped.ROOT / "generated"
 # Kept for reading and comparing.  What is packed for build systems is a copy of c/, and is left out.

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from symgen.cli import main
+from symgen.cli.main import main
 
 # A swing hangs from a runner on a sloping rail: one row, two degrees of freedom, quotients and sines, a spring by
 # a table of numbers.

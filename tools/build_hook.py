@@ -16,7 +16,7 @@ class TemplatesHook(BuildHookInterface[Any]):
         del version, build_data
         sys.path.insert(0, self.root)
         try:
-            from symgen.emit.render import compile_all
+            from symgen.backends.render import compile_all
 
             compile_all()
         finally:

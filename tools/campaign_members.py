@@ -37,7 +37,7 @@ def all_members(root: Path) -> tuple[Member, ...]:
         Member("mechanisms", "witnesses", ((*PYTEST, "tests/mechanisms", "-m", "mechanisms or not mechanisms"),),
                (*PRODUCT, "tests/mechanisms"), ("gcc",)),
         Member("trig", "every_float32", ((*PYTEST, "tests/toolchain/test_portable_pair.py", "-k", "everywhere"),),
-               ("symgen/ir", "symgen/emit", "templates/c", "tests/toolchain"), ("gcc",),
+               ("symgen/ir", "symgen/backends", "templates/c", "tests/toolchain"), ("gcc",),
                environment=(("SYMGEN_TRIG_STRIDE", "1"),)),
         *(_bench(f"models/{name}.yaml", name) for name in BY_ENERGIES),
         _bench("docs/bench/rapkm_without_payload.yaml", "rapkm_without_payload"),
@@ -63,7 +63,8 @@ def _target(name: str) -> Member:
         return {"passed": found["passed"], "builds": len(cells), "different": sum(c["different"] for c in cells)}
 
     command = (*SYMGEN, "target", f"models/{name}.yaml", "--cpu", "all", "--quiet")
-    return Member("firmware", name, (command,), (*_made(name), "symgen/target", "templates/target"), CORES, result)
+    code = ("symgen/laboratory/target", "templates/target")
+    return Member("firmware", name, (command,), (*_made(name), *code), CORES, result)
 
 
 def _proof(name: str) -> Member:
@@ -84,7 +85,7 @@ def _stress(name: str) -> Member:
         return {"failures": found["failures"], "rule": [list(one) for one in counts]}
 
     command = (*SYMGEN, "stress", f"models/{name}.yaml", "--quiet")
-    code = ("symgen/stress", "symgen/verify", "templates/stress")
+    code = ("symgen/laboratory/stress", "symgen/verify", "templates/stress")
     return Member("stress", name, (command,), (*_made(name), *code), ("gcc",), result)
 
 
@@ -96,5 +97,5 @@ def _mechanism(path: str, name: str, made: tuple[str, ...]) -> Member:
 def _bench(path: str, name: str) -> Member:
     command = (*SYMGEN, "bench", path, "--quiet")
     files = (path, *PRODUCT) if path.startswith("docs") else _made(name)
-    code = ("symgen/bench", "templates/bench")
+    code = ("symgen/laboratory/bench", "templates/bench")
     return Member("bench", name, (command,), (*files, *code), ("gcc", "valgrind"), alone=True)

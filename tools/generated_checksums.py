@@ -11,8 +11,8 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from symgen.folders.manifest import checksum_of, read_manifest
-from symgen.write import is_measured
+from symgen.output.manifest import checksum_of, read_manifest
+from symgen.output.write import is_measured
 
 CHECKSUMS = "files.sha256"
 

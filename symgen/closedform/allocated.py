@@ -6,11 +6,11 @@ from collections.abc import Iterable, Sequence
 
 from sympy import Expr, ImmutableDenseMatrix, Integer, Max, Min, Mul, Pow, Symbol, sign, sqrt
 
+from symgen.closedform.algebra.limits import TooLargeError
+from symgen.closedform.algebra.matrices import determinant
+from symgen.closedform.algebra.minors import left_inverse_terms, permutation_sign
+from symgen.closedform.algebra.quotient import polynomial
 from symgen.closedform.exact import Exact
-from symgen.closedform.limits import TooLargeError
-from symgen.closedform.matrices import determinant
-from symgen.closedform.minors import left_inverse_terms, permutation_sign
-from symgen.closedform.quotient import polynomial
 from symgen.closedform.spelling import Speller
 from symgen.closedform.structured import LONGEST_LOAD, MOST_MINORS, Naming, Structured, label, name_minors
 from symgen.model.model import Allocation

@@ -9,11 +9,10 @@ from math import comb
 
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.homogeneous import common_factor, divide
-from symgen.closedform.limits import WORK_LIMIT, TooLargeError
-from symgen.closedform.matrices import add, determinant, identity, multiply, transpose, zero
-from symgen.closedform.mechanics import Mechanics, load, time_derivative
-from symgen.closedform.minors import (
+from symgen.closedform.algebra.homogeneous import common_factor, divide
+from symgen.closedform.algebra.limits import WORK_LIMIT, TooLargeError
+from symgen.closedform.algebra.matrices import add, determinant, identity, multiply, transpose, zero
+from symgen.closedform.algebra.minors import (
     Actuation,
     Minors,
     Rows,
@@ -26,8 +25,9 @@ from symgen.closedform.minors import (
     projector_numerator,
     square_sum,
 )
-from symgen.closedform.quotient import Matrix, Quotient, polynomial, quotient
-from symgen.closedform.ring import TrigRing
+from symgen.closedform.algebra.quotient import Matrix, Quotient, polynomial, quotient
+from symgen.closedform.algebra.ring import TrigRing
+from symgen.closedform.mechanics import ExactSystem, load, time_derivative
 from symgen.closedform.structure import Structure
 from symgen.model.model import Model
 
@@ -35,7 +35,7 @@ from symgen.model.model import Model
 class Exact:
     """Exact matrices of a model over the field of fractions of its ring."""
 
-    def __init__(self, model: Model, mechanics: Mechanics, structure: Structure) -> None:
+    def __init__(self, model: Model, mechanics: ExactSystem, structure: Structure) -> None:
         self.model = model
         self.mechanics = mechanics
         self.structure = structure

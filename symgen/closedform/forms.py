@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterable, Mapping
 
 from sympy import Expr, ImmutableDenseMatrix, Symbol
 
+from symgen.closedform.algebra.limits import TooLargeError
+from symgen.closedform.algebra.quotient import Matrix
+from symgen.closedform.algebra.substitution import substitute
 from symgen.closedform.allocated import structured_allocation
 from symgen.closedform.display import latex_name
 from symgen.closedform.exact import Exact
-from symgen.closedform.limits import TooLargeError
-from symgen.closedform.mechanics import Mechanics, make_translator
+from symgen.closedform.mechanics import ExactSystem, make_translator
 from symgen.closedform.points import DIGITS, generic_points
-from symgen.closedform.quotient import Matrix
 from symgen.closedform.singular import SingularSet, derive_singular_sets
 from symgen.closedform.spelling import Speller
 from symgen.closedform.structure import Integrability, Structure, derive_integrability, derive_structure
@@ -24,9 +25,8 @@ from symgen.closedform.structured import (
     structured_projector,
     structured_pseudoinverse,
 )
-from symgen.closedform.substitution import substitute
-from symgen.model.energy_form import energy_form, points_written
-from symgen.model.expression import Expression, Name
+from symgen.model.expressions.expression import Expression, Name
+from symgen.model.kinematics.energy_form import energy_form, points_written
 from symgen.model.model import Allocation, Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
 from symgen.records import dataclass
 
@@ -83,7 +83,7 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     model, places, velocities = points_written(model) if asked else (energy_form(model), (), ())
     of_points = map(Name, (*places, *velocities))
     translator = make_translator(model, (*published_expressions(model), *of_points))
-    mechanics = Mechanics(model, translator)
+    mechanics = ExactSystem(model, translator)
     points = generic_points(model, mechanics, 3)
     if not points:
         # ranks are those on V: off it, rows that depend on each other are independent

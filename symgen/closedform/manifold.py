@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from symgen.closedform.algebra.matrices import dot, zero
+from symgen.closedform.algebra.quotient import Quotient, polynomial
 from symgen.closedform.exact import Exact
-from symgen.closedform.matrices import dot, zero
 from symgen.closedform.mechanics import time_derivative
-from symgen.closedform.quotient import Quotient, polynomial
 from symgen.model.model import Model
 
 

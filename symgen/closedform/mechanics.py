@@ -6,16 +6,16 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import cached_property
 
-from symgen.closedform.limits import LIMIT_OF_MODEL
-from symgen.closedform.matrices import add, column, multiply, zero
-from symgen.closedform.quotient import Matrix, Quotient, polynomial
-from symgen.closedform.ring import TrigRing
-from symgen.closedform.translate import Translator
-from symgen.model.expression import Expression, Name
+from symgen.closedform.algebra.limits import LIMIT_OF_MODEL
+from symgen.closedform.algebra.matrices import add, column, multiply, zero
+from symgen.closedform.algebra.quotient import Matrix, Quotient, polynomial
+from symgen.closedform.algebra.ring import TrigRing
+from symgen.closedform.algebra.translate import Translator
+from symgen.model.expressions.expression import Expression, Name
 from symgen.model.model import Model
 
 
-class Mechanics:
+class ExactSystem:
     """The pieces of the motion equations (3), derived when asked for; vectors are matrices with one column.
 
     Raises TooLargeError where the expanded expressions need too much work.
@@ -143,7 +143,7 @@ def time_derivative(translator: Translator, value: Quotient, model: Model) -> Qu
     return total
 
 
-def load(model: Model, mechanics: Mechanics) -> Matrix:
+def load(model: Model, mechanics: ExactSystem) -> Matrix:
     """tau = G qdd + C qd + Q - Q_a."""
     acceleration = tuple((mechanics.translator.name(c.acceleration),) for c in model.coordinates)
     total = add(multiply(mechanics.ring, mechanics.mass, acceleration), mechanics.coriolis_force)

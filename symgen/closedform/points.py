@@ -14,9 +14,9 @@ import mpmath
 from mpmath import mp, mpf
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.mechanics import Mechanics
-from symgen.closedform.quotient import Matrix, Quotient
-from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.closedform.algebra.quotient import Matrix, Quotient
+from symgen.closedform.mechanics import ExactSystem
+from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.model import Model
 
 DIGITS = 40
@@ -76,7 +76,7 @@ def _working_precision() -> AbstractContextManager[None]:
 class Point:
     """Values of all variables of a ring, ready to evaluate its elements."""
 
-    def __init__(self, mechanics: Mechanics, values: Mapping[str, mpf]) -> None:
+    def __init__(self, mechanics: ExactSystem, values: Mapping[str, mpf]) -> None:
         self.values = dict(values)
         ring, definitions = mechanics.ring, mechanics.translator.definitions
         generators = [self.values.get(name, mpf(0)) for name in ring.variables]
@@ -107,7 +107,7 @@ class Point:
         """The values of a matrix."""
         return [[_as_mpf(value) for value in row] for row in self.flint_matrix(matrix)]
 
-    def constraints(self, mechanics: Mechanics, model: Model) -> list[list[mpf]]:
+    def constraints(self, mechanics: ExactSystem, model: Model) -> list[list[mpf]]:
         """B with rows of ordinary size."""
         rows = zip(self.matrix(mechanics.jacobian), _units(model), strict=True)
         return [[mpf(2) ** unit * x for x in row] for row, unit in rows]
@@ -159,7 +159,7 @@ def parameter_values(model: Model) -> dict[str, mpf]:
     return values
 
 
-def generic_points(model: Model, mechanics: Mechanics, count: int, on_constraints: bool = True) -> list[Point]:
+def generic_points(model: Model, mechanics: ExactSystem, count: int, on_constraints: bool = True) -> list[Point]:
     """Points at the default parameters, random (but the same every time) in everything else; on V by default.
 
     Fewer than `count` when Newton's method does not reach V or expressions have no real value.  They lie near the
@@ -194,7 +194,7 @@ def generic_points(model: Model, mechanics: Mechanics, count: int, on_constraint
     return points
 
 
-def _onto_constraints(model: Model, mechanics: Mechanics, values: dict[str, mpf]) -> Point | None:
+def _onto_constraints(model: Model, mechanics: ExactSystem, values: dict[str, mpf]) -> Point | None:
     """Levenberg-Marquardt steps from `values` onto V; None when they do not converge.
 
     The damping falls with the residual: off V rows that depend on each other on it are independent, if barely.
@@ -243,7 +243,7 @@ def _scaled(rows: list[list[flint.arb]], units: Sequence[int]) -> list[list[flin
 
 
 def _step(
-    point: Point, mechanics: Mechanics, residual: list[list[flint.arb]], units: Sequence[int], damping: float
+    point: Point, mechanics: ExactSystem, residual: list[list[flint.arb]], units: Sequence[int], damping: float
 ) -> flint.arb_mat | None:
     """J' (J J' + shift)^-1 g; None where rounding leaves the matrix singular, so that more damping is due."""
     with _working_precision():

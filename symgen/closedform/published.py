@@ -15,18 +15,18 @@ from mpmath import mpf, nstr
 from sympy import ImmutableDenseMatrix
 from sympy.polys.rings import PolyElement
 
+from symgen.closedform.algebra.limits import TooLargeError
+from symgen.closedform.algebra.matrices import dot, multiply, solve, transpose
+from symgen.closedform.algebra.minors import common_denominator
+from symgen.closedform.algebra.quotient import Matrix, Quotient
+from symgen.closedform.algebra.substitution import substitute
 from symgen.closedform.exact import Exact
 from symgen.closedform.forms import ClosedForms, dynamic_names
-from symgen.closedform.limits import TooLargeError
 from symgen.closedform.manifold import Manifold
-from symgen.closedform.matrices import dot, multiply, solve, transpose
-from symgen.closedform.minors import common_denominator
 from symgen.closedform.points import Point, generic_points
-from symgen.closedform.quotient import Matrix, Quotient
 from symgen.closedform.singular import essential_factors
 from symgen.closedform.spelling import Speller
-from symgen.closedform.substitution import substitute
-from symgen.model.expression import Expression
+from symgen.model.expressions.expression import Expression
 from symgen.model.model import Matrix as ExpressionMatrix
 from symgen.model.model import (
     Model,

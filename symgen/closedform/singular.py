@@ -7,11 +7,18 @@ from typing import Literal
 from sympy import Expr, Integer
 from sympy.polys.rings import PolyElement
 
+from symgen.closedform.algebra.homogeneous import (
+    common_factor,
+    divide,
+    factorise,
+    homogeneous,
+    never_zero,
+    parity_classes,
+)
+from symgen.closedform.algebra.limits import TooLargeError
+from symgen.closedform.algebra.minors import common_denominator
+from symgen.closedform.algebra.ring import TrigRing
 from symgen.closedform.exact import Exact
-from symgen.closedform.homogeneous import common_factor, divide, factorise, homogeneous, never_zero, parity_classes
-from symgen.closedform.limits import TooLargeError
-from symgen.closedform.minors import common_denominator
-from symgen.closedform.ring import TrigRing
 from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
 from symgen.records import dataclass

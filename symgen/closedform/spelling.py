@@ -16,11 +16,11 @@ import sympy
 from sympy import QQ, Add, Expr, Integer, Mul, Rational, Symbol, cos, sin, tan
 from sympy.polys.rings import PolyElement
 
-from symgen.closedform.fourier import Series, fourier_series, least_length
-from symgen.closedform.homogeneous import factorise
-from symgen.closedform.quotient import Quotient, polynomial
-from symgen.closedform.ring import TrigRing, content, primitive
-from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.closedform.algebra.fourier import Series, fourier_series, least_length
+from symgen.closedform.algebra.homogeneous import factorise
+from symgen.closedform.algebra.quotient import Quotient, polynomial
+from symgen.closedform.algebra.ring import TrigRing, content, primitive
+from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 
 # A Fourier sum of more waves is not worth making: it is never the shortest form.
 MOST_WAVES = 1_000

@@ -5,11 +5,11 @@ from __future__ import annotations
 from itertools import combinations
 from typing import Literal
 
-from symgen.closedform.limits import TooLargeError
-from symgen.closedform.matrices import dot, multiply, null_space, transpose
-from symgen.closedform.mechanics import Mechanics
+from symgen.closedform.algebra.limits import TooLargeError
+from symgen.closedform.algebra.matrices import dot, multiply, null_space, transpose
+from symgen.closedform.algebra.quotient import Matrix, Quotient
+from symgen.closedform.mechanics import ExactSystem
 from symgen.closedform.points import Point, rank
-from symgen.closedform.quotient import Matrix, Quotient
 from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -39,7 +39,7 @@ class Integrability:
     explanation: str
 
 
-def derive_structure(model: Model, mechanics: Mechanics, points: list[Point]) -> Structure:
+def derive_structure(model: Model, mechanics: ExactSystem, points: list[Point]) -> Structure:
     """Ranks at points of V; the largest one over the points is the generic one."""
     geometric = len(mechanics.residual)
     geometric_rank = constraint_rank = actuation_degree = 0
@@ -70,7 +70,7 @@ def describe_actuation(inputs: int, degree: int, freedom: int) -> str:
     return f"{first} {'full-actuated' if degree == freedom else 'under-actuated'}"
 
 
-def derive_integrability(model: Model, mechanics: Mechanics, basis: Matrix | None) -> tuple[Integrability, ...]:
+def derive_integrability(model: Model, mechanics: ExactSystem, basis: Matrix | None) -> tuple[Integrability, ...]:
     """The largest integrable part of the constraints by derived systems; one verdict for every non-holonomic row.
 
     A row w of the current system I stays when dw vanishes on all pairs of admissible directions, which is what the
@@ -88,7 +88,7 @@ def derive_integrability(model: Model, mechanics: Mechanics, basis: Matrix | Non
 
 
 def _integrable_part(
-    model: Model, mechanics: Mechanics, rows: list[tuple[int, str]], basis: Matrix | None
+    model: Model, mechanics: ExactSystem, rows: list[tuple[int, str]], basis: Matrix | None
 ) -> tuple[Integrability, ...]:
     system = mechanics.jacobian
     while system:
@@ -110,7 +110,7 @@ def _integrable_part(
     return tuple(result)
 
 
-def _evidence(model: Model, mechanics: Mechanics, row: tuple[Quotient, ...], kernel: Matrix) -> str:
+def _evidence(model: Model, mechanics: ExactSystem, row: tuple[Quotient, ...], kernel: Matrix) -> str:
     """The first component of the row's exterior derivative on columns of W that is not zero, in words."""
     for (i, x), (j, y) in combinations(enumerate(kernel, 1), 2):
         value = _exterior(model, mechanics, row, x, y)
@@ -122,7 +122,7 @@ def _evidence(model: Model, mechanics: Mechanics, row: tuple[Quotient, ...], ker
     return "its exterior derivative vanishes on all admissible velocities, but "
 
 
-def _derived_system(model: Model, mechanics: Mechanics, system: Matrix) -> Matrix:
+def _derived_system(model: Model, mechanics: ExactSystem, system: Matrix) -> Matrix:
     """The combinations of the rows whose exterior derivative vanishes on the kernel of the rows."""
     ring = mechanics.ring
     kernel = null_space(ring, system, model.n)
@@ -135,7 +135,7 @@ def _derived_system(model: Model, mechanics: Mechanics, system: Matrix) -> Matri
 
 
 def _exterior(
-    model: Model, mechanics: Mechanics, form: tuple[Quotient, ...], x: tuple[Quotient, ...], y: tuple[Quotient, ...]
+    model: Model, mechanics: ExactSystem, form: tuple[Quotient, ...], x: tuple[Quotient, ...], y: tuple[Quotient, ...]
 ) -> Quotient:
     """d(form)(x, y) = sum_ij (d_i w_j - d_j w_i) x_i y_j."""
     translator = mechanics.translator

@@ -9,10 +9,10 @@ from itertools import combinations
 from sympy import Add, Expr, ImmutableDenseMatrix, Integer, Symbol
 from sympy.polys.rings import PolyElement
 
+from symgen.closedform.algebra.limits import TooLargeError
+from symgen.closedform.algebra.matrices import dot
+from symgen.closedform.algebra.minors import left_inverse_terms, permutation_sign
 from symgen.closedform.exact import Exact
-from symgen.closedform.limits import TooLargeError
-from symgen.closedform.matrices import dot
-from symgen.closedform.minors import left_inverse_terms, permutation_sign
 from symgen.closedform.spelling import Speller
 
 LONGEST_LOAD = 600

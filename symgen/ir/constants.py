@@ -10,8 +10,8 @@ from dataclasses import replace
 from fractions import Fraction
 from math import isqrt
 
-from symgen.graph.scalar import PI
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, Statement, Status
+from symgen.symbolic.scalar import PI
 
 # Numbers are kept to this many bits; PI is given to 235.
 BITS = 220

@@ -19,7 +19,7 @@ UNIT_ROUNDOFF: dict[Scalar, Fraction] = {"float64": Fraction(1, 2**53), "float32
 
 
 class Status(IntEnum):
-    """What a kernel reports; the comments of the generated header say what each means (`emit/about.py`)."""
+    """What a kernel reports; the comments of the generated header say what each means (`backends/about.py`)."""
 
     OK = 0
     NOT_FINITE = 1

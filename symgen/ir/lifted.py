@@ -12,13 +12,13 @@ from functools import lru_cache
 from typing import Generic, TypeAlias, TypeVar
 
 from symgen.diagnostics import SymgenBug
-from symgen.graph.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
-from symgen.graph.identity import same_values
-from symgen.graph.scalar import Graph
-from symgen.graph.scalar import Scalar as Node
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, Statement, Status
 from symgen.ir.wide_functions import is_wide, plain_operation
 from symgen.records import dataclass
+from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
+from symgen.symbolic.identity import same_values
+from symgen.symbolic.scalar import Graph
+from symgen.symbolic.scalar import Scalar as Node
 
 # A scalar of a graph, or its value in the field of fingerprints.
 Value = TypeVar("Value")

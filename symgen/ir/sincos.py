@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from symgen.graph.scalar import PI
 from symgen.ir.kernel import Function, Literal, Local, Operand, OperationName, Scalar, Statement
+from symgen.symbolic.scalar import PI
 
 # Beyond these the reduction is no longer accurate, and kernels answer ANGLE_RANGE; the second ones cost two operations
 # more (five in single precision) and serve wheels that turn for hours.

@@ -6,13 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from symgen.diagnostics import Mistake, ModelError, Span
-from symgen.model.attempts import attempted_names
+from symgen.model.file.attempts import attempted_names
+from symgen.model.file.schema import MODEL
+from symgen.model.file.scope import Scope
+from symgen.model.file.shape import check_shape
+from symgen.model.file.source import read_tree
 from symgen.model.model import Model
 from symgen.model.resolve import resolve
-from symgen.model.schema import MODEL
-from symgen.model.scope import Scope
-from symgen.model.shape import check_shape
-from symgen.model.source import read_tree
 
 
 def load_model(path: Path) -> Model:
@@ -41,7 +41,7 @@ def load_text(text: str, file: str) -> Model:
     if tree.get("urdf") is not None:
         if scope.mistakes:
             raise ModelError(file, text, tuple(scope.mistakes))
-        from symgen.model.urdf import import_robot
+        from symgen.model.urdf.read import import_robot
 
         imported = import_robot(scope, tree, Path(file).parent)
         tree, beside = imported.tree, {imported.file: imported.text}

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Span
-from symgen.model.expression import Expression, Number
+from symgen.model.expressions.expression import Expression, Number
 from symgen.records import dataclass
 
 WORLD = "world"

@@ -10,8 +10,8 @@ from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Notice, Span
-from symgen.model.assembly import Assembly
-from symgen.model.expression import Expression
+from symgen.model.configurations.assembly import Assembly
+from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
 from symgen.naming import c_name
 from symgen.records import dataclass

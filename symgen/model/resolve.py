@@ -9,14 +9,23 @@ from fractions import Fraction
 from typing import Literal
 
 from symgen.diagnostics import Notice, Span
-from symgen.model.allocation import declare_settings, read_allocation
-from symgen.model.bodies import read_mechanism
-from symgen.model.checks import check_mechanics, notice_efforts, notice_empty_outputs
-from symgen.model.combine import plus
-from symgen.model.components import without_components
-from symgen.model.constants import constant
-from symgen.model.coordinates import read_coordinates
-from symgen.model.declarations import (
+from symgen.model.blocks.allocation import declare_settings, read_allocation
+from symgen.model.blocks.bodies import read_mechanism
+from symgen.model.blocks.coordinates import read_coordinates
+from symgen.model.blocks.elements import read_forces, read_friction, read_springs
+from symgen.model.blocks.inputs import read_inputs
+from symgen.model.blocks.joint_forms import JointCoordinate, read_joints
+from symgen.model.blocks.loops import Rows
+from symgen.model.blocks.paths import read_paths
+from symgen.model.blocks.published import read_published
+from symgen.model.checks.all_checks import check_mechanics, notice_efforts, notice_empty_outputs
+from symgen.model.checks.dimensions import check_units
+from symgen.model.configurations.mechanics import default_values
+from symgen.model.expressions.combine import plus
+from symgen.model.expressions.expression import Call, Expression, Number
+from symgen.model.expressions.names import did_you_mean, name_mistake, nearest
+from symgen.model.file.constants import constant
+from symgen.model.file.declarations import (
     declare_names,
     read_applied_forces,
     read_constraints,
@@ -24,23 +33,14 @@ from symgen.model.declarations import (
     read_parameters,
     read_ranges,
 )
-from symgen.model.dimensions import check_units
-from symgen.model.elements import read_forces, read_friction, read_springs
-from symgen.model.expression import Call, Expression, Number
-from symgen.model.inputs import read_inputs
-from symgen.model.joint_forms import JointCoordinate, read_joints
-from symgen.model.loops import Rows
-from symgen.model.mechanics import default_values
+from symgen.model.file.reading import entries, items, member, one_line, text_of
+from symgen.model.file.schema import MODEL
+from symgen.model.file.scope import CONFIGURATION, STATE, Scope
+from symgen.model.file.source import MappingNode, Node, ScalarNode
+from symgen.model.kinematics.components import without_components
 from symgen.model.mechanism import Mechanism, Quaternion
 from symgen.model.model import Model
-from symgen.model.names import did_you_mean, name_mistake, nearest
-from symgen.model.paths import read_paths
-from symgen.model.published import read_published
 from symgen.model.quantities import QUANTITIES
-from symgen.model.reading import entries, items, member, one_line, text_of
-from symgen.model.schema import MODEL
-from symgen.model.scope import CONFIGURATION, STATE, Scope
-from symgen.model.source import MappingNode, Node, ScalarNode
 
 ZERO = Number(Fraction(0))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from html import escape
 
 from symgen import __version__
-from symgen.emit.render import render
+from symgen.backends.render import render
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
 from symgen.naming import macro_name

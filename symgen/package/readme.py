@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from symgen.emit.about import STATUS_MEANING
-from symgen.emit.c import c_names, status_name
-from symgen.emit.defaults import default_values
-from symgen.emit.literals import decimal_text
-from symgen.emit.locals import array_arguments
-from symgen.emit.operations import count_operations
-from symgen.emit.quantities import meaning
-from symgen.emit.scalars import C_TYPE, SUFFIX
+from symgen.backends.about import STATUS_MEANING
+from symgen.backends.c.plain import c_names, status_name
+from symgen.backends.defaults import default_values
+from symgen.backends.literals import decimal_text
+from symgen.backends.locals import array_arguments
+from symgen.backends.operations import count_operations
+from symgen.backends.quantities import meaning
+from symgen.backends.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.sincos import ANGLE_LIMIT
 from symgen.ir.wide_functions import works_with_pairs

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symgen.diagnostics import Mistake
-from symgen.model.energy_form import energy_form
+from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.model import Model, Path
 
 Array = NDArray[np.float64]

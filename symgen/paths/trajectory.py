@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from symgen.model.closing import row_unit
+from symgen.model.configurations.closing import row_unit
 from symgen.model.model import Model, Path
 from symgen.paths.path_equations import Array, PathEquations, PathError, path_equations
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from symgen.emit.defaults import default_values
+from symgen.backends.defaults import default_values
 from symgen.ir.kernel import Kernel, Load, Local
 from symgen.model.model import Model, Range
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import prod
 
-from symgen.emit.c import c_members, status_name
-from symgen.emit.literals import decimal_text
-from symgen.emit.locals import array_arguments
-from symgen.emit.render import render
-from symgen.emit.scalars import C_TYPE, SUFFIX
+from symgen.backends.c.plain import c_members, status_name
+from symgen.backends.literals import decimal_text
+from symgen.backends.locals import array_arguments
+from symgen.backends.render import render
+from symgen.backends.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Load, Local, Program, Scalar, Status
 from symgen.model.model import Model, Range
 from symgen.proof.box import box, loaded_angles

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from symgen.emit.locals import array_arguments
+from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Kernel, Literal, Operand, Program
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model

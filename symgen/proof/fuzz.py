@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from symgen.emit.c import c_members
-from symgen.emit.literals import decimal_text
-from symgen.emit.locals import array_arguments
-from symgen.emit.quantities import BATCHED
-from symgen.emit.render import render
-from symgen.emit.scalars import SUFFIX
+from symgen.backends.c.plain import c_members
+from symgen.backends.literals import decimal_text
+from symgen.backends.locals import array_arguments
+from symgen.backends.quantities import BATCHED
+from symgen.backends.render import render
+from symgen.backends.scalars import SUFFIX
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare

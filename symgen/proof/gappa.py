@@ -13,10 +13,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symgen.emit.c import c_names
-from symgen.emit.literals import decimal_text, round_to
-from symgen.emit.locals import array_arguments
-from symgen.emit.render import render
+from symgen.backends.c.plain import c_names
+from symgen.backends.literals import decimal_text, round_to
+from symgen.backends.locals import array_arguments
+from symgen.backends.render import render
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
 from symgen.model.model import Model, Range
 from symgen.proof.box import box

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
-from symgen.emit.literals import round_to
-from symgen.graph.scalar import PI
+from symgen.backends.literals import round_to
 from symgen.ir.kernel import Scalar
 from symgen.ir.sincos import ROUNDER, angle_limit
 from symgen.model.model import Range
+from symgen.symbolic.scalar import PI
 
 WIDEST = 0.25
 _FORMAT: dict[Scalar, tuple[str, str]] = {"float64": ("<d", "<q"), "float32": ("<f", "<i")}

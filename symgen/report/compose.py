@@ -6,17 +6,17 @@ from symgen.report.content import ReportInput
 from symgen.report.context import Context, sentence, text_of
 from symgen.report.document import Document, Section, Text
 from symgen.report.prose import say
-from symgen.report.section_bookkeeping import omissions, operations
-from symgen.report.section_equations import equations_of_motion
-from symgen.report.section_freedom import freedom
-from symgen.report.section_inverse import inverse_dynamics
-from symgen.report.section_projection import projection
-from symgen.report.section_proof import proof
-from symgen.report.section_published import published
-from symgen.report.section_singular import singular
-from symgen.report.section_system import system
-from symgen.report.section_targets import targets
-from symgen.report.section_verification import charts, verification
+from symgen.report.sections.bookkeeping import omissions, operations
+from symgen.report.sections.equations import equations_of_motion
+from symgen.report.sections.freedom import freedom
+from symgen.report.sections.inverse import inverse_dynamics
+from symgen.report.sections.projection import projection
+from symgen.report.sections.proof import proof
+from symgen.report.sections.published import published
+from symgen.report.sections.singular import singular
+from symgen.report.sections.system import system
+from symgen.report.sections.targets import targets
+from symgen.report.sections.verification import charts, verification
 
 
 def compose(report_input: ReportInput) -> Document:

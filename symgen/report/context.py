@@ -9,16 +9,16 @@ from symgen.closedform.forms import ClosedForm
 from symgen.model.model import Model
 from symgen.report.content import ReportInput
 from symgen.report.document import Block, Paragraph, Reference, Text, displayed
-from symgen.report.from_sympy import (
+from symgen.report.mathematics.from_sympy import (
     ACCELERATION,
     COORDINATE,
     PARAMETER,
     RATE,
     SympyLayout,
 )
-from symgen.report.layout import Layout, equation, size
-from symgen.report.matrices import Denominators, matrix_blocks, packed
-from symgen.report.names import name_layout
+from symgen.report.mathematics.layout import Layout, equation, size
+from symgen.report.mathematics.matrices import Denominators, matrix_blocks, packed
+from symgen.report.mathematics.names import name_layout
 from symgen.report.prose import SYMBOLS, paragraph, say
 
 SHORT = 120

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from typing import TypeAlias
 
 from symgen.records import dataclass
-from symgen.report.breaking import break_lines
-from symgen.report.layout import Layout, Row
-from symgen.report.measure import page_width
+from symgen.report.mathematics.breaking import break_lines
+from symgen.report.mathematics.layout import Layout, Row
+from symgen.report.mathematics.measure import page_width
 
 ROOM = 40.0
 """Width of a displayed formula in em, beside its number."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from symgen.backends.operations import OperationCounts
 from symgen.diagnostics import Mistake, Notice
-from symgen.emit.operations import OperationCounts
 from symgen.records import dataclass
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from symgen.closedform.limits import TooLargeError
+from symgen.closedform.algebra.limits import TooLargeError
 from symgen.diagnostics import Notice
 from symgen.model.model import Model
 from symgen.report.compose import compose

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from html import escape
 
-from symgen.emit.render import render
+from symgen.backends.render import render
 from symgen.report.document import Document, Figure, Section, Table
-from symgen.report.layout import Layout, Row
 from symgen.report.markup import Markup
-from symgen.report.mathml import mathml
+from symgen.report.mathematics.layout import Layout, Row
+from symgen.report.mathematics.mathml import mathml
 
 CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from symgen.emit.render import render
+from symgen.backends.render import render
 from symgen.report.document import Document, Emphasis, Figure, InlineCode, InlineMath, Reference, Section, Table, Text
-from symgen.report.latex_math import GREEK, RELATIONS, latex_math
-from symgen.report.layout import Layout, Row
 from symgen.report.markup import Markup
-from symgen.report.measure import page_width
+from symgen.report.mathematics.latex import GREEK, RELATIONS, latex_math
+from symgen.report.mathematics.layout import Layout, Row
+from symgen.report.mathematics.measure import page_width
 
 LINE = 44.0
 COLUMN_GAP = 1.3

@@ -20,7 +20,7 @@ from symgen.report.document import (
     Table,
     Text,
 )
-from symgen.report.layout import Layout, Row
+from symgen.report.mathematics.layout import Layout, Row
 
 
 class Markup(ABC):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from symgen.emit.render import render
+from symgen.backends.render import render
 from symgen.report.document import Document, Figure, Formula, InlineMath, Items, Paragraph, Section, Table, Text
 from symgen.report.html import svg_element
-from symgen.report.layout import Layout, Row, tall
 from symgen.report.markup import Markup
-from symgen.report.typst_math import quoted, typst_math
+from symgen.report.mathematics.layout import Layout, Row, tall
+from symgen.report.mathematics.typst import quoted, typst_math
 
 
 def render_pdf(document: Document) -> bytes:

@@ -13,7 +13,7 @@ from symgen.report.document import (
     Reference,
     Text,
 )
-from symgen.report.layout import (
+from symgen.report.mathematics.layout import (
     Accent,
     Fenced,
     Fraction,

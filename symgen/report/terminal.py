@@ -6,11 +6,11 @@ from typing import Any
 
 from symgen.model.model import Model
 from symgen.report.context import name_order
-from symgen.report.from_sympy import SympyLayout
-from symgen.report.layout import Layout, equation
-from symgen.report.names import name_layout
+from symgen.report.mathematics.from_sympy import SympyLayout
+from symgen.report.mathematics.layout import Layout, equation
+from symgen.report.mathematics.names import name_layout
+from symgen.report.mathematics.text import text_lines
 from symgen.report.prose import SYMBOLS
-from symgen.report.text_math import text_lines
 
 
 def render_text_math(value: Any, model: Model | None = None, symbol: str | None = None, width: int = 100) -> str:

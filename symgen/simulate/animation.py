@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from html import escape
 from typing import TypeAlias
 
-from symgen.emit.render import render
+from symgen.backends.render import render
 from symgen.simulate.scene import Place, Scene
 
 SMALLEST_RADIUS = 1e-6

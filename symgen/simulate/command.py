@@ -8,22 +8,22 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from symgen.dynamics.genericity import configurations, parameter_values
-from symgen.dynamics.mechanics import Mechanics
+from symgen.generation.results import Options, Part, Result, WrongUseError
+from symgen.generation.runnable import Runner
+from symgen.mechanics.genericity import configurations, parameter_values
+from symgen.mechanics.system import System
+from symgen.model.expressions.names import did_you_mean
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.model.names import did_you_mean
+from symgen.output.write import write_files
 from symgen.pipeline import generate
-from symgen.results import Options, Part, Result, WrongUseError
 from symgen.simulate.animation import animation
-from symgen.simulate.integrate import Motion, consistent_start, integrate
+from symgen.simulate.integrate import Trajectory, consistent_start, integrate
 from symgen.simulate.plant import QUANTITIES, Plant, PlantError
 from symgen.simulate.scene import scene
 from symgen.simulate.tables import motion_chart, motion_csv
-from symgen.stress.kernels import Runner
 from symgen.verify.compile import find_compiler
 from symgen.verify.tolerance import FACTOR
-from symgen.write import write_files
 
 Progress = Callable[[str], None]
 STILL = 1e-9
@@ -59,7 +59,7 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
     u = [request.inputs.get(i.name, 0.0) for i in model.inputs]
     count = max(1, round(request.duration * request.frames))
     times = [request.duration * k / count for k in range(count + 1)]
-    mechanics = Mechanics(model)
+    mechanics = System(model)
     parameters = parameter_values(mechanics)
     verified = _verified(path, progress)
     if verified is None:
@@ -123,7 +123,7 @@ def _checked(result: Result) -> str:
 
 
 def _start(
-    plant: Plant, mechanics: Mechanics, q: list[float], qd: list[float], chosen: bool
+    plant: Plant, mechanics: System, q: list[float], qd: list[float], chosen: bool
 ) -> tuple[list[float], list[float]]:
     """The start on the constraints; where nobody chose one, any configuration that satisfies them serves."""
     try:
@@ -142,7 +142,7 @@ def _known(path: Path, option: str, values: Mapping[str, float], names: list[str
             raise WrongUseError(f"{path}: --{option}: unknown name {name!r}; {remedy}")
 
 
-def _summary(model: Model, motion: Motion) -> list[str]:
+def _summary(model: Model, motion: Trajectory) -> list[str]:
     totals = [t + u for t, u in motion.energy]
     scale = max(max(abs(t), abs(u)) for t, u in motion.energy) or 1.0
     gained = totals[-1] - totals[0]

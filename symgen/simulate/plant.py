@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from symgen.dynamics.genericity import assembly_of
 from symgen.ir.kernel import Scalar, Status
-from symgen.model.closing import row_unit
-from symgen.model.mechanics import Mechanics
+from symgen.mechanics.genericity import assembly_of
+from symgen.model.configurations.closing import row_unit
+from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.model import Model
 from symgen.verify.compile import Outcome
-from symgen.verify.reference import State
+from symgen.verify.reference.reference import State
 
 QUANTITIES = ("forward_dynamics", "admissible_velocity", "projected_configuration", "constraint_residual", "energy")
 MEANING = {
@@ -85,6 +85,6 @@ def _units(model: Model) -> list[float]:
     """For each geometric row, by its gradient where the mechanism is known to be assembled."""
     known = assembly_of(model)
     parts = model.coordinates, model.parameters, model.definitions, model.constraints, model.kinetic_energy
-    numbers = Mechanics(*parts, model.mechanism)
+    numbers = NumericSystem(*parts, model.mechanism)
     rows = numbers.residuals(known.places[0].q, range(len(numbers.geometric)))[1]
     return [row_unit(row.values()) for row in rows]

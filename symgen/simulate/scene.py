@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from symgen.model.float_kinematics import FloatKinematics
-from symgen.model.gradient import Gradients
+from symgen.model.configurations.gradient import Gradients
+from symgen.model.expressions.walk import evaluate
+from symgen.model.kinematics.float_kinematics import FloatKinematics
 from symgen.model.mechanism import WORLD, Mechanism
 from symgen.model.model import Model
-from symgen.model.walk import evaluate
 
 Place = tuple[float, float, float]
 

@@ -7,13 +7,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from symgen.emit.locals import array_arguments
-from symgen.emit.quantities import BATCHED
-from symgen.emit.scalars import SUFFIX
+from symgen.backends.locals import array_arguments
+from symgen.backends.quantities import BATCHED
+from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.certificate import Fault
 from symgen.verify.compile import C_TYPES, CFunction, Outcome, c_array
-from symgen.verify.reference import State
+from symgen.verify.reference.reference import State
 from symgen.verify.states import Sample
 
 # Every component set to one of these: a symmetric pose, an angle beyond any range, not a number.

@@ -10,7 +10,7 @@ from symgen.ir.kernel import Status
 from symgen.verify.certificate import ErrorRecord, Fault, InvariantRecord
 from symgen.verify.compile import Outcome
 from symgen.verify.invariants import defects
-from symgen.verify.reference import Reference
+from symgen.verify.reference.reference import Reference
 from symgen.verify.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symgen.activity import working
-from symgen.emit.locals import array_arguments
-from symgen.emit.scalars import SUFFIX
+from symgen.backends.locals import array_arguments
+from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar, Status
-from symgen.processes import ToolError, ended, run, start, stop
+from symgen.runtime.activity import working
+from symgen.runtime.processes import ToolError, ended, run, start, stop
 
 if TYPE_CHECKING:
     import subprocess

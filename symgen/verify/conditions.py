@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
-from symgen.verify.reference import Reference
+from symgen.verify.reference.reference import Reference
 from symgen.verify.regular import SAMPLING_BITS
 from symgen.verify.states import Sample
 

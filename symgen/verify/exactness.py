@@ -18,10 +18,10 @@ from flint import arb
 from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Literal, Operand
 from symgen.ir.wide_functions import is_wide, plain_operation
 from symgen.verify.expected import Expected
-from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_closing import onto_manifold
-from symgen.verify.reference_system import ParameterValues
-from symgen.verify.reference_tape import ball, precision
+from symgen.verify.reference.closing import onto_manifold
+from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference.system import ParameterValues
+from symgen.verify.reference.tape import ball, precision
 
 EXACT_BITS = 256
 ON_MANIFOLD = 2.0**-170

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from symgen.activity import each, working
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
+from symgen.runtime.activity import each, working
 from symgen.verify.modes import modes
-from symgen.verify.reference import Reference
+from symgen.verify.reference.reference import Reference
 from symgen.verify.states import USUAL_STATES, Sample, affordable_states, rounded, sample_states
 from symgen.verify.tolerance import Expectation, expectations
 

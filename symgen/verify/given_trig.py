@@ -10,8 +10,8 @@ from typing import Any
 
 from flint import arb, ctx
 
-from symgen.emit.locals import array_arguments
-from symgen.emit.scalars import SUFFIX
+from symgen.backends.locals import array_arguments
+from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.verify.compile import C_TYPES, Outcome, c_array

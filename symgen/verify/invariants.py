@@ -12,10 +12,10 @@ from typing import Any, TypeAlias
 
 from flint import arb_mat
 
-from symgen.verify.reference import BITS, Reference
-from symgen.verify.reference_evaluation import Evaluation
-from symgen.verify.reference_linear import column, norm
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.linear import column, norm
+from symgen.verify.reference.reference import BITS, Reference
+from symgen.verify.reference.tape import precision
 from symgen.verify.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation
 

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from symgen.verify.lanes import Lanes
-from symgen.verify.reference_parts import Part
-from symgen.verify.reference_system import System
-from symgen.verify.reference_tape import Replay
+from symgen.verify.reference.parts import Part
+from symgen.verify.reference.system import System
+from symgen.verify.reference.tape import Replay
 
 NEWTON_STEPS = 12
 CLOSED = 1e-11

@@ -19,9 +19,9 @@ import numpy as np
 from symgen.verify.lanes import Lanes
 from symgen.verify.loops_in_lanes import DAMPED_STEPS, Loops
 from symgen.verify.ranks_in_lanes import is_regular, matrices, ranked_parts
-from symgen.verify.reference import Reference
-from symgen.verify.reference_system import default_parameters
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference.reference import Reference
+from symgen.verify.reference.system import default_parameters
+from symgen.verify.reference.tape import precision
 
 BITS = 128
 # Starts in the ranges, and rounds of as many that are reflected.

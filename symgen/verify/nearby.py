@@ -18,8 +18,8 @@ import numpy as np
 from symgen.verify.lanes import Lanes
 from symgen.verify.loops_in_lanes import DEPENDENT, Loops, lengths_of, times
 from symgen.verify.ranks_in_lanes import is_regular, matrices, ranked_parts
-from symgen.verify.reference import Reference, State
-from symgen.verify.reference_system import default_parameters
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.reference.system import default_parameters
 from symgen.verify.states import Sample
 
 # Shares of the ranges of coordinates: how far states are drawn from samples, and moved from where they are.

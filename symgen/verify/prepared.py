@@ -8,8 +8,8 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from symgen.emit.locals import array_arguments
-from symgen.emit.scalars import SUFFIX
+from symgen.backends.locals import array_arguments
+from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.batch import HARD
 from symgen.verify.certificate import Fault

@@ -8,10 +8,10 @@ import types
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from symgen.emit.locals import array_arguments
+from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Kernel, Status
 from symgen.verify.compile import Outcome
-from symgen.verify.reference import State
+from symgen.verify.reference.reference import State
 
 MODULE_NAME = "symgen_verified_module"
 # Characters; the parser takes 60 bytes for each, all at once.

@@ -9,8 +9,8 @@ import numpy as np
 
 from symgen.verify.lanes import Lanes
 from symgen.verify.loops_in_lanes import DEPENDENT, Loops, block, lengths_of
-from symgen.verify.reference_manifold import Ranks
-from symgen.verify.reference_system import System
+from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.system import System
 from symgen.verify.regular import REGULAR
 
 # Of rows of length 1: what is more than rounding leaves of rows that depend on others.

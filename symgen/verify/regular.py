@@ -15,13 +15,13 @@ from dataclasses import dataclass
 from math import inf, isfinite, pi, sqrt
 from typing import Any
 
-from symgen.model.names import shown_names
-from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_closing import admissible, closed
-from symgen.verify.reference_manifold import exceeds, starts
-from symgen.verify.reference_parts import Part
-from symgen.verify.reference_system import ParameterValues, default_parameters
-from symgen.verify.reference_tape import ball
+from symgen.model.expressions.names import shown_names
+from symgen.verify.reference.closing import admissible, closed
+from symgen.verify.reference.manifold import exceeds, starts
+from symgen.verify.reference.parts import Part
+from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference.system import ParameterValues, default_parameters
+from symgen.verify.reference.tape import ball
 
 FEWEST_STATES = 8
 REGULAR = 1e-3
@@ -66,7 +66,7 @@ class _Sizes:
         return all(map(isfinite, (*self.measures, *self.rows)))
 
 
-class Search:
+class RegularStateSearch:
     """The search for `count` regular states of a model, the same for the same seed; `told` says what it met."""
 
     def __init__(

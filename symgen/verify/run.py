@@ -13,10 +13,10 @@ from pathlib import Path
 import flint
 
 import symgen
-from symgen.activity import each, working
-from symgen.emit.scalars import SUFFIX
+from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
+from symgen.runtime.activity import each, working
 from symgen.verify.batch import run_batch
 from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, Fault, InvariantRecord
 from symgen.verify.comparison import VIOLATES, Results, check_laws, compare, faults_of
@@ -35,7 +35,7 @@ from symgen.verify.expected import Expected, Progress
 from symgen.verify.given_trig import run_given_trig
 from symgen.verify.prepared import run_prepared
 from symgen.verify.python_module import PythonModule
-from symgen.verify.reference import ReferenceValueError
+from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.states import USUAL_STATES, Sample, VerificationError
 
 LONGEST_EXCERPT = 2000

@@ -12,15 +12,15 @@ from functools import cached_property
 
 import numpy as np
 
-from symgen.activity import working
 from symgen.ir.kernel import Function, Kernel, Scalar
+from symgen.runtime.activity import working
 from symgen.verify.certificate import Fault
 from symgen.verify.comparison import INACCURATE
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes import Lanes, estimates
 from symgen.verify.nearby import Nearby, Surroundings, joined
-from symgen.verify.reference import ReferenceValueError
+from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.settling import Settling
 from symgen.verify.states import Sample, rounded
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
@@ -35,7 +35,7 @@ DOUBTFUL = FACTOR / 2
 JUDGED = 8
 
 
-class Search:
+class WorstStateSearch:
     """The worst states of the quantities of a model, those of every way that was looked at."""
 
     def __init__(self, expected: Expected) -> None:

@@ -9,12 +9,21 @@ from itertools import islice
 from math import comb, isfinite
 from typing import Any
 
-from symgen.activity import working
 from symgen.ir.kernel import Scalar
-from symgen.verify.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference_quantities import NEED_GRADIENTS
-from symgen.verify.reference_tape import precision
-from symgen.verify.regular import FEWEST_STATES, SAMPLING_BITS, Regular, Search, floats, measured, settled, values_at
+from symgen.runtime.activity import working
+from symgen.verify.reference.quantities import NEED_GRADIENTS
+from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference.tape import precision
+from symgen.verify.regular import (
+    FEWEST_STATES,
+    SAMPLING_BITS,
+    Regular,
+    RegularStateSearch,
+    floats,
+    measured,
+    settled,
+    values_at,
+)
 
 USUAL_STATES = 64
 LONGEST_SECONDS = 20.0
@@ -64,7 +73,7 @@ def sample_states(
     with precision(SAMPLING_BITS):
         inside: list[Sample] = []
         outside: list[Regular] = []
-        search = Search(reference, count, seed, modes)
+        search = RegularStateSearch(reference, count, seed, modes)
         with working("", count) as work:
             for found_state, in_range in search.candidates():
                 if not in_range:

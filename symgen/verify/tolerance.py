@@ -20,10 +20,10 @@ from typing import Any
 from flint import arb, arb_mat
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
-from symgen.model.expression import Pi
-from symgen.verify.reference import Reference, State
-from symgen.verify.reference_linear import norm
-from symgen.verify.reference_tape import ball, precision
+from symgen.model.expressions.expression import Pi
+from symgen.verify.reference.linear import norm
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.reference.tape import ball, precision
 
 FACTOR = 16.0
 PERTURBATIONS = 8

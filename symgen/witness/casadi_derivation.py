@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi
 
 from symgen.model.model import Model
-from symgen.model.quantities import QUANTITIES, Quantity
+from symgen.model.quantities import QUANTITIES, QuantityRow
 from symgen.witness.lagrange import Lagrange, differentiate
 from symgen.witness.points import point_quantities
 from symgen.witness.quantities import derive
@@ -28,7 +28,7 @@ def witness_functions(model: Model) -> dict[str, casadi.Function]:
     }
 
 
-def _function(quantity: Quantity, value: casadi.SX, lagrange: Lagrange) -> casadi.Function:
+def _function(quantity: QuantityRow, value: casadi.SX, lagrange: Lagrange) -> casadi.Function:
     symbols = {"q": lagrange.q, "qd": lagrange.qd, "qdd": lagrange.qdd, "u": lagrange.u}
     names = [argument for argument in quantity.arguments if symbols[argument].shape[0]]
     inputs = [symbols[argument] for argument in names]

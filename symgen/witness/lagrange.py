@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import casadi
 
-from symgen.model.energy_form import energy_form
-from symgen.model.expression import Expression
+from symgen.model.expressions.expression import Expression
+from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.model import Model
 from symgen.witness.translate import translate, with_definitions
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import casadi
 
-from symgen.model.energy_form import points_written
-from symgen.model.expression import Name
+from symgen.model.expressions.expression import Name
+from symgen.model.kinematics.energy_form import points_written
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange
 from symgen.witness.translate import translate, with_definitions

@@ -8,7 +8,7 @@ from math import pi
 
 import casadi
 
-from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.model import Definition, Model
 
 

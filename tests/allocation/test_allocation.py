@@ -12,19 +12,19 @@ import pytest
 from flint import arb_mat
 from laws_harness import System
 
-from symgen.dynamics.allocation import orientation_of
-from symgen.dynamics.exterior import ActuationForms
-from symgen.dynamics.select import ways
-from symgen.emit.c import emit_c
-from symgen.emit.python import emit_python
-from symgen.graph.evaluate import Evaluator
+from symgen.backends.c.plain import emit_c
+from symgen.backends.python.module import emit_python
 from symgen.ir.kernel import Status
-from symgen.verify.reference import State
-from symgen.verify.reference_allocation import internal_force
-from symgen.verify.reference_evaluation import Evaluation
-from symgen.verify.reference_linear import column, norm, solve
-from symgen.verify.reference_quantities import QUANTITIES
-from symgen.verify.reference_tape import ball, precision
+from symgen.linear_algebra.exterior import ActuationForms
+from symgen.methods.allocation import orientation_of
+from symgen.quantities.select import ways
+from symgen.symbolic.evaluate import Evaluator
+from symgen.verify.reference.allocation import internal_force
+from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.linear import column, norm, solve
+from symgen.verify.reference.quantities import QUANTITIES
+from symgen.verify.reference.reference import State
+from symgen.verify.reference.tape import ball, precision
 from symgen.verify.run import generated_sources, verify
 from symgen.verify.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations

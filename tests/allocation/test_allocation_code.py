@@ -11,10 +11,10 @@ import allocation_models as models
 import pytest
 from laws_harness import System
 
-from symgen.emit.c import emit_c
-from symgen.emit.python import emit_python
+from symgen.backends.c.plain import emit_c
+from symgen.backends.python.module import emit_python
 from symgen.ir.kernel import Status
-from symgen.verify.reference import State
+from symgen.verify.reference.reference import State
 
 BARE = """\
 model: bare

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import allocation_models as models
 
-from symgen.model.allocation import without_allocation
+from symgen.model.blocks.allocation import without_allocation
 from symgen.model.load import load_text
 
 

@@ -6,10 +6,10 @@ from typing import Any
 
 from shipped import model
 
-from symgen.bench.accuracy_pages import accuracy_section
-from symgen.bench.candidate import Task
-from symgen.bench.workload import admissible_samples, beyond_tolerance, workload
-from symgen.verify.reference import Reference
+from symgen.laboratory.bench.accuracy_pages import accuracy_section
+from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.workload import admissible_samples, beyond_tolerance, workload
+from symgen.verify.reference.reference import Reference
 
 
 def result(median: float) -> dict[str, Any]:

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from shipped import ROOT
 
-from symgen.bench import batch, build, callgrind, charts, command, run
-from symgen.bench.candidate import CCandidate, CUnit
-from symgen.bench.peers import roster
-from symgen.bench.peers.casadi_engine import CasadiEngine
-from symgen.cli import main
+from symgen.cli.main import main
+from symgen.laboratory.bench import batch, build, callgrind, charts, command, run
+from symgen.laboratory.bench.candidate import CCandidate, CUnit
+from symgen.laboratory.bench.peers import roster
+from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
 
 SKATE = str(ROOT / "models" / "skate.yaml")
 

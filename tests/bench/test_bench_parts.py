@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 
-from symgen.bench.build import Footprint
-from symgen.bench.callgrind import inclusive_costs
-from symgen.bench.candidate import Task
-from symgen.bench.charts import spread, time_against_error
-from symgen.bench.goals import GOALS, PAPER, STUDY
-from symgen.bench.pages import deviation_lines, page
-from symgen.bench.pareto import pareto_front
-from symgen.bench.run import Benchmark, Comparison, Measured
-from symgen.bench.tables import bench_tables
-from symgen.bench.workload import Errors
+from symgen.laboratory.bench.build import Footprint
+from symgen.laboratory.bench.callgrind import inclusive_costs
+from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.charts import spread, time_against_error
+from symgen.laboratory.bench.goals import GOALS, PAPER, STUDY
+from symgen.laboratory.bench.pages import deviation_lines, page
+from symgen.laboratory.bench.pareto import pareto_front
+from symgen.laboratory.bench.run import Benchmark, Comparison, Measured
+from symgen.laboratory.bench.tables import bench_tables
+from symgen.laboratory.bench.workload import Errors
 
 PROFILE = """version: 1
 creator: callgrind-3.19.0

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 import shipped
 
-from symgen.bench import batch
-from symgen.bench.batch import Many, many_states
-from symgen.bench.batch_pages import many_lines, many_section
-from symgen.bench.candidate import Task
-from symgen.bench.symgen_kernels import programs_of, symgen_candidates
-from symgen.bench.workload import Workload
+from symgen.laboratory.bench import batch
+from symgen.laboratory.bench.batch import Many, many_states
+from symgen.laboratory.bench.batch_pages import many_lines, many_section
+from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.symgen_kernels import programs_of, symgen_candidates
+from symgen.laboratory.bench.workload import Workload
 
 MANY = (
     Many("symgen", "batch", "C", "float64", 20.0, 10.0),

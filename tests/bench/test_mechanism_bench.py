@@ -8,17 +8,17 @@ import casadi
 import pytest
 from shipped import ROOT, model
 
-from symgen.bench import build as build_module
-from symgen.bench import mechanism_pages, mechanisms
-from symgen.bench.goals import AS_WRITTEN, Goal
-from symgen.bench.mechanism_goals import CHEAPEST_WRITTEN, GOALS, MECHANISMS, STUDY
-from symgen.bench.mechanism_pages import page, table_of
-from symgen.bench.mechanisms import drawn_states, mechanism_benchmark
-from symgen.bench.peers.casadi_engine import CasadiEngine
-from symgen.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
-from symgen.bench.peers.mechanics import mechanics
-from symgen.bench.peers.native import direct_balance
-from symgen.bench.peers.pinocchio_program import pinocchio_time, tree_text
+from symgen.laboratory.bench import build as build_module
+from symgen.laboratory.bench import mechanism_pages, mechanisms
+from symgen.laboratory.bench.goals import AS_WRITTEN, Goal
+from symgen.laboratory.bench.mechanism_goals import CHEAPEST_WRITTEN, GOALS, MECHANISMS, STUDY
+from symgen.laboratory.bench.mechanism_pages import page, table_of
+from symgen.laboratory.bench.mechanisms import drawn_states, mechanism_benchmark
+from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
+from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
+from symgen.laboratory.bench.peers.mechanics import mechanics
+from symgen.laboratory.bench.peers.native import direct_balance
+from symgen.laboratory.bench.peers.pinocchio_program import pinocchio_time, tree_text
 
 
 def quiet(_: str) -> None:

@@ -8,16 +8,16 @@ from pathlib import Path
 import pytest
 from shipped import NAMES, ROOT, model
 
-from symgen.bench import build as build_module
-from symgen.bench.build import build, results_of
-from symgen.bench.candidate import Task
-from symgen.bench.peers.roster import peers, python_peers
-from symgen.bench.python_timing import run_python
-from symgen.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
-from symgen.bench.workload import admissible_samples, errors_of, workload
+from symgen.laboratory.bench import build as build_module
+from symgen.laboratory.bench.build import build, results_of
+from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.peers.roster import peers, python_peers
+from symgen.laboratory.bench.python_timing import run_python
+from symgen.laboratory.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
+from symgen.laboratory.bench.workload import admissible_samples, errors_of, workload
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.verify.reference import Reference
+from symgen.verify.reference.reference import Reference
 
 pytestmark = pytest.mark.toolchain
 STATES = 12

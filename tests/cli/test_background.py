@@ -10,14 +10,14 @@ import time
 
 import pytest
 
-from symgen.background import Background, Receive
 from symgen.diagnostics import SymgenBug
+from symgen.runtime.background import Background, Receive
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="processes are forked on Linux only")
 
 PARENT = """
 import os, signal, time
-from symgen.background import Background
+from symgen.runtime.background import Background
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run behind a shell's `&`
 
@@ -31,7 +31,7 @@ with Background(work):
 
 TYPESET_BEFORE = """
 import typst
-from symgen.background import Background
+from symgen.runtime.background import Background
 
 def work(receive):
     return len(typst.compile(receive(), format="pdf"))

@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from symgen import cli, pipeline
+from symgen import pipeline
+from symgen.cli import main as cli
 from symgen.diagnostics import Notice, SymgenBug
+from symgen.generation.results import LargestError, Options, Result, Summary, WrongUseError
 from symgen.ir.kernel import Scalar
 from symgen.model.load import load_model
-from symgen.results import LargestError, Options, Result, Summary, WrongUseError
 
 MODELS = Path(__file__).resolve().parents[2] / "models"
 SKATE = str(MODELS / "skate.yaml")

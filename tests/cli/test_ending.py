@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from symgen.cli import main
-from symgen.processes import ToolError, run
+from symgen.cli.main import main
+from symgen.runtime.processes import ToolError, run
 from symgen.verify import compile as compiling
 
 MODEL = """model: {name}
@@ -131,7 +131,7 @@ def _listening() -> None:
 def test_the_guardian_lets_groups_that_have_ended_alone() -> None:
     # of two groups the one that was forgotten goes on when the watching process ends
     script = (
-        "import os, subprocess\nfrom symgen import guardian\n"
+        "import os, subprocess\nfrom symgen.runtime import guardian\n"
         "quiet = {'stdout': subprocess.DEVNULL, 'process_group': 0}\n"
         "groups = [subprocess.Popen(['sleep', '30'], **quiet) for _ in range(2)]\n"
         "for group in groups:\n    guardian.watch(group.pid)\n"
@@ -148,7 +148,7 @@ def test_the_guardian_lets_groups_that_have_ended_alone() -> None:
 
 def test_a_hangup_that_is_ignored_stays_ignored() -> None:
     script = (
-        "import os, signal, sys\nfrom symgen.signals import signals_end_the_run\n"
+        "import os, signal, sys\nfrom symgen.cli.signals import signals_end_the_run\n"
         "signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
         "with signals_end_the_run():\n    os.kill(os.getpid(), signal.SIGHUP)\n    print('still here')\n"
     )

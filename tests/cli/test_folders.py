@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from symgen.folders.journal import STAGING
-from symgen.folders.lock import LOCK, LockedError, folder_lock
-from symgen.folders.manifest import FILES, read_manifest
-from symgen.write import ForeignFileError, compare, recover_folders, write_files
+from symgen.output.journal import STAGING
+from symgen.output.lock import LOCK, LockedError, folder_lock
+from symgen.output.manifest import FILES, read_manifest
+from symgen.output.write import ForeignFileError, compare, recover_folders, write_files
 
 OLD = {f"c/part{k}.c": f"old {k}\n" for k in range(3)} | {"c/gone.c": "old\n", "derivation.json": "{}\n"}
 NEW = {f"c/part{k}.c": f"new {k}\n" for k in range(3)} | {"python/added.py": "new\n", "derivation.json": "[]\n"}
@@ -119,8 +119,8 @@ def test_models_that_differ_in_capitals_do_not_share_a_folder(tmp_path: Path) ->
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from symgen import write
-from symgen.folders import journal
+from symgen.output import write
+from symgen.output import journal
 sys.path.insert(0, sys.argv[3])
 from test_folders import NEW
 calls, limit = 0, int(sys.argv[2])
@@ -181,7 +181,7 @@ def test_a_check_sees_the_mended_folder(tmp_path: Path) -> None:
 RACING = """
 import sys
 from pathlib import Path
-from symgen.write import write_files
+from symgen.output.write import write_files
 name = sys.argv[2]
 for round in range(8):
     write_files(Path(sys.argv[1]), {f"c/{k}.c": f"{name} {round}\\n" for k in range(30)} | {f"c/{name}.h": "own\\n"})
@@ -201,7 +201,7 @@ def test_runs_into_one_folder_leave_the_files_of_one(tmp_path: Path) -> None:
 HOLDING = """
 import sys, time
 from pathlib import Path
-from symgen.folders.lock import folder_lock
+from symgen.output.lock import folder_lock
 with folder_lock(Path(sys.argv[1]), print):
     print("held", flush=True)
     time.sleep(60)

@@ -11,8 +11,8 @@ import time
 
 import pytest
 
-from symgen import activity, clock
-from symgen.activity import each, told, working
+from symgen.runtime import activity, clock
+from symgen.runtime.activity import each, told, working
 from symgen.terminal import Progress
 
 

@@ -10,17 +10,17 @@ from typing import Any
 import pytest
 from wide_record import NAME, recorded
 
-from symgen.bench.candidate import Task
-from symgen.bench.run import benchmark
-from symgen.bench.symgen_kernels import generated, programs_of
-from symgen.cli import main
-from symgen.draft import Draft
+from symgen.cli.main import main
+from symgen.generation.draft import Draft
+from symgen.generation.recorded import as_recorded
+from symgen.generation.results import Options
+from symgen.generation.runnable import Kernels
 from symgen.ir.kernel import Scalar
 from symgen.ir.wide_functions import works_with_pairs
+from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.run import benchmark
+from symgen.laboratory.bench.symgen_kernels import generated, programs_of
 from symgen.model.load import load_model
-from symgen.recorded import as_recorded
-from symgen.results import Options
-from symgen.stress.kernels import Kernels
 
 BOTH: tuple[Scalar, ...] = ("float64", "float32")
 TASK = Task("forward_dynamics", "u", 3)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from symgen.cli import main
+from symgen.cli.main import main
 from symgen.verify.states import VerificationError
 
 MODEL = """model: steep

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from symgen import cli
+from symgen.cli import main as cli
 
 CRANE = """\
 model: crane

@@ -6,7 +6,7 @@ import io
 
 import pytest
 
-from symgen.results import Summary
+from symgen.generation.results import Summary
 from symgen.terminal import SPELLED, Progress, summary_table
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from symgen.diagnostics import SymgenBug
-from symgen.write import compare, write_files
+from symgen.output.write import compare, write_files
 
 FILES_MADE = ".symgen-files"
 FILES = {"c/m.h": "header\n", "c/m.c": "source\n", "python/m.py": "python\n", "derivation.json": "{}\n"}

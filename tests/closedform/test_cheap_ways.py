@@ -2,11 +2,11 @@
 
 from fractions import Fraction
 
-from symgen.closedform.fourier import fourier_series, least_length
-from symgen.closedform.ring import LONG_PRODUCT
+from symgen.closedform.algebra.fourier import fourier_series, least_length
+from symgen.closedform.algebra.ring import LONG_PRODUCT
+from symgen.closedform.algebra.translate import Translator
 from symgen.closedform.spelling import Speller
-from symgen.closedform.translate import Translator
-from symgen.model.expression import Binary, Call, Expression, Name, Number, Power
+from symgen.model.expressions.expression import Binary, Call, Expression, Name, Number, Power
 
 A, B, X, P = (Name(name) for name in "abxp")
 

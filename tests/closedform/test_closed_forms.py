@@ -10,10 +10,10 @@ from mpmath import mp
 from shipped import NAMES
 from sympy import Add, Matrix, Mul, Symbol, cos, sin
 
+from symgen.closedform.algebra.substitution import substitute
 from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
 from symgen.closedform.points import Point, generic_points
 from symgen.closedform.spelling import spell_expression
-from symgen.closedform.substitution import substitute
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model, PublishedMatrix
 

@@ -6,11 +6,21 @@ import pytest
 import sympy
 from sympy import Symbol, cos, sin
 
-from symgen.closedform.homogeneous import common_factor, factorise
-from symgen.closedform.quotient import quotient
+from symgen.closedform.algebra.homogeneous import common_factor, factorise
+from symgen.closedform.algebra.quotient import quotient
+from symgen.closedform.algebra.translate import Translator
 from symgen.closedform.spelling import Speller, spell_expression
-from symgen.closedform.translate import Translator
-from symgen.model.expression import Binary, Call, Expression, FunctionName, Name, Negation, Number, Pi, Power
+from symgen.model.expressions.expression import (
+    Binary,
+    Call,
+    Expression,
+    FunctionName,
+    Name,
+    Negation,
+    Number,
+    Pi,
+    Power,
+)
 
 
 def number(value: str) -> Number:

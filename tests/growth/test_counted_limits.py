@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 from linkages import row_of_four_bars
 
-from symgen import effort
-from symgen.dynamics.alternatives import Alternatives
-from symgen.dynamics.genericity import genericity
-from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.select import ARTICULATED, derive_quantities
-from symgen.effort import SCALAR, TooLongError, at_most
-from symgen.graph.scalar import Graph
+from symgen.mechanics.genericity import genericity
+from symgen.mechanics.system import System
 from symgen.model.load import load_text
+from symgen.quantities.alternatives import Alternatives
+from symgen.quantities.select import ARTICULATED, derive_quantities
+from symgen.runtime import effort
+from symgen.runtime.effort import SCALAR, TooLongError, at_most
+from symgen.symbolic.scalar import Graph
 
 
 def tree(links: int) -> str:
@@ -65,13 +65,13 @@ def test_ways_that_take_too_long_are_named(monkeypatch: pytest.MonkeyPatch) -> N
     tail = "configuration: {a0: 1, a1: 1, a2: 1, b1: 0, b2: 0}"
     model = load_text(row_of_four_bars(2, ground="0.5", tail=tail), "row.yaml")
     choice = derive_quantities(model, ("inverse_dynamics",)).choices[0]
-    free = Alternatives(model, genericity(Mechanics(model)), None)
+    free = Alternatives(model, genericity(System(model)), None)
     ways = [one.choice.way for one in free.of("inverse_dynamics", choice, 1)]
     assert ways
     assert not free.too_long
     monkeypatch.setattr(effort, "FREE_SCALARS", 1000)
     monkeypatch.setattr(effort, "SCALARS_AN_OPERATION", 1)
-    short = Alternatives(model, genericity(Mechanics(model)), None)
+    short = Alternatives(model, genericity(System(model)), None)
     left = [one.choice.way for one in short.of("inverse_dynamics", choice, 1)]
     assert short.too_long["inverse_dynamics"]
     assert {*left, *short.too_long["inverse_dynamics"]} >= {*ways}

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 from linkages import row_of_four_bars
 
-from symgen.dynamics import everything
-from symgen.dynamics.everything import MAIN, OF_ALL
-from symgen.dynamics.select import derive_quantities
+from symgen.generation.results import Options
 from symgen.model.load import load_text
 from symgen.pipeline import generate
-from symgen.results import Options
+from symgen.quantities import everything
+from symgen.quantities.everything import MAIN, OF_ALL
+from symgen.quantities.select import derive_quantities
 
 TEXT = row_of_four_bars(1, ground="0.7", tail="configuration: {a0: 1, a1: 1, b1: 0}")
 MODEL = load_text(TEXT, "row.yaml")

@@ -10,15 +10,17 @@ from typing import Any
 import pytest
 from counted import calls
 
-from symgen.dynamics.admission.search import Search, symbols
-from symgen.dynamics.genericity import genericity
-from symgen.dynamics.inverse import InverseDynamics, Offer
-from symgen.dynamics.mechanics import Mechanics
+from symgen.mechanics.genericity import genericity
+from symgen.mechanics.system import System
+from symgen.methods.selection import InverseDynamics, Offer
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify import reference_closing, reference_evaluation, reference_linear
-from symgen.verify.reference import Reference
-from symgen.verify.reference_linear import solve
+from symgen.validity.search import ZeroSearch, symbols
+from symgen.verify.reference import closing as reference_closing
+from symgen.verify.reference import evaluation as reference_evaluation
+from symgen.verify.reference import linear as reference_linear
+from symgen.verify.reference.linear import solve
+from symgen.verify.reference.reference import Reference
 from symgen.verify.states import sample_states
 
 
@@ -52,7 +54,7 @@ def sliders(count: int) -> Model:
 
 def test_each_loop_has_a_test_of_its_own() -> None:
     model = sliders(3)
-    offer = InverseDynamics(model, genericity(Mechanics(model))).offer("nullspace")
+    offer = InverseDynamics(model, genericity(System(model))).offer("nullspace")
     assert isinstance(offer, Offer)
     held = [symbols([guard.denominator]) for guard in offer.form.guards]
     assert len(held) == 3
@@ -67,8 +69,8 @@ def test_each_loop_has_a_test_of_its_own() -> None:
 
 def test_zeros_are_looked_for_where_the_scalar_is() -> None:
     model = sliders(4)
-    mechanics = Mechanics(model)
-    graph, search = mechanics.graph, Search(mechanics, genericity(mechanics))
+    mechanics = System(model)
+    graph, search = mechanics.graph, ZeroSearch(mechanics, genericity(mechanics))
     assert search.zero_of(graph.symbol("x2") + 5) is None
     found = search.zero_of(graph.trig("sin", graph.symbol("s1")) - graph.const(1) / 10)
     assert found is not None
@@ -79,8 +81,8 @@ def test_zeros_are_looked_for_where_the_scalar_is() -> None:
 
 def test_twice_the_loops_are_a_few_times_the_work() -> None:
     def looked_for(count: int) -> None:
-        mechanics = Mechanics(model := sliders(count))
-        search = Search(mechanics, genericity(Mechanics(model)))
+        mechanics = System(model := sliders(count))
+        search = ZeroSearch(mechanics, genericity(System(model)))
         for k in range(count):
             assert search.zero_of(mechanics.graph.symbol(f"x{k}") + 5) is None
 
@@ -90,7 +92,7 @@ def test_twice_the_loops_are_a_few_times_the_work() -> None:
 
 def test_forces_of_twice_the_loops_are_a_few_times_the_work() -> None:
     def forces(model: Model) -> None:
-        mechanics = Mechanics(model)
+        mechanics = System(model)
         assert not any(force.is_zero for force in mechanics.balance)
 
     few, many = (calls(partial(forces, sliders(n)), 20_000_000) for n in (6, 12))

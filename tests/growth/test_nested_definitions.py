@@ -10,12 +10,12 @@ from counted import calls
 
 from symgen.closedform.forms import derive_closed_forms
 from symgen.diagnostics import ModelError
-from symgen.dynamics.select import derive_quantities
-from symgen.graph.scalar import Graph
+from symgen.generation.results import Options
 from symgen.model.load import load_text
 from symgen.pipeline import generate
-from symgen.results import Options
-from symgen.verify.reference import Reference
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.scalar import Graph
+from symgen.verify.reference.reference import Reference
 
 LINES = {
     "sines": "sin({before}) + {before}/3",

@@ -7,10 +7,10 @@ from fractions import Fraction
 import pytest
 from flint import arb, ctx, fmpq
 
-from symgen.graph.scalar import PI
 from symgen.ir.constants import sine_and_cosine, square_root, with_constants_evaluated
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Argument, Block, Check, Kernel, Literal, Load, Local, Statement, Status
+from symgen.symbolic.scalar import PI
 
 X = Local("x")
 

@@ -10,8 +10,8 @@ import pytest
 import shipped
 from handmade import literal, op
 
-from symgen.emit.defaults import default_values
-from symgen.emit.locals import all_statements, used_locals
+from symgen.backends.defaults import default_values
+from symgen.backends.locals import all_statements, used_locals
 from symgen.ir.given_trig import given_trig
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Argument, Block, Check, Kernel, Local, Status

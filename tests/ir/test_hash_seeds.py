@@ -11,12 +11,12 @@ ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = """
 import hashlib, sys
 from pathlib import Path
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.c import emit_c
-from symgen.emit.c_batch import emit_c_batch
-from symgen.emit.c_prepared import emit_c_prepared
-from symgen.emit.python import emit_python
-from symgen.ir.schedule import schedule
+from symgen.quantities.select import derive_quantities
+from symgen.backends.c.plain import emit_c
+from symgen.backends.c.batch import emit_c_batch
+from symgen.backends.c.prepared import emit_c_prepared
+from symgen.backends.python.module import emit_python
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model
 digest = hashlib.sha256()
 for name in ("slider_crank", "front_car"):

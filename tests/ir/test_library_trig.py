@@ -10,13 +10,13 @@ from dataclasses import replace
 import pytest
 import shipped
 
-from symgen.emit.defaults import default_values
-from symgen.emit.locals import all_statements, used_locals
+from symgen.backends.defaults import default_values
+from symgen.backends.locals import all_statements, used_locals
+from symgen.generation.results import TRIG, Options
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Block, Check, Scalar, Status
 from symgen.ir.library_trig import with_library_trig
 from symgen.pipeline import generate
-from symgen.results import TRIG, Options
 
 
 def checks(block: Block) -> Iterator[Check]:

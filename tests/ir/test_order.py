@@ -9,11 +9,11 @@ from typing import Literal as Literally
 import pytest
 import shipped
 
-from symgen.dynamics.select import derive_quantities
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Statement, Status
 from symgen.ir.order import REGISTERS, relaxed
-from symgen.ir.schedule import schedule
 from symgen.ir.split import names_in, names_of_check
+from symgen.lowering.schedule import schedule
+from symgen.quantities.select import derive_quantities
 
 QUANTITIES = {
     "rapkm_2rrr_rr": ("inverse_dynamics", "nullspace_projector"),
@@ -34,7 +34,7 @@ def waiting(kernel: Kernel) -> int:
 
 
 def as_written(monkeypatch: pytest.MonkeyPatch, name: str) -> tuple[Kernel, ...]:
-    monkeypatch.setattr("symgen.ir.schedule.relaxed", lambda kernel: kernel)
+    monkeypatch.setattr("symgen.lowering.schedule.relaxed", lambda kernel: kernel)
     derived = derive_quantities(shipped.model(name), QUANTITIES[name])
     return schedule(derived.mechanics, derived.quantities, ("float64",))["float64"].kernels
 

@@ -11,8 +11,8 @@ import pytest
 import shipped
 from handmade import literal, op
 
-from symgen.emit.defaults import default_values
-from symgen.emit.literals import round_to
+from symgen.backends.defaults import default_values
+from symgen.backends.literals import round_to
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Block, Check, Kernel, Local, Program, Scalar, Status
 from symgen.ir.prepare import WORTHWHILE, Prepared, prepare

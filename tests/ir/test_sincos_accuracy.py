@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from flint import arb, ctx
 
-from symgen.graph.scalar import PI
 from symgen.ir.interpret import Interpreter, round_literal
 from symgen.ir.kernel import Literal, Local, Operand, Scalar
 from symgen.ir.sincos import WIDE_ANGLE_LIMIT, angle_limit, half_pi_parts, sincos
+from symgen.symbolic.scalar import PI
 
 HALF_PI = math.pi / 2
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import shipped
 
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.defaults import default_values
+from symgen.backends.defaults import default_values
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Program, Scalar, Status
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
+from symgen.quantities.select import derive_quantities
 
 LIMITS: dict[tuple[str, Scalar], float] = {
     ("normal", "float64"): 1e5,

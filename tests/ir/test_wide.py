@@ -34,8 +34,8 @@ from symgen.ir.wide import GAINED, widened, with_sharp_thresholds
 from symgen.ir.wide_functions import WIDE, wide_function
 from symgen.verify.exactness import EXACT, exact_outputs
 from symgen.verify.many_states import run_many
-from symgen.verify.reference import State
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference.reference import State
+from symgen.verify.reference.tape import precision
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from laws_harness import System, system
 
-from symgen.graph.traverse import reached
+from symgen.symbolic.traverse import reached
 from symgen.verify.states import sample_states
 
 PRESS = """\

@@ -8,9 +8,9 @@ import pytest
 import special_texts as texts
 from laws_harness import System, system
 
-from symgen.dynamics.structure import analyse
 from symgen.ir.kernel import Scalar, Status
-from symgen.verify.reference import State
+from symgen.mechanics.structure import analyse
+from symgen.verify.reference.reference import State
 from symgen.verify.states import rounded, sample_states
 
 SMALL = {

@@ -9,7 +9,7 @@ import special_texts as texts
 from laws_harness import System, shipped, system
 
 from symgen.ir.kernel import Scalar, Status
-from symgen.verify.reference import State
+from symgen.verify.reference.reference import State
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 EPS = {"float64": 2.0**-53, "float32": 2.0**-24}

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import robot_packages
 
-from symgen.model.expression import Expression
-from symgen.model.mechanics import default_values
+from symgen.model.configurations.mechanics import default_values
+from symgen.model.expressions.expression import Expression
+from symgen.model.expressions.walk import evaluate
 from symgen.model.mechanism import WORLD, Quaternion
 from symgen.model.model import Model
-from symgen.model.walk import evaluate
 
 pinocchio = robot_packages.pinocchio()
 

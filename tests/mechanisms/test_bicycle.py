@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symgen.dynamics.admission.resolution import stands_out
-from symgen.dynamics.admission.verdict import LOST
-from symgen.dynamics.genericity import configurations, genericity
-from symgen.dynamics.inverse import InverseDynamics, Offer
-from symgen.dynamics.mechanics import Mechanics
+from symgen.mechanics.genericity import configurations, genericity
+from symgen.mechanics.system import System
+from symgen.methods.admission import LOST
+from symgen.methods.selection import InverseDynamics, Offer
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
-from symgen.model.mechanics import default_values
-from symgen.verify.reference import Reference, State
+from symgen.validity.resolution import stands_out
+from symgen.verify.reference.reference import Reference, State
 
 M = np.array([[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]])
 K0 = np.array([[-80.95, -2.59951685249872], [-2.59951685249872, -0.80329488458618]])
@@ -93,7 +93,7 @@ def test_forms_that_float32_would_refuse_everywhere_are_told_apart() -> None:
 
     Minors stand beside the lengths of rows, which exceed them by little.
     """
-    mechanics = Mechanics(bicycle().model)
+    mechanics = System(bicycle().model)
     forms, points = InverseDynamics(mechanics.model, genericity(mechanics)), configurations(mechanics, 2)
     offers = {name: forms.offer(name) for name in ("range", "minor", "nullspace")}
     standing = {

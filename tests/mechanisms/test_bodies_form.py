@@ -12,16 +12,16 @@ from typing import Any
 import pytest
 from shipped import ALL, NAMES
 
-from symgen.dynamics.mechanics import Mechanics
-from symgen.graph.evaluate import Evaluator
-from symgen.graph.scalar import Scalar
-from symgen.graph.traverse import cost
-from symgen.model.energy_form import energy_form
+from symgen.generation.results import Options
+from symgen.mechanics.system import System
+from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
 from symgen.pipeline import generate
-from symgen.results import Options
-from symgen.verify.reference import Reference, State
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.traverse import cost
+from symgen.verify.reference.reference import Reference, State
 
 HERE = Path(__file__).parent
 MODELS = HERE.parents[1] / "models"
@@ -72,7 +72,7 @@ def exact(reference: Reference, state: State, quantity: str) -> list[float]:
     return [float(x) for x in reference.matrices(state, [quantity])[quantity].entries()]
 
 
-def on_graph(mechanics: Mechanics, quantity: str) -> list[Scalar]:
+def on_graph(mechanics: System, quantity: str) -> list[Scalar]:
     """Entries of the same quantity on the graph."""
     if quantity == "energy":
         return [mechanics.kinetic_energy, mechanics.potential_energy]
@@ -91,7 +91,7 @@ def offered(reference: Reference, quantity: str) -> bool:
 @pytest.mark.parametrize("name", SMALL)
 def test_the_graph_agrees_with_the_walk_of_the_reference(name: str) -> None:
     model = mechanism(name)
-    reference, mechanics = Reference(model), Mechanics(model)
+    reference, mechanics = Reference(model), System(model)
     for quantity in QUANTITIES:
         if not offered(reference, quantity):
             continue
@@ -143,7 +143,7 @@ outputs: [point_position, point_jacobian]
 @pytest.mark.parametrize("name", SMALL)
 def test_newton_and_euler_agree_with_lagrange(name: str) -> None:
     model = mechanism(name)
-    bodies, energies = Mechanics(model), Mechanics(energy_form(model))
+    bodies, energies = System(model), System(energy_form(model))
     state = values(a_state(model, 3), model)
     for quantity in ("balance", "bias_force", "applied_force"):
         expected = Evaluator(getattr(energies, quantity))(state)
@@ -175,7 +175,7 @@ def test_the_twins_are_the_same_system(twin: str, original: str) -> None:
 
 
 def test_recursion_is_linear_in_the_number_of_links() -> None:
-    four, eight = (cost(Mechanics(mechanism(name)).balance) for name in ("chain4", "chain8"))
+    four, eight = (cost(System(mechanism(name)).balance) for name in ("chain4", "chain8"))
     per_link = (eight.multiplications - four.multiplications) / 4, (eight.additive - four.additive) / 4
     assert per_link[0] <= 20
     assert per_link[1] <= 16
@@ -218,7 +218,7 @@ gravity: [0, 0, -10]
 """,
         "m.yaml",
     )
-    evaluate = Evaluator([Mechanics(model).potential_energy])
+    evaluate = Evaluator([System(model).potential_energy])
     tilt = {"e_0": 0.6, "e_1": 0.8, "e_2": 0.0, "e_3": 0.0}
     assert evaluate(tilt) == pytest.approx([5 * (0.36 - 0.64)])
     assert evaluate({name: 3 * value for name, value in tilt.items()}) == pytest.approx([5 * (0.36 - 0.64)])

@@ -13,17 +13,17 @@ import shipped
 from linkages import cranks_on_one_coupler, row_of_four_bars
 
 from symgen.diagnostics import ModelError
-from symgen.dynamics.admission.search import Search
-from symgen.dynamics.genericity import genericity
-from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.select import derive_quantities
 from symgen.ir.interpret import interpret
 from symgen.ir.kernel import Status
-from symgen.ir.schedule import schedule
-from symgen.model.assembly import Place, Ranks
+from symgen.lowering.schedule import schedule
+from symgen.mechanics.genericity import genericity
+from symgen.mechanics.system import System
+from symgen.model.configurations.assembly import Place, Ranks
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify.reference import Reference
+from symgen.quantities.select import derive_quantities
+from symgen.validity.search import ZeroSearch
+from symgen.verify.reference.reference import Reference
 
 
 def inverse(model: Model, q: Sequence[float]) -> tuple[Status, tuple[float, ...]]:
@@ -69,7 +69,7 @@ def test_a_singular_start_and_a_branch_of_other_ranks_are_told() -> None:
 @pytest.mark.parametrize("tail", ["", "configuration: {a0: 0.6, a1: 0.6, a2: 0.6, b: 0}"])
 def test_more_cranks_than_needed_move(count: int, tail: str) -> None:
     model = load_text(cranks_on_one_coupler(count, tail), "cranks.yaml")
-    generic = genericity(Mechanics(model))
+    generic = genericity(System(model))
     assert (generic.rank, generic.geometric_rank, generic.delta, generic.alpha) == (count, count, 1, 1)
     status, u = inverse(model, [0.6] * count + [0.0])
     assert status == Status.OK
@@ -78,11 +78,11 @@ def test_more_cranks_than_needed_move(count: int, tail: str) -> None:
 
 def test_a_scalar_that_vanishes_in_the_stretched_pose_alone_has_no_regular_zero() -> None:
     """Beside that pose rows are short and cross each other: their length there is no measure."""
-    mechanics = Mechanics(load_text(cranks_on_one_coupler(4), "cranks.yaml"))
+    mechanics = System(load_text(cranks_on_one_coupler(4), "cranks.yaml"))
     graph = mechanics.graph
     a, b = (graph.trig("sin", graph.symbol(name)) for name in ("a0", "b"))
-    assert Search(mechanics, genericity(mechanics)).zero_of(a * a + b * b) is None
-    found = Search(mechanics, genericity(mechanics)).zero_of(a - Fraction(1, 2))
+    assert ZeroSearch(mechanics, genericity(mechanics)).zero_of(a * a + b * b) is None
+    found = ZeroSearch(mechanics, genericity(mechanics)).zero_of(a - Fraction(1, 2))
     assert found is not None
     assert math.sin(float(dict(found.point)["a0"])) == pytest.approx(0.5)
 
@@ -101,7 +101,7 @@ def test_too_few_inputs_are_still_served() -> None:
     text = one.replace("  b1: {unit: rad}", "  b1: {unit: rad}\n  s: {unit: rad}")
     text = text.replace("kinetic_energy: ", "kinetic_energy: m*l**2/6*s_dot**2 + ")
     model = load_text(text, "side_by_side.yaml")
-    generic = genericity(Mechanics(model))
+    generic = genericity(System(model))
     assert (generic.delta, generic.alpha) == (2, 1)
     assert inverse(model, [0.8, 0.8, 0.0, 0.3])[0] == Status.OK
 
@@ -120,7 +120,7 @@ configuration: {x: 0.3, y: 0.3, z: 0.5, w: 0.4, v: 0.1}
 def test_a_branch_of_greater_rank_gives_a_status() -> None:
     """Two rows that say the same while the slides stay together; when they part, both gates are shut."""
     model = load_text(GATED, "gated.yaml")
-    generic = genericity(Mechanics(model))
+    generic = genericity(System(model))
     assert (generic.rank, generic.alpha, generic.rank_is_identical) == (1, 4, False)
     assert any("the constraints have rank 2, here 1" in notice.message for notice in model.notices)
     status, u = inverse(model, [0.3, 0.3, 0.5, 0.4, 0.1])
@@ -139,7 +139,7 @@ kinetic_energy: x_dot**2 + 2*a_dot**2
 constraints: {geometric: {guide: 2.3*x - sin(a)}}
 inputs: {drive: {acts_on: {a: GAIN}}}
 """
-    found = genericity(Mechanics(load_text(text.replace("GAIN", gain), "guided.yaml")))
+    found = genericity(System(load_text(text.replace("GAIN", gain), "guided.yaml")))
     assert (found.rank, found.alpha) == (1, 1)
 
 
@@ -162,7 +162,7 @@ inputs:
   idle: {point: tip, direction: [0.3, 0.12, 0], axes: arm}
 """
     model = load_text(text, "radial.yaml")
-    assert genericity(Mechanics(model)).alpha == 1
+    assert genericity(System(model)).alpha == 1
     assert Reference(model).ranks.actuation == 1
 
 
@@ -181,7 +181,7 @@ def test_inputs_that_do_more_on_a_branch_nobody_found_give_a_status() -> None:
 def test_ranks_that_hold_everywhere_need_no_test() -> None:
     """A loop in a tilted plane has three rows of rank two, whatever the angles."""
     model = shipped.model("tilted_four_bar")
-    generic = genericity(Mechanics(model))
+    generic = genericity(System(model))
     assert generic.rank < generic.r
     assert generic.rank_is_identical
     assert generic.actuation_is_identical
@@ -224,7 +224,7 @@ def test_what_cannot_close_is_named_with_its_gap_at_once(count: int) -> None:
 def test_a_long_row_takes_no_dense_sums() -> None:
     before = resource.getrusage(resource.RUSAGE_SELF)
     model = load_text(row_of_four_bars(25), "long.yaml")
-    generic = genericity(Mechanics(model))
+    generic = genericity(System(model))
     after = resource.getrusage(resource.RUSAGE_SELF)
     assert (generic.rank, generic.delta, generic.alpha) == (50, 1, 1)
     assert after.ru_utime - before.ru_utime < 10

@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 from chains import chain
 
-from symgen.dynamics.select import ABSOLUTE, ARTICULATED, Derivations, derive_quantities
-from symgen.graph.traverse import topological
+from symgen.generation.results import Options
 from symgen.model.load import load_model
 from symgen.pipeline import generate
-from symgen.results import Options
+from symgen.quantities.select import ABSOLUTE, ARTICULATED, Selection, derive_quantities
+from symgen.symbolic.traverse import topological
 
 
-def derived(links: int, folder: Path, *outputs: str) -> Derivations:
+def derived(links: int, folder: Path, *outputs: str) -> Selection:
     path = folder / f"chain{links}.yaml"
     path.write_text(chain(links), encoding="utf-8")
     return derive_quantities(load_model(path), outputs)

@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 from shipped import ROOT
 
-from symgen.dynamics.mechanics import Mechanics
-from symgen.graph.evaluate import Evaluator
+from symgen.generation.runnable import Kernels
+from symgen.mechanics.system import System
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
-from symgen.model.mechanics import default_values
-from symgen.simulate.integrate import Motion, consistent_start, integrate
+from symgen.simulate.integrate import Trajectory, consistent_start, integrate
 from symgen.simulate.plant import QUANTITIES, Plant
-from symgen.stress.kernels import Kernels
+from symgen.symbolic.evaluate import Evaluator
 
 MODELS = {name: ROOT / "models" / f"{name}.yaml" for name in ("rolling_disc", "gough_stewart")}
 MODELS["floating_body"] = Path(__file__).parent / "floating_body.yaml"
 
 
-def free_motion(name: str, folder: Path, duration: float, rates: dict[str, float]) -> Motion:
+def free_motion(name: str, folder: Path, duration: float, rates: dict[str, float]) -> Trajectory:
     model = load_model(MODELS[name])
     plant = Plant(model, tuple(default_values(model.parameters).values()), Kernels(model, folder, QUANTITIES))
     q = [float(dict(model.configuration).get(c.name, 0)) for c in model.coordinates]
@@ -52,7 +52,7 @@ def test_momentum_of_a_floating_body(tmp_path: Path) -> None:
     """Weight acts along z: momentum along x and y, and angular momentum about the z axis of the world, stay."""
     model = load_model(MODELS["floating_body"])
     motion = free_motion("floating_body", tmp_path, 1.0, {"a": 20.0, "e_1": 0.5, "e_3": 0.3, "x": 1.0})
-    evaluate = Evaluator([entry for row in Mechanics(model).mass_matrix for entry in row])
+    evaluate = Evaluator([entry for row in System(model).mass_matrix for entry in row])
     names = [c.name for c in model.coordinates]
     kept = []
     for q, qd in zip(motion.q, motion.qd, strict=True):

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from symgen import dense_motion
-from symgen.dynamics.forms import articulated
+from symgen.generation import dense_motion
+from symgen.generation.results import Options
+from symgen.methods.forward_dynamics import articulated
 from symgen.pipeline import generate
-from symgen.results import Options
 
 LINKS = 5
 OPTIONS = Options(scalars=("float64",), parts=("c",), verify=False)

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from generated_python import load_generated
 
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.python import emit_python
-from symgen.ir.schedule import schedule
+from symgen.backends.python.module import emit_python
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify.reference import Reference, State
+from symgen.quantities.select import derive_quantities
+from symgen.verify.reference.reference import Reference, State
 
 TEXT = """\
 model: tumbling

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from symgen.model.load import load_text
-from symgen.verify.reference import Reference, State
+from symgen.verify.reference.reference import Reference, State
 
 TEXT = """\
 model: crane

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from shipped import ROOT
 
-from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.select import derive_quantities
-from symgen.graph.evaluate import Evaluator
+from symgen.mechanics.system import System
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_text
-from symgen.model.mechanics import default_values
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.evaluate import Evaluator
 
 DISC = (ROOT / "models" / "rolling_disc.yaml").read_text(encoding="utf-8")
 TURNS = "rotation: [[z, psi], [x, beta]]}\n  disc: {parent: fork, rotation: [[y, phi]]}"
@@ -21,7 +21,7 @@ TURNS = "rotation: [[z, psi], [x, beta]]}\n  disc: {parent: fork, rotation: [[y,
 def rows(text: str, lean: float, heading: float = 0.7) -> np.ndarray:
     """B at some spin."""
     model = load_text(text, "disc.yaml")
-    B = Mechanics(model).constraint_jacobian
+    B = System(model).constraint_jacobian
     values = default_values(model.parameters) | {"x": 0.1, "y": 0.2, "z": 0.3, "psi": heading, "beta": lean, "phi": 2.1}
     return np.array(Evaluator([entry for row in B for entry in row])(values)).reshape(3, 6)
 

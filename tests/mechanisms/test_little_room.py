@@ -10,8 +10,8 @@ from symgen.closedform.forms import derive_closed_forms
 from symgen.diagnostics import ModelError
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify.reference import Reference
-from symgen.verify.reference_manifold import Ranks
+from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.reference import Reference
 from symgen.verify.states import VerificationError, sample_states
 
 LATCH = """\

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from symgen.diagnostics import ModelError
-from symgen.dynamics.select import derive_quantities
-from symgen.graph.evaluate import Evaluator
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify.reference import Reference, State
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.evaluate import Evaluator
+from symgen.verify.reference.reference import Reference, State
 from symgen.verify.states import sample_states
 from symgen.verify.tolerance import expectations
 

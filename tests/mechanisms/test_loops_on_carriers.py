@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from symgen.dynamics.select import derive_quantities
-from symgen.graph.evaluate import Evaluator
+from symgen.model.expressions.walk import names_in
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.model.walk import names_in
-from symgen.verify.reference import Reference
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.evaluate import Evaluator
+from symgen.verify.reference.reference import Reference
 from symgen.verify.states import sample_states
 from symgen.verify.tolerance import expectations
 

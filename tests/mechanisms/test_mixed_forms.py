@@ -7,13 +7,13 @@ from functools import cache
 import pytest
 from shipped import ROOT
 
-from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.select import derive_quantities
-from symgen.graph.evaluate import Evaluator
+from symgen.mechanics.system import System
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model, load_text
-from symgen.model.mechanics import default_values
 from symgen.model.model import Model
-from symgen.verify.reference import Reference, State
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.evaluate import Evaluator
+from symgen.verify.reference.reference import Reference, State
 
 BODIES = ROOT / "models" / "front_car_bodies.yaml"
 VALUES = {
@@ -57,5 +57,5 @@ def test_both_derivations_agree() -> None:
     assert found[0].keys() == found[1].keys()
     for name, expected in found[1].items():
         assert found[0][name] == pytest.approx(expected, rel=1e-11), name
-    balance = Evaluator(Mechanics(mixed()).balance)(values)
-    assert balance == pytest.approx(Evaluator(Mechanics(load_model(BODIES)).balance)(values), rel=1e-12)
+    balance = Evaluator(System(mixed()).balance)(values)
+    assert balance == pytest.approx(Evaluator(System(load_model(BODIES)).balance)(values), rel=1e-12)

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-from symgen.dynamics.select import derive_quantities
 from symgen.ir.interpret import interpret
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
+from symgen.quantities.select import derive_quantities
 
 QUANTITIES = (
     "point_position",

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 from shipped import ROOT
 
+from symgen.backends.c.plain import emit_c
 from symgen.diagnostics import ModelError
-from symgen.dynamics.genericity import genericity
-from symgen.dynamics.mechanics import Mechanics
-from symgen.dynamics.select import derive_quantities
-from symgen.dynamics.structure import analyse
-from symgen.emit.c import emit_c
-from symgen.graph.evaluate import Evaluator
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
+from symgen.mechanics.genericity import genericity
+from symgen.mechanics.structure import analyse
+from symgen.mechanics.system import System
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_text
-from symgen.model.mechanics import default_values
 from symgen.model.model import Model
 from symgen.package.files import emit_package
-from symgen.verify.reference import Reference
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.evaluate import Evaluator
+from symgen.verify.reference.reference import Reference
 from symgen.verify.states import sample_states
 
 FOUR_BAR = (ROOT / "models" / "tilted_four_bar.yaml").read_text(encoding="utf-8")
@@ -105,7 +105,7 @@ def state(
 
 
 def jacobian(model: Model, values: Mapping[str, float]) -> np.ndarray:
-    rows = Mechanics(model).constraint_jacobian
+    rows = System(model).constraint_jacobian
     flat = Evaluator([x for row in rows for x in row])(default_values(model.parameters) | values)
     return np.array(flat).reshape(len(rows), model.n)
 
@@ -130,7 +130,7 @@ def test_surplus_rows_change_neither_u_nor_the_accelerations() -> None:
 
 
 def test_multipliers_that_are_not_unique_are_told() -> None:
-    mechanics = Mechanics(four_bars()[0])
+    mechanics = System(four_bars()[0])
     told = {one.what: one.why for one in analyse(mechanics, genericity(mechanics)).decisions}
     assert "rank 2 of 3; none is dropped" in told["a unique set of multipliers"]
 

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symgen.diagnostics import Mistake, Span
-from symgen.model.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
-from symgen.model.parser import parse_expression
-from symgen.model.source import MappingNode, ScalarNode, read_tree
-from symgen.model.walk import evaluate, exact_value
+from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.expressions.parser import parse_expression
+from symgen.model.expressions.walk import evaluate, exact_value
+from symgen.model.file.source import MappingNode, ScalarNode, read_tree
 
 VALUES = {"x": 0.7, "y": -1.3, "x_dot": 2.1, "m_1": 3.5}
 

@@ -7,11 +7,11 @@ from fractions import Fraction
 import pytest
 
 from symgen.diagnostics import Mistake, ModelError, Span
+from symgen.model.configurations.numbers import FLOATS, precise
+from symgen.model.expressions.parser import parse_expression
+from symgen.model.file.source import ScalarNode
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.model.numbers import FLOATS, precise
-from symgen.model.parser import parse_expression
-from symgen.model.source import ScalarNode
 
 # sliders on one another along one axis, the last of them carries an arm
 SLIDERS = """model: sliders

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from symgen.model.expression import FUNCTION_ARITY
+from symgen.model.expressions.expression import FUNCTION_ARITY
+from symgen.model.file.schema import MODEL
 from symgen.model.load import load_text
 from symgen.model.quantities import QUANTITIES
-from symgen.model.schema import MODEL
 
 PAGE = (Path(__file__).parents[2] / "docs" / "model-language.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)

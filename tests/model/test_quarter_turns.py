@@ -6,8 +6,8 @@ from fractions import Fraction
 
 import pytest
 
-from symgen.model.expression import Expression, Number
-from symgen.model.fixed_angles import exact_sine_and_cosine, quarter_turns
+from symgen.model.expressions.expression import Expression, Number
+from symgen.model.kinematics.fixed_angles import exact_sine_and_cosine, quarter_turns
 from symgen.model.load import load_text
 from symgen.model.model import Model
 

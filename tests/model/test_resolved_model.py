@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from symgen.model.expression import Name, Number
+from symgen.model.expressions.expression import Name, Number
 from symgen.model.load import load_text
 from symgen.model.model import Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
 

@@ -9,10 +9,10 @@ import pytest
 import yaml
 from shipped import ALL, NAMES
 
+from symgen.model.configurations.mechanics import NumericSystem
+from symgen.model.file.schema import json_schema
 from symgen.model.load import load_model
-from symgen.model.mechanics import Mechanics
 from symgen.model.model import Model, PublishedEquations, PublishedMatrix
-from symgen.model.schema import json_schema
 
 FOLDER = Path(__file__).parents[2] / "models"
 
@@ -69,7 +69,7 @@ def test_the_schema_refuses(change: dict[str, object]) -> None:
 
 
 def test_configuration_is_assembled(model: Model) -> None:
-    mechanics = Mechanics(
+    mechanics = NumericSystem(
         model.coordinates, model.parameters, model.definitions, model.constraints, model.kinetic_energy
     )
     start = dict(model.configuration)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from symgen.diagnostics import Mistake, Span
-from symgen.model.algebra import BEYOND, Expansion, NotPolynomialError, is_zero
-from symgen.model.dense import is_positive, null_space, rank, solve_definite
-from symgen.model.expression import Expression
-from symgen.model.gradient import Gradients
-from symgen.model.parser import parse_expression
-from symgen.model.source import ScalarNode
-from symgen.model.walk import evaluate
+from symgen.model.configurations.algebra import BEYOND, Expansion, NotPolynomialError, is_zero
+from symgen.model.configurations.dense import is_positive, null_space, rank, solve_definite
+from symgen.model.configurations.gradient import Gradients
+from symgen.model.expressions.expression import Expression
+from symgen.model.expressions.parser import parse_expression
+from symgen.model.expressions.walk import evaluate
+from symgen.model.file.source import ScalarNode
 
 VALUES = {"x": 0.6, "y": 0.3, "m": 1.7}
 

@@ -9,8 +9,8 @@ import pint
 import pytest
 
 from symgen.diagnostics import Mistake, Span
-from symgen.model.source import ScalarNode
-from symgen.model.units import BASE, UNITS, Unit, parse_unit
+from symgen.model.expressions.units import BASE, UNITS, Unit, parse_unit
+from symgen.model.file.source import ScalarNode
 
 PINT_NAMES = {
     "kg": "kilogram",

@@ -12,24 +12,24 @@ import sympy
 
 from symgen.diagnostics import ModelError
 from symgen.model.load import load_model
-from symgen.notebook import Derived, derive
+from symgen.notebook import NotebookModel, derive
 
 MODELS = Path(__file__).parents[2] / "models"
 
 
 @pytest.fixture(scope="module")
-def car() -> Derived:
+def car() -> NotebookModel:
     return derive(MODELS / "front_car.yaml")
 
 
-def test_sympy_closed_form_of_the_paper(car: Derived) -> None:
+def test_sympy_closed_form_of_the_paper(car: NotebookModel) -> None:
     theta, phi, L = sympy.symbols("theta phi L")
     c, s = sympy.cos(theta) * sympy.cos(phi), sympy.sin(theta) * sympy.cos(phi)
     expected = sympy.Matrix([[c, s, sympy.sin(phi) / L, 0], [0, 0, 0, 1]])
     assert car.sympy["projected_control_pseudoinverse"] == expected
 
 
-def test_casadi_function_gives_the_same_numbers(car: Derived) -> None:
+def test_casadi_function_gives_the_same_numbers(car: NotebookModel) -> None:
     q = [0.1, -0.2, 0.7, 0.4]
     names = [coordinate.name for coordinate in car.model.coordinates]
     values = dict(zip(names, q, strict=True)) | {"L": float(car.parameters[0])}
@@ -45,14 +45,14 @@ def test_intermediates_are_written_out() -> None:
     assert {symbol.name for symbol in crank.sympy["nullspace_projector"].free_symbols} <= known
 
 
-def test_a_missing_quantity_says_why(car: Derived) -> None:
+def test_a_missing_quantity_says_why(car: NotebookModel) -> None:
     with pytest.raises(KeyError, match="no_such_thing is none of mass_matrix"):
         car.casadi["no_such_thing"]
     with pytest.raises(KeyError, match="constraint_pseudoinverse: not written out"):
         derive(MODELS / "rapkm_2rrr_rr.yaml").sympy["constraint_pseudoinverse"]
 
 
-def test_repr_lists_what_there_is(car: Derived) -> None:
+def test_repr_lists_what_there_is(car: NotebookModel) -> None:
     assert repr(car).startswith("front_car: 4 coordinates (x, y, theta, phi), 2 constraints, 2 inputs")
     assert "nullspace_projector " in repr(car.casadi)
     assert "N_B, orthogonal projector" in repr(car.sympy)

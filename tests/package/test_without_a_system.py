@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from shipped import model, programs
 
-from symgen.processes import ToolError
-from symgen.target import package_build
-from symgen.target.build import Workshop
-from symgen.target.cores import BY_NAME, CORES, Core
-from symgen.target.emulator import addresses
-from symgen.target.package_build import Package, build_package, package_of
+from symgen.laboratory.target import package_build
+from symgen.laboratory.target.build import Workshop
+from symgen.laboratory.target.cores import BY_NAME, CORES, Core
+from symgen.laboratory.target.emulator import addresses
+from symgen.laboratory.target.package_build import Package, build_package, package_of
+from symgen.runtime.processes import ToolError
 
 NAME = "rear_car"
 COMPILER = {"arm": "arm-none-eabi-gcc", "riscv": "riscv64-unknown-elf-gcc"}

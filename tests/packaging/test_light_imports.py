@@ -12,7 +12,7 @@ HEAVY += ("http", "ssl")
 
 
 def modules_after(*arguments: str) -> set[str]:
-    script = "import sys; from symgen.cli import main; code = main(sys.argv[1:]); print(code, *sys.modules)"
+    script = "import sys; from symgen.cli.main import main; code = main(sys.argv[1:]); print(code, *sys.modules)"
     command = [sys.executable, "-c", script, *arguments]
     made = subprocess.run(command, capture_output=True, text=True, check=True)
     code, *modules = made.stdout.splitlines()[-1].split()
@@ -35,6 +35,6 @@ def test_a_report_leaves_its_libraries_to_the_process_that_makes_it(tmp_path: Pa
 
 
 def test_the_command_line_itself_loads_no_template_engine_and_no_yaml() -> None:
-    script = "import sys, symgen.cli; print(*sys.modules)"
+    script = "import sys, symgen.cli.main; print(*sys.modules)"
     made = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert not {"jinja2", "yaml"} & {module.split(".")[0] for module in made.stdout.split()}

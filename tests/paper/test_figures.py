@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from generated_python import load_generated
 
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.python import emit_python
-from symgen.ir.schedule import schedule
+from symgen.backends.python.module import emit_python
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.paths.figures import Curve, FigureData, figure_data
 from symgen.paths.forces import forces_along
 from symgen.paths.printed import inverse_dynamics, pseudoinverse
 from symgen.paths.trajectory import PathSolver, Trajectory
+from symgen.quantities.select import derive_quantities
 
 MODELS = Path(__file__).parents[2] / "models"
 PAIRS = {(0, 1): (0.690, 0.875), (0, 2): (0.495, 0.582), (1, 2): (0.295, 0.400)}

@@ -9,13 +9,13 @@ import pytest
 from mpmath import mpf
 from sympy import Symbol, zeros
 
+from symgen.closedform.algebra.matrices import determinant, multiply, transpose
+from symgen.closedform.algebra.quotient import Quotient
 from symgen.closedform.forms import ClosedForms, derive_closed_forms
 from symgen.closedform.manifold import Manifold
-from symgen.closedform.matrices import determinant, multiply, transpose
 from symgen.closedform.points import Point
 from symgen.closedform.published import IDENTICAL, MISPRINTED, ON_MANIFOLD, Verdict, decide_published
-from symgen.closedform.quotient import Quotient
-from symgen.model.expression import Binary, Call, Expression, Negation, Number, Power
+from symgen.model.expressions.expression import Binary, Call, Expression, Negation, Number, Power
 from symgen.model.load import load_model
 from symgen.model.model import Matrix, Model, Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
 

@@ -15,19 +15,19 @@ import pytest
 from shipped import ROOT, SCALARS, model, programs, sources
 from wide_record import NAME, recorded
 
-from symgen.cli import main
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.c import emit_c
-from symgen.emit.c_prepared import emit_c_prepared
-from symgen.emit.c_sc import emit_c_sc
+from symgen.backends.c.given_sines import emit_c_sc
+from symgen.backends.c.plain import emit_c
+from symgen.backends.c.prepared import emit_c_prepared
+from symgen.cli.main import main
 from symgen.ir.kernel import Scalar
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.proof.eva import emit_eva
 from symgen.proof.files import emit_proofs
 from symgen.proof.fuzz import emit_fuzz
 from symgen.proof.gappa import emit_gappa
 from symgen.proof.slices import slices
+from symgen.quantities.select import derive_quantities
 
 SUMMED = """
 model: summed

@@ -12,12 +12,12 @@ from pathlib import Path
 
 import shipped
 
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.c import emit_c
+from symgen.backends.c.plain import emit_c
 from symgen.ir.kernel import Program
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
 from symgen.model.model import Model
 from symgen.proof.files import emit_proofs
+from symgen.quantities.select import derive_quantities
 
 HEADING = "## Angles that make intervals overflow"
 EVA = """[eva:alarm] c/arm_f.c:2: Warning: \n  non-finite float value. assert \\is_finite(\\mul_float(a, b));

@@ -18,7 +18,7 @@ from symgen.report.compose import compose
 from symgen.report.document import ROOM, InlineMath, Items, Paragraph, Table
 from symgen.report.html import render_html
 from symgen.report.latex import latex_text, render_latex
-from symgen.report.measure import page_width
+from symgen.report.mathematics.measure import page_width
 from symgen.report.pdf import render_pdf, render_typst
 from symgen.report.prose import say
 

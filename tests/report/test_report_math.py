@@ -10,19 +10,19 @@ import sympy
 import typst
 
 from symgen.diagnostics import SymgenBug
-from symgen.model.expression import FUNCTION_ARITY, Binary, Call, Name, Number
-from symgen.report.breaking import break_lines
-from symgen.report.from_expression import expression_layout
-from symgen.report.from_sympy import COORDINATE, PARAMETER, SympyLayout
-from symgen.report.latex_math import latex_math
-from symgen.report.layout import Layout
-from symgen.report.mathml import mathml
-from symgen.report.measure import page_width
-from symgen.report.names import name_layout
-from symgen.report.numerals import rational_layout, rational_text
+from symgen.model.expressions.expression import FUNCTION_ARITY, Binary, Call, Name, Number
+from symgen.report.mathematics.breaking import break_lines
+from symgen.report.mathematics.from_expression import expression_layout
+from symgen.report.mathematics.from_sympy import COORDINATE, PARAMETER, SympyLayout
+from symgen.report.mathematics.latex import latex_math
+from symgen.report.mathematics.layout import Layout
+from symgen.report.mathematics.mathml import mathml
+from symgen.report.mathematics.measure import page_width
+from symgen.report.mathematics.names import name_layout
+from symgen.report.mathematics.numerals import rational_layout, rational_text
+from symgen.report.mathematics.text import columns, text_lines, text_math
+from symgen.report.mathematics.typst import typst_math
 from symgen.report.terminal import render_text_math
-from symgen.report.text_math import columns, text_lines, text_math
-from symgen.report.typst_math import typst_math
 
 ORDER = {"L": (PARAMETER, 0), "m_2": (PARAMETER, 1), "theta": (COORDINATE, 0), "phi": (COORDINATE, 1)}
 L, M2, THETA, PHI, X = sympy.symbols("L m_2 theta phi x")

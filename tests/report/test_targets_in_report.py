@@ -9,12 +9,12 @@ from pathlib import Path
 
 from report_inputs import report_input
 
+from symgen.laboratory.target.footprint import Footprint
+from symgen.laboratory.target.record import Cell, CoreReport, KernelCost, TargetReport
 from symgen.report.compose import compose
 from symgen.report.html import render_html
 from symgen.report.pdf import render_pdf, render_typst
 from symgen.report.targets import read_targets
-from symgen.target.footprint import Footprint
-from symgen.target.record import Cell, CoreReport, KernelCost, TargetReport
 
 SOURCES = {"c/skate.c": "int x;\n", "c/skate_f.c": "int y;\n"}
 

@@ -13,9 +13,9 @@ import pytest
 from linkages import row_of_four_bars
 from shipped import ROOT
 
-from symgen import files
-from symgen.cli import main
-from symgen.emit.c import emit_c
+from symgen.backends.c.plain import emit_c
+from symgen.cli.main import main
+from symgen.generation import files
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
 from symgen.simulate.animation import animation

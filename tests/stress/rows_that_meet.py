@@ -5,12 +5,12 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 
+from symgen.generation.runnable import rounded_state
 from symgen.ir.kernel import Scalar
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.stress.kernels import rounded_state
-from symgen.verify.reference import Reference, State
-from symgen.verify.reference_system import default_parameters
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.reference.system import default_parameters
 
 BITS = 256
 

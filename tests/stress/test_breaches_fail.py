@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from symgen.ir.kernel import Status
-from symgen.stress import command, run
-from symgen.stress.families import Search
-from symgen.stress.rule import counted
+from symgen.laboratory.stress import command, run
+from symgen.laboratory.stress.families import SingularFamilies
+from symgen.laboratory.stress.rule import counted
 from symgen.verify.compile import Outcome
 
 ROD = """
@@ -44,7 +44,7 @@ def test_breaches_of_the_rule_fail(
 ) -> None:
     (tmp_path / "rod.yaml").write_text(ROD, encoding="utf-8")
     monkeypatch.setattr(command, "stress_charts", lambda _: {})  # there are no families to draw
-    monkeypatch.setattr(run, "search", lambda _: Search((), True, ()))
+    monkeypatch.setattr(run, "search", lambda _: SingularFamilies((), True, ()))
     if spoilt:
         monkeypatch.setattr(run, "counted", lambda r, kernels, *rest: counted(r, Spoilt(kernels), *rest))  # type: ignore[arg-type]
     code = command.run_stress(tmp_path / "rod.yaml", tmp_path / "out", 0, False, lambda _: None)

@@ -6,15 +6,15 @@ from pathlib import Path
 
 from shipped import model
 
+from symgen.generation.runnable import Kernels
+from symgen.laboratory.stress.determinants import choices, common_troubles
+from symgen.laboratory.stress.families import _family, _kind, near_redundant
+from symgen.laboratory.stress.redundant import with_redundant_row
+from symgen.laboratory.stress.series import SYMGEN
+from symgen.laboratory.stress.sweep import Sweeper
+from symgen.laboratory.stress.zeros import places
 from symgen.model.load import load_text
-from symgen.stress.determinants import choices, common_troubles
-from symgen.stress.families import _family, _kind, near_redundant
-from symgen.stress.kernels import Kernels
-from symgen.stress.redundant import with_redundant_row
-from symgen.stress.series import SYMGEN
-from symgen.stress.sweep import Sweeper
-from symgen.stress.zeros import places
-from symgen.verify.reference import Reference
+from symgen.verify.reference.reference import Reference
 
 FOUR_BAR = """
 model: parallelogram

@@ -10,13 +10,13 @@ import pytest
 from shipped import model
 from test_families import found, known, reference
 
+from symgen.generation.runnable import PIECES, Kernels, Outcome
 from symgen.ir.kernel import Scalar
-from symgen.stress.families import Family, _family
-from symgen.stress.kernels import PIECES, Kernels, Outcome
-from symgen.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series
-from symgen.stress.sweep import Sweeper
-from symgen.stress.zeros import places
-from symgen.verify.reference import State
+from symgen.laboratory.stress.families import Family, _family
+from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series
+from symgen.laboratory.stress.sweep import Sweeper
+from symgen.laboratory.stress.zeros import places
+from symgen.verify.reference.reference import State
 
 
 def swept(name: str, family: Family, folder: Path, quantities: tuple[str, ...]) -> tuple[dict[str, Series], Sweeper]:

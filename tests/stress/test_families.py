@@ -7,10 +7,10 @@ from functools import cache
 import pytest
 from shipped import model
 
-from symgen.stress.determinants import Choices, choices
-from symgen.stress.families import Search, search
-from symgen.stress.zeros import places
-from symgen.verify.reference import Reference
+from symgen.laboratory.stress.determinants import Choices, choices
+from symgen.laboratory.stress.families import SingularFamilies, search
+from symgen.laboratory.stress.zeros import places
+from symgen.verify.reference.reference import Reference
 
 
 @cache
@@ -19,7 +19,7 @@ def reference(name: str) -> Reference:
 
 
 @cache
-def found(name: str) -> Search:
+def found(name: str) -> SingularFamilies:
     return search(reference(name))
 
 
@@ -83,7 +83,7 @@ def test_two_drives_lose_what_three_keep(name: str, measure: float | None) -> No
     (trouble,) = [t for t in known(name).troubles if t.label == "sin(a₁ − a₂ + b₁ − b₂)"]
     (place,) = places(given, trouble, 1)
     zero = (0,) * 6
-    from symgen.verify.reference import State
+    from symgen.verify.reference.reference import State
 
     state = State(place.q, zero, zero, (0,) * given.model.m, place.parameters)
     first, second = (float(x) for x in given.matrices(state, ("singularity",), 256)["singularity"].entries())

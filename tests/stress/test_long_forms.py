@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import shipped
 
-from symgen.stress import form_kernels
+from symgen.laboratory.stress import form_kernels
 
 
 def test_forms_above_the_limit_are_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 from rows_that_meet import beside, wheels
 
+from symgen.generation.runnable import SCALARS, STRESSED, Kernels
 from symgen.ir.kernel import Status
+from symgen.laboratory.stress.form_kernels import FormKernels
+from symgen.laboratory.stress.rule import of_more_draws
 from symgen.model.model import Model
-from symgen.stress.form_kernels import FormKernels
-from symgen.stress.kernels import SCALARS, STRESSED, Kernels
-from symgen.stress.rule import of_more_draws
-from symgen.verify.reference import Reference
+from symgen.verify.reference.reference import Reference
 from symgen.verify.tolerance import FACTOR, expectations
 
 ONE = "cos(p)*e_dot + sin(p)*h_dot + 0.3*p_dot"

@@ -12,10 +12,10 @@ import pytest
 from shipped import NAMES, model
 from test_families import reference
 
+from symgen.generation.runnable import SCALARS, STRESSED, Kernels, rounded_state
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
-from symgen.stress.dimensions import parameter_dimensions
-from symgen.stress.kernels import SCALARS, STRESSED, Kernels, rounded_state
-from symgen.verify.reference import ReferenceValueError, State
+from symgen.laboratory.stress.dimensions import parameter_dimensions
+from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 

@@ -10,12 +10,12 @@ import pytest
 from shipped import model
 from test_families import reference
 
-from symgen.cli import main
-from symgen.stress.kernels import PIECES, STRESSED, Kernels
-from symgen.stress.long_run import long_runs
-from symgen.stress.odd_numbers import odd_numbers
-from symgen.stress.pages import page
-from symgen.stress.scaling import scaling
+from symgen.cli.main import main
+from symgen.generation.runnable import PIECES, STRESSED, Kernels
+from symgen.laboratory.stress.long_run import long_runs
+from symgen.laboratory.stress.odd_numbers import odd_numbers
+from symgen.laboratory.stress.pages import page
+from symgen.laboratory.stress.scaling import scaling
 from symgen.verify.states import sample_states
 
 CART = """

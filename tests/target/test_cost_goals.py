@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from shipped import model
 
-from symgen.bench.candidate import CCandidate, Task
-from symgen.bench.peers.roster import in_single, peers
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.c import emit_c
-from symgen.ir.schedule import schedule
-from symgen.target.build import Workshop
-from symgen.target.cores import BY_NAME
-from symgen.target.driver import driver_source, pack_states, states_file
-from symgen.target.emulator import addresses, build_counter, count_calls, stage
-from symgen.target.entries import plain_entries
-from symgen.target.footprint import footprints
-from symgen.target.vectors import rounded_state
-from symgen.verify.reference import Reference, State
+from symgen.backends.c.plain import emit_c
+from symgen.laboratory.bench.candidate import CCandidate, Task
+from symgen.laboratory.bench.peers.roster import in_single, peers
+from symgen.laboratory.target.build import Workshop
+from symgen.laboratory.target.cores import BY_NAME
+from symgen.laboratory.target.driver import driver_source, pack_states, states_file
+from symgen.laboratory.target.emulator import addresses, build_counter, count_calls, stage
+from symgen.laboratory.target.entries import plain_entries
+from symgen.laboratory.target.footprint import footprints
+from symgen.laboratory.target.vectors import rounded_state
+from symgen.lowering.schedule import schedule
+from symgen.quantities.select import derive_quantities
+from symgen.verify.reference.reference import Reference, State
 from symgen.verify.states import sample_states
 
 CORE = BY_NAME["cortex-m4f"]

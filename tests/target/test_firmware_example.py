@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from shipped import ROOT
 
-from symgen.target.build import Workshop
-from symgen.target.cores import BY_NAME
-from symgen.target.emulator import addresses, build_counter, count_calls
+from symgen.laboratory.target.build import Workshop
+from symgen.laboratory.target.cores import BY_NAME
+from symgen.laboratory.target.emulator import addresses, build_counter, count_calls
 
 EXAMPLE = ROOT / "examples" / "rapkm_firmware"
 

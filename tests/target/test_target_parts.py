@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 from shipped import model, programs
 
-from symgen.cli import main
+from symgen.cli.main import main
 from symgen.ir.kernel import Scalar
-from symgen.target.compare import BOUND, compare
-from symgen.target.cores import BY_NAME, CORES, LEVELS, Compiler, Core
-from symgen.target.driver import Record, Results, driver_source, pack_states, unpack_results
-from symgen.target.entries import Entries, plain_entries, with_companions
-from symgen.target.selection import ALL, Share, beyond_pairs, selected, selection, share, small_kernels
-from symgen.target.vectors import perturbed, vectors_of
-from symgen.verify.reference import Reference, State
+from symgen.laboratory.target.compare import BOUND, compare
+from symgen.laboratory.target.cores import BY_NAME, CORES, LEVELS, Compiler, Core
+from symgen.laboratory.target.driver import Record, Results, driver_source, pack_states, unpack_results
+from symgen.laboratory.target.entries import Entries, plain_entries, with_companions
+from symgen.laboratory.target.selection import ALL, Share, beyond_pairs, selected, selection, share, small_kernels
+from symgen.laboratory.target.vectors import perturbed, vectors_of
+from symgen.verify.reference.reference import Reference, State
 
 
 def _entries() -> Entries:
@@ -143,7 +143,7 @@ def _built(core: Core | None, compiler: Compiler, level: str, part: Share, scala
 def test_large_kernels_in_float64_are_built_where_that_is_quick(
     monkeypatch: pytest.MonkeyPatch, core: str | None, compiler: Compiler, level: str, part: Share, float64: str
 ) -> None:
-    monkeypatch.setattr("symgen.target.selection.MOST_IN_PAIRS", 1000)
+    monkeypatch.setattr("symgen.laboratory.target.selection.MOST_IN_PAIRS", 1000)
     known = programs("rapkm_2rrr_rr")["float64"]
     beyond = {kernel.name for kernel in beyond_pairs(known)}
     everything = {kernel.name for kernel in known.kernels}

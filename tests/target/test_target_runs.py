@@ -11,19 +11,19 @@ from pathlib import Path
 import pytest
 from shipped import model, programs
 
-from symgen.emit.c import emit_c
-from symgen.target.build import STACK_WATCHED, Workshop
-from symgen.target.compare import compare
-from symgen.target.cores import BY_NAME, CORES, LEVELS
-from symgen.target.driver import driver_source, pack_states, results_file, states_file, unpack_results
-from symgen.target.emulator import addresses, build_counter, count_calls, emulate, stage
-from symgen.target.entries import plain_entries
-from symgen.target.footprint import footprints
-from symgen.target.record import KernelCost, TargetReport
-from symgen.target.run import measure
-from symgen.target.tables import target_tables
-from symgen.target.vectors import vectors_of
-from symgen.verify.reference import Reference
+from symgen.backends.c.plain import emit_c
+from symgen.laboratory.target.build import STACK_WATCHED, Workshop
+from symgen.laboratory.target.compare import compare
+from symgen.laboratory.target.cores import BY_NAME, CORES, LEVELS
+from symgen.laboratory.target.driver import driver_source, pack_states, results_file, states_file, unpack_results
+from symgen.laboratory.target.emulator import addresses, build_counter, count_calls, emulate, stage
+from symgen.laboratory.target.entries import plain_entries
+from symgen.laboratory.target.footprint import footprints
+from symgen.laboratory.target.record import KernelCost, TargetReport
+from symgen.laboratory.target.run import measure
+from symgen.laboratory.target.tables import target_tables
+from symgen.laboratory.target.vectors import vectors_of
+from symgen.verify.reference.reference import Reference
 
 ARM = ("gcc", "arm-none-eabi-gcc", "qemu-system-arm")
 RISCV = ("gcc", "riscv64-unknown-elf-gcc", "qemu-system-riscv32")

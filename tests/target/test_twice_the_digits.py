@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 from wide_record import NAME, recorded
 
-from symgen.cli import main
+from symgen.cli.main import main
+from symgen.laboratory.target.build import Workshop
+from symgen.laboratory.target.cores import BY_NAME, LEVELS
+from symgen.laboratory.target.record import TargetReport
+from symgen.laboratory.target.run import BESIDE, measure
+from symgen.laboratory.target.tools import run
 from symgen.model.load import load_model
-from symgen.target.build import Workshop
-from symgen.target.cores import BY_NAME, LEVELS
-from symgen.target.record import TargetReport
-from symgen.target.run import BESIDE, measure
-from symgen.target.tools import run
 
 WIDE = {"forward_dynamics": ("float64", "float32"), "singularity": ("float32",)}
 

@@ -10,8 +10,8 @@ import pytest
 from shipped import write_sources
 
 from symgen.ir.kernel import Scalar
-from symgen.target.cores import CORES, Core
-from symgen.target.tools import PREFIX, toolchain
+from symgen.laboratory.target.cores import CORES, Core
+from symgen.laboratory.target.tools import PREFIX, toolchain
 
 FILES: dict[Scalar, tuple[str, str]] = {
     "float64": ("front_car.c", "FRONT_CAR_UNROLL"), "float32": ("front_car_f.c", "FRONT_CAR_UNROLL_F"),

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from generated_python import load_generated
 
+from symgen.generation.results import Options
 from symgen.pipeline import generate
-from symgen.results import Options
 
 pytestmark = pytest.mark.toolchain
 STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror"]

@@ -10,7 +10,7 @@ from pathlib import Path
 import handmade
 import pytest
 
-from symgen.emit.c import emit_c
+from symgen.backends.c.plain import emit_c
 from symgen.model.model import Model
 
 pytestmark = pytest.mark.toolchain

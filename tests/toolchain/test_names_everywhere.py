@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from generated_python import load_generated
 
-from symgen.model.names import RESERVED as REFUSED
+from symgen.generation.results import Options
+from symgen.model.expressions.names import RESERVED as REFUSED
 from symgen.pipeline import generate
-from symgen.results import Options
 
 pytestmark = pytest.mark.toolchain
 STRICT = ["-Wall", "-Wextra", "-Wconversion", "-Werror"]

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 import shipped
 
-from symgen.emit.c import emit_c
+from symgen.backends.c.plain import emit_c
 from symgen.ir.kernel import Scalar
 from symgen.ir.sincos import angle_limit, sincos
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import shipped
 
-from symgen.write import write_files
+from symgen.output.write import write_files
 
 pytestmark = pytest.mark.toolchain
 STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror"]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import random
 from pathlib import Path
 
-from symgen.dynamics.mechanics import Mechanics
-from symgen.graph.evaluate import Evaluator
+from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.symbolic.evaluate import Evaluator
 
 LIMIT = '<limit lower="-2" upper="2" velocity="3" effort="50"/>'
 ARM = f"""\
@@ -84,10 +84,10 @@ def state_of(model: Model, seed: int) -> dict[str, float]:
 def balance(model: Model, state: dict[str, float]) -> dict[str, float]:
     """The generalized forces that a motion needs, by coordinates."""
     defaults = {p.name: 1.0 for p in model.parameters}
-    found = Evaluator(Mechanics(model).balance)({**defaults, **state})
+    found = Evaluator(System(model).balance)({**defaults, **state})
     return dict(zip((c.name for c in model.coordinates), found, strict=True))
 
 
 def mass_matrix(model: Model, state: dict[str, float]) -> list[float]:
     """The mass matrix, row after row."""
-    return Evaluator([x for row in Mechanics(model).mass_matrix for x in row])(state)
+    return Evaluator([x for row in System(model).mass_matrix for x in row])(state)

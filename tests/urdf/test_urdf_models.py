@@ -12,13 +12,13 @@ import pytest
 from robots import ARM, HEAD, LIMIT, balance, joint, link, load, mass_matrix, robot, state_of
 
 from symgen.diagnostics import ModelError
-from symgen.dynamics.mechanics import Mechanics
-from symgen.graph.evaluate import Evaluator
-from symgen.graph.traverse import cost
-from symgen.model.expression import Number
+from symgen.generation.results import Options
+from symgen.mechanics.system import System
+from symgen.model.expressions.expression import Number
 from symgen.model.load import load_text
 from symgen.pipeline import generate
-from symgen.results import Options
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.traverse import cost
 
 ARM_AS_FRAMES = """\
 model: arm
@@ -48,7 +48,7 @@ def test_an_arm_equals_the_same_arm_written_as_frames(tmp_path: Path) -> None:
     imported, written = load(tmp_path, ARM), load_text(ARM_AS_FRAMES, "m.yaml")
     assert [c.name for c in imported.coordinates] == ["shoulder", "elbow"]
     assert all(c.is_angle and c.unit == "rad" for c in imported.coordinates)
-    sides = Mechanics(imported), Mechanics(written)
+    sides = System(imported), System(written)
     assert cost(sides[0].balance) == cost(sides[1].balance)
     for seed in range(3):
         state = state_of(imported, seed)
@@ -129,7 +129,7 @@ bodies:
 def test_a_point_on_a_carried_link_is_where_it_is(tmp_path: Path) -> None:
     points = "points: {tip: {frame: tool, at: [0, 0, 1]}}\ndefinitions: {h: tip.z}\n"
     model = load(tmp_path, CARRIED, HEAD + points)
-    height = Evaluator([Mechanics(model).names["h"]])({"turn": 0.0})[0]
+    height = Evaluator([System(model).names["h"]])({"turn": 0.0})[0]
     assert height == pytest.approx(0.1 + 0.92106099400288508 * 0.98006657784124163, rel=1e-15)
 
 
@@ -176,7 +176,7 @@ def test_mimics_are_constraints(tmp_path: Path) -> None:
     )
     model = load(tmp_path, text, f"{HEAD}inputs: {{drive: {{joint: a}}}}\n")
     assert [(row.name, row.kind) for row in model.constraints] == [("b_mimic", "geometric")]
-    mechanics = Mechanics(model)
+    mechanics = System(model)
     assert Evaluator(mechanics.constraint_residual)({"a": 0.4, "b": 0.7}) == pytest.approx([0.7 + 2.5 * 0.4 - 0.1])
 
 
@@ -187,7 +187,7 @@ def test_the_model_file_places_the_root(tmp_path: Path) -> None:
     state = state_of(model, 1)
     assert mass_matrix(model, state)[8] == pytest.approx(3.5)
     fixed = load(tmp_path, ARM, f"{HEAD}frames: {{base: {{translation: [0, 0, 7]}}}}\ndefinitions: {{h: upper.z}}\n")
-    assert Evaluator([Mechanics(fixed).names["h"]])({"shoulder": 0.0}) == pytest.approx([7.3])
+    assert Evaluator([System(fixed).names["h"]])({"shoulder": 0.0}) == pytest.approx([7.3])
 
 
 def test_a_root_called_world_is_the_world(tmp_path: Path) -> None:
@@ -211,10 +211,10 @@ def test_dry_friction_needs_its_width(tmp_path: Path) -> None:
         load(tmp_path, text)
     model = load(tmp_path, text, HEAD.replace("robot.urdf", "{file: robot.urdf, friction_width: 0.01}"))
     rest = {"shoulder": 0.2, "elbow": 0.3, "elbow_dot": 0.5}
-    force = Evaluator(Mechanics(model).applied_force)({**rest, "shoulder_dot": 0.0})
+    force = Evaluator(System(model).applied_force)({**rest, "shoulder_dot": 0.0})
     assert force == pytest.approx([0, -0.1 * 0.5 - 0.4])
     other = load(tmp_path, text, f"{HEAD}friction: {{elbow: {{viscous: 3}}}}\n")
-    assert Evaluator(Mechanics(other).applied_force)(rest) == pytest.approx([0, -1.5])
+    assert Evaluator(System(other).applied_force)(rest) == pytest.approx([0, -1.5])
 
 
 def test_numbers_stay_as_they_are_written(tmp_path: Path) -> None:

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from shipped import SCALARS, model
 
-from symgen.bench.candidate import Task
-from symgen.bench.workload import Errors, admissible_samples, errors_of, workload
+from symgen.generation.runnable import Kernels
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
-from symgen.stress.kernels import Kernels
-from symgen.verify.reference import Reference, State
+from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.workload import Errors, admissible_samples, errors_of, workload
+from symgen.verify.reference.reference import Reference, State
 from symgen.verify.states import Sample
 from symgen.verify.tolerance import FACTOR, expectations
 

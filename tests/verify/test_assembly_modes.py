@@ -12,8 +12,8 @@ from symgen.model.model import Model
 from symgen.verify.loops_in_lanes import Loops
 from symgen.verify.modes import modes
 from symgen.verify.nearby import Surroundings
-from symgen.verify.reference import Reference
-from symgen.verify.reference_system import default_parameters
+from symgen.verify.reference.reference import Reference
+from symgen.verify.reference.system import default_parameters
 from symgen.verify.states import sample_states
 
 # Two arms of two links each hold a pin; the second arm stands d away.  Each elbow bends to either side.

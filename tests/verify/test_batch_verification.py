@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 import shipped
 
-from symgen.emit.c import emit_c
-from symgen.emit.c_batch import emit_c_batch
-from symgen.emit.c_prepared import emit_c_prepared
-from symgen.emit.defaults import default_values
-from symgen.emit.quantities import BATCHED
+from symgen.backends.c.batch import emit_c_batch
+from symgen.backends.c.plain import emit_c
+from symgen.backends.c.prepared import emit_c_prepared
+from symgen.backends.defaults import default_values
+from symgen.backends.quantities import BATCHED
 from symgen.ir.kernel import Program
 from symgen.verify.batch import run_batch
 from symgen.verify.compile import CFunction, Compilation, c_array, find_compiler
 from symgen.verify.prepared import run_prepared
-from symgen.verify.reference import State
+from symgen.verify.reference.reference import State
 from symgen.verify.run import generated_sources
 from symgen.verify.states import Sample
 

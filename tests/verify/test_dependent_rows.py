@@ -10,9 +10,9 @@ import pytest
 from flint import arb, arb_mat
 
 from symgen.model.load import load_text
-from symgen.verify.reference import Reference
-from symgen.verify.reference_linear import determinant, norm, right_pseudoinverse, rows_of, solve
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference.linear import determinant, norm, right_pseudoinverse, rows_of, solve
+from symgen.verify.reference.reference import Reference
+from symgen.verify.reference.tape import precision
 from symgen.verify.states import sample_states
 
 LEVERS = """\

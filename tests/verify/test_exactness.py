@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from symgen.dynamics.select import derive_quantities
 from symgen.ir.kernel import Kernel
-from symgen.ir.schedule import schedule
 from symgen.ir.wide import widened
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.quantities.select import derive_quantities
 from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import measured

@@ -12,17 +12,19 @@ from typing import Any
 
 import pytest
 
-from symgen import cli, fallback
+from symgen.cli import main as cli
 from symgen.diagnostics import SymgenBug
-from symgen.dynamics import alternatives, by_name, compared, derivation
-from symgen.dynamics.catalogue import Derived
-from symgen.dynamics.forms.motion import Motion
-from symgen.dynamics.guards import Guard
-from symgen.dynamics.mechanics import Mechanics
-from symgen.graph.scalar import Graph, Scalar
+from symgen.generation import fallback
+from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Status
+from symgen.linear_algebra.guards import Guard
+from symgen.mechanics.system import System
+from symgen.methods import by_name, compared, derivation
+from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.quantity import Quantity
 from symgen.pipeline import generate
-from symgen.results import Options, Result
+from symgen.quantities import alternatives
+from symgen.symbolic.scalar import Graph, Scalar
 
 # A pin on a crank moves a slotted slider: one row, one degree of freedom.
 YOKE = """
@@ -72,38 +74,38 @@ def off(values: Sequence[Scalar]) -> tuple[Scalar, ...]:
     return tuple(value * value.graph.const(OFF) for value in values)
 
 
-def spoil_choice(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion]) -> None:
+def spoil_choice(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod], MotionMethod]) -> None:
     """λ of the form that selection takes by itself."""
     cheapest = derivation.cheapest
 
-    def worse(motions: Any, part: Any, mechanics: Mechanics) -> Motion:
+    def worse(motions: Any, part: Any, mechanics: System) -> MotionMethod:
         found = cheapest(motions, part, mechanics)
         return spoilt(found) if part == "multipliers" else found
 
     monkeypatch.setattr(derivation, "cheapest", worse)
 
 
-def wrong(motion: Motion) -> Motion:
+def wrong(motion: MotionMethod) -> MotionMethod:
     """λ that is another function."""
     return replace(motion, multipliers=off(motion.multipliers))
 
 
-def cancelling(motion: Motion) -> Motion:
+def cancelling(motion: MotionMethod) -> MotionMethod:
     """λ that loses digits."""
     return replace(motion, multipliers=tuple(lossy(value, Fraction(2**21)) for value in motion.multipliers))
 
 
-def narrow(motion: Motion) -> Motion:
+def narrow(motion: MotionMethod) -> MotionMethod:
     """λ that takes a good half of what is allowed, where the crank turns little."""
     return replace(motion, multipliers=tuple(lossy(value, Fraction(5)) for value in motion.multipliers))
 
 
-def edgy(motion: Motion) -> Motion:
+def edgy(motion: MotionMethod) -> MotionMethod:
     """λ that loses digits where the crank is nearly turned around, and little elsewhere."""
     return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 4)) for value in motion.multipliers))
 
 
-def losing_digits(motion: Motion) -> Motion:
+def losing_digits(motion: MotionMethod) -> MotionMethod:
     """λ that loses digits in roots, products and sums: times 1 + 2^12 (sqrt(3 r)^2 - 3 r)."""
     graph = motion.multipliers[0].graph
     r = graph.const(3) * graph.symbol("r")
@@ -132,30 +134,30 @@ def refused(graph: Graph, size: Fraction) -> Guard:
     return Guard(Status.MASS_RANK, graph.symbol("J") * graph.const(size), 1, scale=graph.symbol("m"))
 
 
-def refusing(motion: Motion) -> Motion:
+def refusing(motion: MotionMethod) -> MotionMethod:
     """λ with a denominator that every state takes for zero."""
     tiny = refused(motion.multipliers[0].graph, Fraction(1, 2**80))
     return replace(motion, guards=(*motion.guards, tiny))
 
 
-def refusing_float32(motion: Motion) -> Motion:
+def refusing_float32(motion: MotionMethod) -> MotionMethod:
     """λ with a denominator that is beyond float32."""
     small = refused(motion.multipliers[0].graph, Fraction(1, 2**20))
     return replace(motion, guards=(*motion.guards, small))
 
 
-def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion]) -> None:
+def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod], MotionMethod]) -> None:
     """λ of every form that can be asked for by name."""
     quantities = compared.quantities_by
 
-    def worse(model: Any, generic: Any, name: str) -> tuple[Mechanics, tuple[Derived, ...]]:
+    def worse(model: Any, generic: Any, name: str) -> tuple[System, tuple[Quantity, ...]]:
         mechanics, found = quantities(model, generic, name)
         return mechanics, tuple(map(of_multipliers, found))
 
-    def of_multipliers(one: Derived) -> Derived:
+    def of_multipliers(one: Quantity) -> Quantity:
         if one.name != "multipliers":
             return one
-        motion = spoilt(Motion((), one.outputs, one.guards))
+        motion = spoilt(MotionMethod((), one.outputs, one.guards))
         return replace(one, outputs=motion.multipliers, guards=motion.guards)
 
     monkeypatch.setattr(by_name, "quantities_by", worse)
@@ -171,7 +173,7 @@ def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Moti
     ],
 )
 def test_what_is_rejected_takes_the_next_way(
-    yoke: Path, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion], why: str
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod], MotionMethod], why: str
 ) -> None:
     usual = made(yoke)
     assert "rejected" not in derived(usual)
@@ -463,7 +465,7 @@ def test_laws_that_a_number_with_few_digits_violates_too_do_not_keep_it_from_mor
     """The accelerations that lose digits violate the constraints, too."""
     cheapest = derivation.cheapest
 
-    def few(motions: Any, part: Any, mechanics: Mechanics) -> Motion:
+    def few(motions: Any, part: Any, mechanics: System) -> MotionMethod:
         found = cheapest(motions, part, mechanics)
         if part == "multipliers":
             return found

@@ -9,10 +9,10 @@ import pytest
 import shipped
 
 from symgen.model.load import load_model
-from symgen.verify.reference import Reference, State
-from symgen.verify.reference_linear import norm
-from symgen.verify.reference_system import default_parameters
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference.linear import norm
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.reference.system import default_parameters
+from symgen.verify.reference.tape import precision
 
 ELEMENTS = Path(__file__).resolve().parents[1] / "mechanisms"
 

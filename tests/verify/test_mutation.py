@@ -15,9 +15,9 @@ from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel
 from symgen.verify.comparison import compare
 from symgen.verify.compile import Outcome
-from symgen.verify.reference import Reference, State
-from symgen.verify.reference_linear import norm
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference.linear import norm
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.reference.tape import precision
 from symgen.verify.states import Sample, sample_states
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
 

@@ -6,9 +6,9 @@ import random
 
 import pytest
 
-from symgen.dynamics.select import derive_quantities
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
+from symgen.quantities.select import derive_quantities
 from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
 

@@ -8,10 +8,10 @@ import pytest
 from flint import arb_mat
 
 from symgen.model.load import load_text
-from symgen.verify.reference import Reference
-from symgen.verify.reference_linear import independent_rows, right_pseudoinverse
-from symgen.verify.reference_manifold import exceeds
-from symgen.verify.reference_tape import ball, precision
+from symgen.verify.reference.linear import independent_rows, right_pseudoinverse
+from symgen.verify.reference.manifold import exceeds
+from symgen.verify.reference.reference import Reference
+from symgen.verify.reference.tape import ball, precision
 from symgen.verify.states import sample_states
 
 # the shelf holds the tip of an arm, so that its joints stand still; the crank turns beside it

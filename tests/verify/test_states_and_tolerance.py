@@ -13,9 +13,9 @@ from linkages import row_of_four_bars
 from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 
 from symgen.model.load import load_text
-from symgen.verify.reference import Reference, State
-from symgen.verify.reference_linear import column, norm
-from symgen.verify.reference_tape import precision
+from symgen.verify.reference.linear import column, norm
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.reference.tape import precision
 from symgen.verify.states import VerificationError, affordable_states, rounded, sample_states
 from symgen.verify.tolerance import expectations, perturbed
 

@@ -7,8 +7,8 @@ from fractions import Fraction
 import pytest
 from flint import arb
 
-from symgen.verify.reference_tape import Tape, ball, precision, replay_of
-from symgen.verify.reference_taylor import CONSTANT, Polynomial, Taylor
+from symgen.verify.reference.tape import Tape, ball, precision, replay_of
+from symgen.verify.reference.taylor import CONSTANT, Polynomial, Taylor
 
 FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "exp", "log", "sinh", "cosh", "tanh")
 POINT = 0.4

@@ -11,16 +11,17 @@ from typing import Any
 
 import pytest
 
-from symgen import files, pipeline, trial
+from symgen import pipeline
+from symgen.backends.c.plain import emit_c
 from symgen.diagnostics import ModelError
-from symgen.dynamics import derivation
-from symgen.dynamics.forms.motion import Motion
-from symgen.dynamics.mechanics import Mechanics
-from symgen.emit.c import emit_c
+from symgen.generation import files, trial
+from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Program
+from symgen.mechanics.system import System
+from symgen.methods import derivation
+from symgen.methods.forward_dynamics.motion import MotionMethod
 from symgen.model.model import Model
 from symgen.pipeline import generate
-from symgen.results import Options, Result
 from symgen.verify import run
 from symgen.verify.states import VerificationError
 
@@ -75,7 +76,7 @@ def _spoil(monkeypatch: pytest.MonkeyPatch, factor: Fraction) -> None:
     """λ of the form that selection takes by itself times 1 + factor (cosh^2 - sinh^2 - 1), which loses digits."""
     cheapest = derivation.cheapest
 
-    def worse(motions: Any, part: Any, mechanics: Mechanics) -> Motion:
+    def worse(motions: Any, part: Any, mechanics: System) -> MotionMethod:
         found = cheapest(motions, part, mechanics)
         if part != "multipliers":
             return found

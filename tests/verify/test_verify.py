@@ -11,11 +11,11 @@ import pytest
 import shipped
 from mechanisms import build
 
-from symgen.dynamics.select import derive_quantities
-from symgen.emit.c import emit_c
-from symgen.emit.python import emit_python
+from symgen.backends.c.plain import emit_c
+from symgen.backends.python.module import emit_python
 from symgen.ir.kernel import Argument, Kernel
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
+from symgen.quantities.select import derive_quantities
 from symgen.verify import run
 from symgen.verify.certificate import Certificate
 from symgen.verify.compile import find_compiler

@@ -12,7 +12,7 @@ from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Statement
 from symgen.model.load import load_model
 from symgen.verify.lanes import estimates
 from symgen.verify.nearby import Surroundings
-from symgen.verify.reference import Reference
+from symgen.verify.reference.reference import Reference
 from symgen.verify.states import sample_states
 
 # A ladder whose feet slide on a floor and along a wall, and a disc that is geared to its turning.

@@ -13,12 +13,12 @@ from sympy import lambdify
 from witness_models import EXTRA
 
 from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
-from symgen.dynamics.select import derive_quantities
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Status
-from symgen.ir.schedule import schedule
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
+from symgen.quantities.select import derive_quantities
 from symgen.witness.casadi_derivation import witness_functions
 from symgen.witness.configurations import configurations
 from symgen.witness.lagrange import differentiate

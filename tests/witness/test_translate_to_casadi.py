@@ -8,7 +8,7 @@ from fractions import Fraction
 import casadi
 import pytest
 
-from symgen.model.expression import (
+from symgen.model.expressions.expression import (
     FUNCTION_ARITY,
     Binary,
     Call,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from symgen.zoo.allocation import directed, members, preloads
-from symgen.zoo.kkt import Numbers, inverse_dynamics, split
+from symgen.laboratory.zoo.allocation import directed, members, preloads
+from symgen.laboratory.zoo.kkt import Numbers, inverse_dynamics, split
 
 # one mass, driven by three forces along it
 AT = Numbers([[2.0]], [], [[1.0, 2.0, -1.0]], [0.5], [], [])

@@ -7,16 +7,16 @@ from pathlib import Path
 
 import pytest
 
+from symgen.laboratory.zoo import campaign, command
+from symgen.laboratory.zoo.campaign import Campaign, judge, one_draw
+from symgen.laboratory.zoo.cases import read_case
+from symgen.laboratory.zoo.describe import Terms, read_description, summands
+from symgen.laboratory.zoo.families import FAMILIES, draw
+from symgen.laboratory.zoo.records import Record, read_records, summary, write_record
+from symgen.laboratory.zoo.run import Run
+from symgen.laboratory.zoo.urdf_file import expanded
+from symgen.laboratory.zoo.verdict import FAILED, VERIFIED, Verdict
 from symgen.model.load import load_text
-from symgen.zoo import campaign, command
-from symgen.zoo.campaign import Campaign, judge, one_draw
-from symgen.zoo.cases import read_case
-from symgen.zoo.describe import Terms, read_description, summands
-from symgen.zoo.families import FAMILIES, draw
-from symgen.zoo.records import Record, read_records, summary, write_record
-from symgen.zoo.run import Run
-from symgen.zoo.urdf_file import expanded
-from symgen.zoo.verdict import FAILED, VERIFIED, Verdict
 
 RIGHT = Record(1, 0, "disc", VERIFIED, "", "", 2.0, 100)
 WRONG = Record(1, 1, "bennett", FAILED, "internal error", "KeyError at run", 3.5, 90, "there.yaml")

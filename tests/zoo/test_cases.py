@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from symgen.zoo.cases import read_case
-from symgen.zoo.run import run_command
-from symgen.zoo.verdict import NOTICED, VERIFIED, verdict_of
-from symgen.zoo.witness import Witness
+from symgen.laboratory.zoo.cases import read_case
+from symgen.laboratory.zoo.run import run_command
+from symgen.laboratory.zoo.verdict import NOTICED, VERIFIED, verdict_of
+from symgen.laboratory.zoo.witness import Witness
 
 CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))
 

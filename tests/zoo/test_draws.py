@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 import yaml
 
-from symgen.zoo.describe import Description
-from symgen.zoo.families import FAMILIES, draw
-from symgen.zoo.fields import Floats
-from symgen.zoo.mechanics import equations
-from symgen.zoo.reader import System
-from symgen.zoo.urdf_file import expanded
+from symgen.laboratory.zoo.describe import Description
+from symgen.laboratory.zoo.families import FAMILIES, draw
+from symgen.laboratory.zoo.fields import Floats
+from symgen.laboratory.zoo.mechanics import equations
+from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.urdf_file import expanded
 
 DRAWS = range(3)
 
@@ -62,7 +62,7 @@ def test_an_over_constrained_linkage_moves(family: str, freedom: int) -> None:
 
 
 def test_a_seed_draws_the_same_under_any_hash_seed() -> None:
-    code = "from symgen.zoo.families import draw\nfor k in range(30): print(draw(3, k).text)"
+    code = "from symgen.laboratory.zoo.families import draw\nfor k in range(30): print(draw(3, k).text)"
     texts = [
         subprocess.run(
             [sys.executable, "-c", code],

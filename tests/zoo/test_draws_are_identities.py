@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from symgen.diagnostics import ModelError
-from symgen.dynamics.select import derive_quantities
-from symgen.graph.identity import every_identity_evaluated
 from symgen.ir.given_trig import given_trig
 from symgen.ir.prepare import prepare
-from symgen.ir.schedule import schedule
+from symgen.laboratory.zoo.families import FAMILIES, draw
+from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.zoo.families import FAMILIES, draw
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.identity import every_identity_evaluated
 
 SEED = 20
 # Others take long with every value worked out, and come up in campaigns, where fingerprints are compared.

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from symgen.zoo import run as running
-from symgen.zoo.cases import case_of, read_case
-from symgen.zoo.describe import Description, Terms
-from symgen.zoo.families import draw
-from symgen.zoo.run import Run, run_command
-from symgen.zoo.shrink import frozen, shrink, substituted
-from symgen.zoo.verdict import NOTICED, REFUSED, VERIFIED, Verdict, verdict_of
+from symgen.laboratory.zoo import run as running
+from symgen.laboratory.zoo.cases import case_of, read_case
+from symgen.laboratory.zoo.describe import Description, Terms
+from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.run import Run, run_command
+from symgen.laboratory.zoo.shrink import frozen, shrink, substituted
+from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, Verdict, verdict_of
 
 MISTAKE = """zoo.yaml:12:5: `a` of something in m
    12 | x: exp(a)
@@ -55,11 +55,11 @@ def test_endings(run: Run, ending: str, kind: str) -> None:
 def test_a_signature_knows_the_place_and_no_numbers() -> None:
     text = """Traceback (most recent call last):
   File "/here/symgen/pipeline.py", line 4, in generate
-  File "/here/symgen/graph/evaluate.py", line 40, in run
+  File "/here/symgen/symbolic/evaluate.py", line 40, in run
 KeyError: 'a_1 absolute'
 symgen: internal error: this is a fault of symgen, not of the model.
 """
-    assert verdict_of(Run(2, "", text, 1, 1)).signature == "KeyError: `.` at run in graph/evaluate.py"
+    assert verdict_of(Run(2, "", text, 1, 1)).signature == "KeyError: `.` at run in symbolic/evaluate.py"
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ from collections import Counter
 
 import pytest
 
-from symgen.zoo.describe import Description
-from symgen.zoo.families import draw
-from symgen.zoo.features import ALL, features
+from symgen.laboratory.zoo.describe import Description
+from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.features import ALL, features
 
 DRAWS, LEAST = 500, 2
 

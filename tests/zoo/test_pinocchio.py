@@ -6,13 +6,13 @@ import pytest
 import robot_packages
 import yaml
 
-from symgen.zoo import pinocchio_trees
-from symgen.zoo.dice import Dice
-from symgen.zoo.families import draw
-from symgen.zoo.fields import Floats
-from symgen.zoo.pinocchio_trees import SAME, disagreement
-from symgen.zoo.reader import System
-from symgen.zoo.urdf_file import expanded
+from symgen.laboratory.zoo import pinocchio_trees
+from symgen.laboratory.zoo.dice import Dice
+from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.fields import Floats
+from symgen.laboratory.zoo.pinocchio_trees import SAME, disagreement
+from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.urdf_file import expanded
 
 robot_packages.pinocchio()
 

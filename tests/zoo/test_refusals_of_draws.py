@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from symgen.zoo.describe import MISTAKE, Description
-from symgen.zoo.refusals import judged
-from symgen.zoo.verdict import NOTICED, REFUSED, VERIFIED, Verdict
+from symgen.laboratory.zoo.describe import MISTAKE, Description
+from symgen.laboratory.zoo.refusals import judged
+from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, Verdict
 
 FREE = {
     "model": "zoo",

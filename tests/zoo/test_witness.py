@@ -10,17 +10,17 @@ from pathlib import Path
 import pytest
 import yaml
 
+from symgen.generation.results import Options
+from symgen.laboratory.zoo.dice import Dice
+from symgen.laboratory.zoo.expressions import FUNCTIONS, NotReadError, read_expression
+from symgen.laboratory.zoo.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.mechanics import equations
+from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.run import run_command
+from symgen.laboratory.zoo.states import Walker
+from symgen.laboratory.zoo.tape import Tape
+from symgen.laboratory.zoo.witness import Witness
 from symgen.pipeline import generate
-from symgen.results import Options
-from symgen.zoo.dice import Dice
-from symgen.zoo.expressions import FUNCTIONS, NotReadError, read_expression
-from symgen.zoo.fields import Balls, Floats, precision
-from symgen.zoo.mechanics import equations
-from symgen.zoo.reader import System
-from symgen.zoo.run import run_command
-from symgen.zoo.states import Walker
-from symgen.zoo.tape import Tape
-from symgen.zoo.witness import Witness
 
 SYSTEM = """
 model: cart

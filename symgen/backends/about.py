@@ -1,0 +1,76 @@
+"""The description that opens every generated file: model, symbols with units, operation counts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from symgen.backends.locals import Names
+from symgen.backends.operations import count_operations
+from symgen.ir.kernel import Kernel, Program, Status
+from symgen.model.model import Allocation, Model
+
+STATUS_MEANING: dict[Status, str] = {
+    Status.OK: "the result is valid",
+    Status.NOT_FINITE: "an input that matters, or a result, is not finite",
+    Status.CONSTRAINT_RANK: "the constraints lose rank at this configuration",
+    Status.ACTUATION_RANK: "the inputs lose rank at this configuration",
+    Status.ANGLE_RANGE: "an angle is beyond the range of the sine and cosine",
+    Status.MASS_RANK: "the masses do not determine the acceleration although the constraints keep their rank",
+}
+
+
+def symbol_lines(model: Model) -> Iterator[str]:
+    """Coordinates and inputs with indices, units and descriptions, unescaped."""
+    yield "Coordinates q (rates qd and accelerations qdd in the same order):"
+    for index, coordinate in enumerate(model.coordinates):
+        yield _symbol(f"q[{index}]", coordinate.name, coordinate.unit, coordinate.description)
+    if model.inputs:
+        yield "Inputs u:"
+        for index, control in enumerate(model.inputs):
+            yield _symbol(f"u[{index}]", control.name, control.unit, control.description)
+    if model.allocation is not None:
+        yield "How inverse_dynamics shares the work among the inputs:"
+        yield from _allocation_lines(model.allocation)
+
+
+def _allocation_lines(allocation: Allocation) -> Iterator[str]:
+    yield f"  of all u that produce the motion {'the nearest to preload_*' if allocation.preferred else 'the least'}"
+    if allocation.weights:
+        yield "  in the norm with the factors weight_* (1 where there is none), which must be positive"
+    if allocation.preload is not None:
+        yield "  and preload times the internal force of norm 1"
+    if allocation.limits:
+        yield "  within limit_*, as far as the internal force alone can keep u there: compare u with its limits"
+
+
+def renaming_lines(names: Names) -> Iterator[str]:
+    """Parameters that are not called as in the model file."""
+    if names.renamed:
+        yield "Renamed, because the name clashes with C, C++ or a common macro:"
+        for old, new in names.renamed:
+            yield f"  {old} is {new}"
+
+
+def count_lines(program: Program) -> Iterator[str]:
+    """Operation counts of every kernel as a table."""
+    width = max((len(kernel.name) for kernel in program.kernels), default=0)
+    yield f"{'Operations':<{width}}     + -      *      /   sqrt sincos  other"
+    for kernel in program.kernels:
+        c = count_operations(kernel.statements)
+        yield f"{kernel.name:<{width}} {c.add:7d}{c.mul:7d}{c.div:7d}{c.sqrt:7d}{c.sincos:7d}{c.other:7d}"
+    yield "(changes of sign are not counted)"
+
+
+def shape_text(kernel: Kernel) -> str:
+    """The shape of a result, such as `4 x 2, row-major`."""
+    shape = " x ".join(str(extent) for extent in kernel.shape)
+    return f"{shape}, row-major" if len(kernel.shape) > 1 else f"length {shape}"
+
+
+def unit_text(unit: str | None) -> str:
+    """A unit in brackets, or nothing."""
+    return f"[{unit}]" if unit else ""
+
+
+def _symbol(place: str, name: str, unit: str | None, description: str) -> str:
+    return "  " + " ".join(part for part in (place, name, unit_text(unit), description) if part)

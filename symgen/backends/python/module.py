@@ -1,0 +1,170 @@
+"""NumPy module of a model: vectorised over leading axes, the same operations in the same order as the C."""
+
+from __future__ import annotations
+
+from symgen.backends.about import STATUS_MEANING, count_lines, symbol_lines, unit_text
+from symgen.backends.comments import docstring_lines, indent_of, one_line
+from symgen.backends.defaults import default_values
+from symgen.backends.literals import decimal_text
+from symgen.backends.locals import Names, all_statements, array_arguments, names_of, used_locals
+from symgen.backends.quantities import BATCHED, meaning
+from symgen.backends.render import render
+from symgen.backends.statements import NumpyStatements, numpy_body
+from symgen.ir.kernel import Function, Kernel, OperationName, Program, Status
+from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
+from symgen.model.model import Model
+from symgen.records import dataclass
+
+_SINCOS = "_sincos"
+
+
+@dataclass(frozen=True, slots=True)
+class FieldView:
+    """One parameter: field name, member of the C struct, default, comment."""
+
+    name: str
+    member: str
+    default: str
+    comment: str
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionView:
+    """One quantity: name, argument names and lengths, docstring, body lines and entries of the result."""
+
+    name: str
+    arguments: tuple[tuple[str, int], ...]
+    signature: str
+    unpacked: str
+    lengths: tuple[int, ...]
+    docstring: tuple[str, ...]
+    body: tuple[str, ...]
+    entries: tuple[str, ...]
+    shape: tuple[int, ...]
+    batched: bool
+
+
+@dataclass(frozen=True, slots=True)
+class WideView:
+    """A function of pairs of numbers."""
+
+    name: str
+    parameters: tuple[str, ...]
+    body: tuple[str, ...]
+    results: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PythonView:
+    """Everything the Python template prints."""
+
+    model: str
+    stem: str
+    about: tuple[str, ...]
+    statuses: tuple[tuple[str, int, str], ...]
+    fields: tuple[FieldView, ...]
+    functions: tuple[FunctionView, ...]
+    sincos_parameter: str
+    sincos_body: tuple[str, ...]
+    needs_ratio: bool
+    wide: tuple[WideView, ...]
+    c_files: tuple[str, ...]
+
+
+def emit_python(model: Model, program: Program) -> dict[str, str]:
+    """`python/<model>.py` from the float64 program; it needs NumPy only."""
+    names = names_of(model, program, {kernel.name for kernel in program.kernels} | {"Parameters", "compile"})
+    statements = [statement for kernel in program.kernels for statement in all_statements(kernel)]
+    operations = {statement.operation for statement in with_bodies(statements)}
+    own = program.sincos if "sincos" in operations else None
+    parameter, body = ("", ()) if own is None else _sincos(own)
+    view = PythonView(
+        model=model.c_name,
+        stem=model.c_name,
+        about=_about(model, program),
+        statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
+        fields=_fields(model, names),
+        functions=tuple(_kernel(kernel, names, None if own is None else _SINCOS) for kernel in program.kernels),
+        sincos_parameter=parameter,
+        sincos_body=body,
+        needs_ratio="ratio_or_zero" in operations or (own is not None and _has_ratio(own)),
+        wide=tuple(map(_wide, wide_operations(statements))),
+        c_files=_c_files(model, program),
+    )
+    return {f"python/{view.stem}.py": render("python/module.py.jinja", view)}
+
+
+def _about(model: Model, program: Program) -> tuple[str, ...]:
+    lines = list(docstring_lines(f"{model.name}: {model.description or 'constrained mechanical system'}"))
+    if model.source:
+        lines += ["", *docstring_lines(f"Source: {model.source}")]
+    for group in (symbol_lines(model), count_lines(program)):
+        lines.append("")
+        for line in group:
+            indent = indent_of(line)
+            lines += [indent + wrapped for wrapped in docstring_lines(line, "    ")] if indent else [line]
+    return tuple(lines)
+
+
+def _fields(model: Model, names: Names) -> tuple[FieldView, ...]:
+    values = default_values(model)
+    return tuple(
+        FieldView(
+            name=parameter.name,
+            member=names.members[parameter.name],
+            default=decimal_text("float64", values[parameter.name]),
+            comment=one_line(" ".join(part for part in (unit_text(parameter.unit), parameter.description) if part)),
+        )
+        for parameter in model.parameters
+    )
+
+
+def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> FunctionView:
+    used = used_locals(kernel)
+    printer = NumpyStatements(names.locals, used, sincos)
+    body = []
+    for load in kernel.loads:
+        if load.local in used:
+            place = f"np.float64(p.{load.member})" if load.argument == "p" else f"{load.argument}[..., {load.index}]"
+            body.append(f"{names.locals[load.local]} = {place}")
+    body += [line for block in kernel.blocks for line in printer.block(block)]
+    arguments = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
+    given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
+    result = ", ".join(str(extent) for extent in kernel.shape)
+    about = f"{meaning(kernel)[:1].upper()}{meaning(kernel)[1:]}: {given} -> (..., {result})."
+    return FunctionView(
+        name=kernel.name,
+        arguments=arguments,
+        signature=", ".join([*(name for name, _ in arguments), "p=PARAMETERS"]),
+        unpacked=", ".join([*(name for name, _ in arguments), "batch"]),
+        lengths=tuple(length for _, length in arguments),
+        docstring=docstring_lines(about),
+        body=tuple(body),
+        entries=tuple(printer.operand(operand).strip("()") for operand in kernel.outputs),
+        shape=kernel.shape,
+        batched=kernel.name in BATCHED,
+    )
+
+
+def _c_files(model: Model, program: Program) -> tuple[str, ...]:
+    """What `compile()` builds: the float64 kernels for one state and for many."""
+    stem = model.c_name
+    stems = (stem, f"{stem}_batch") if any(kernel.name in BATCHED for kernel in program.kernels) else (stem,)
+    return tuple(name + ending for name in stems for ending in (".h", ".c"))
+
+
+def _sincos(function: Function) -> tuple[str, tuple[str, ...]]:
+    names, body = numpy_body(function)
+    sine, cosine = function.results
+    return names[function.parameters[0]], (*body, f"return {names[sine]}, {names[cosine]}")
+
+
+def _wide(operation: OperationName) -> WideView:
+    function = wide_function(operation)
+    names, body = numpy_body(function)
+    parameters, results = (tuple(names[one] for one in part) for part in (function.parameters, function.results))
+    return WideView(f"_{operation}", parameters, body, results)
+
+
+def _has_ratio(function: Function) -> bool:
+    return any(statement.operation == "ratio_or_zero" for statement in function.statements)

@@ -1,0 +1,159 @@
+"""Options that several commands share, and what may stand behind them."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from symgen.generation.results import AUTO, DEFAULT_STATES, FORMS, PARTS, TRIG, Part
+from symgen.model.expressions.names import did_you_mean, nearest
+
+FEWEST_STATES = 8
+USUAL = "inverse_dynamics"
+UNKNOWN = "unrecognized arguments: "  # how argparse begins
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that knows what a misspelt option was meant to be."""
+
+    def error(self, message: str) -> NoReturn:
+        """The message with the nearest option for each that is unknown."""
+        _, found, unknown = message.partition(UNKNOWN)
+        options = [option for action in self._actions for option in action.option_strings]
+        given = [word.partition("=")[0] for word in unknown.split() if word.startswith("--")] if found else []
+        meant = {word: near for word in given if (near := nearest(word, options))}
+        super().error(message + "".join(f"\n  did you mean `{near}` for `{word}`?" for word, near in meant.items()))
+
+
+def make_parser(program: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:
+    """A parser that wants options in full."""
+    form = argparse.RawDescriptionHelpFormatter
+    return _Parser(
+        program, description=description, epilog=epilog, formatter_class=form, allow_abbrev=False
+    )
+
+
+def add_models(parser: argparse.ArgumentParser) -> None:
+    """MODEL.yaml, once or more."""
+    parser.add_argument("models", metavar="MODEL.yaml", type=Path, nargs="+", help="model files")
+
+
+def add_out(parser: argparse.ArgumentParser, does: str = "writes DIR/<model>/ (default: generated)") -> None:
+    """--out."""
+    parser.add_argument("--out", metavar="DIR", type=Path, default=Path("generated"), help=does)
+
+
+def add_quiet(parser: argparse.ArgumentParser) -> None:
+    """--quiet."""
+    parser.add_argument("--quiet", action="store_true", help="print mistakes and failures only")
+
+
+def add_generation(parser: argparse.ArgumentParser) -> None:
+    """What generation and verification share: --out, --states, --form, --trig, --quiet."""
+    add_out(parser)
+    parser.add_argument(
+        "--states",
+        metavar="N",
+        type=number_of_states,
+        default=DEFAULT_STATES,
+        help=f"states to verify (default: {DEFAULT_STATES})",
+    )
+    add_form(parser)
+    parser.add_argument(
+        "--trig",
+        choices=TRIG,
+        default="portable",
+        help="sine and cosine: portable has the same bits everywhere, libm calls the library's (default: portable)",
+    )
+    add_quiet(parser)
+
+
+def add_form(parser: argparse.ArgumentParser) -> None:
+    """--form, once for each quantity."""
+    parser.add_argument(
+        "--form",
+        metavar="[QUANTITY=]FORM",
+        type=form_of,
+        action="append",
+        default=[],
+        dest="forms",
+        help="how a quantity is computed: "
+        + "; ".join(f"{quantity}={'|'.join(forms)}" for quantity, forms in FORMS.items())
+        + f"; {AUTO}: the cheapest valid at every regular state (default); without QUANTITY: {USUAL}; repeatable",
+    )
+
+
+def form_of(text: str) -> tuple[str, str]:
+    """`schur_qr` of `multipliers=schur_qr` with its quantity; a form alone is one of the inverse dynamics."""
+    quantity, given, form = text.rpartition("=")
+    quantity = quantity if given else USUAL
+    if quantity not in FORMS:
+        remedy = did_you_mean(quantity, [*FORMS], f"those that have forms are {', '.join(FORMS)}")
+        raise argparse.ArgumentTypeError(f"{quantity!r} has no forms; {remedy}")
+    if form != AUTO and form not in FORMS[quantity]:
+        choices = ", ".join((AUTO, *FORMS[quantity]))
+        raise argparse.ArgumentTypeError(f"{form!r} is no form of {quantity}: choose from {choices}")
+    return quantity, form
+
+
+def chosen_forms(given: Sequence[tuple[str, str]]) -> dict[str, str]:
+    """By quantity what was asked for last."""
+    return {quantity: form for quantity, form in dict(given).items() if form != AUTO}
+
+
+def names(text: str) -> tuple[str, ...]:
+    """`a,b`, each once."""
+    found = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    if not found:
+        raise argparse.ArgumentTypeError("expected names separated by commas")
+    return found
+
+
+def parts(text: str) -> tuple[Part, ...]:
+    """`c,python`, in the order in which they are made."""
+    given = names(text)
+    if unknown := [name for name in given if name not in PARTS]:
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is none of {', '.join(PARTS)}")
+    return tuple(part for part in PARTS if part in given)
+
+
+def number_of_states(text: str) -> int:
+    """A whole number that leaves enough to judge by."""
+    try:
+        count = int(text)
+    except ValueError:
+        count = 0
+    if count < FEWEST_STATES:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {FEWEST_STATES} up")
+    return count
+
+
+def positive(text: str) -> float:
+    """A positive number."""
+    value = _number(text)
+    if not value > 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no positive number")
+    return value
+
+
+def values(text: str) -> dict[str, float]:
+    """`a=1,b=2` as a mapping."""
+    found: dict[str, float] = {}
+    for entry in filter(None, map(str.strip, text.split(","))):
+        name, _, number = entry.partition("=")
+        found[name.strip()] = value = _number(number)
+        if not math.isfinite(value):
+            raise argparse.ArgumentTypeError(f"{entry!r} is not of the form x=1")
+    return found
+
+
+def _number(text: str) -> float:
+    """A finite number, or NaN."""
+    try:
+        value = float(text)
+    except ValueError:
+        return math.nan
+    return value if math.isfinite(value) else math.nan

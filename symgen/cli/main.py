@@ -1,0 +1,311 @@
+"""The command line: `symgen MODEL.yaml...` and the commands behind it; those that measure stand in `measuring`."""
+
+from __future__ import annotations
+
+import gc
+import os
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import partial
+from io import StringIO, TextIOWrapper
+from pathlib import Path
+
+from symgen import __version__
+from symgen.cli.arguments import add_form, add_generation, add_models, add_out, chosen_forms, make_parser, names, parts
+from symgen.cli.measuring import bench, simulate, stress, target
+from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, guarded
+from symgen.cli.signals import EndedError, signals_end_the_run
+from symgen.generation.results import PARTS, Options, Result, WrongUseError
+from symgen.ir.kernel import Scalar
+from symgen.model.expressions.names import did_you_mean
+from symgen.output.write import begin_writing, changed_folders, compare, recover_folders, write_files
+from symgen.runtime.processes import ToolError
+from symgen.terminal import SPELLED, Progress, notice_line, summary_table, terminal_width
+
+INTERRUPTED, READER_GONE = 130, 141  # as a shell reports these signals
+_SCALARS: dict[str, tuple[Scalar, ...]] = {
+    "float64": ("float64",),
+    "float32": ("float32",),
+    "both": ("float64", "float32"),
+}
+_EPILOG = """commands:
+  symgen MODEL.yaml...              generate and verify
+  symgen verify MODEL.yaml          verify again, write the certificate only
+  symgen bench MODEL.yaml...        run time against error, beside other tools
+  symgen stress MODEL.yaml...       errors near singularities, extreme values, a long run
+  symgen target MODEL.yaml --cpu C  instructions, bytes and bits on emulated microcontrollers
+  symgen simulate MODEL.yaml        integrates: CSV, chart, animation of frames and points
+  symgen new NAME                   a commented model to start from
+  symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
+  symgen schema                     JSON Schema of model files, for editors
+
+examples:
+  symgen models/front_car.yaml
+  symgen models/*.yaml --out build/symgen --quiet
+  symgen models/front_car.yaml --outputs inverse_dynamics,forward_dynamics --scalar float32 --only c
+  symgen models/front_car.yaml --form householder --form multipliers=schur_qr
+  symgen models/*.yaml --check
+  symgen explain models/front_car.yaml nullspace_projector
+
+exit codes: 0 done, 1 the model or its verification is wrong, 2 wrong use or a fault of symgen
+"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command line and returns the exit code."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is None:
+        # large graphs live until the end of a command: looking for cycles in them costs a twentieth of its time
+        gc.disable()
+    _prepare_streams()
+    begin_writing()
+    command, rest = (given[0], given[1:]) if given and given[0] in _COMMANDS else ("", given)
+    try:
+        if given and not command:
+            _check_command(given[0])
+        with signals_end_the_run():
+            code = _COMMANDS[command](rest) if command else _generate(rest)
+            sys.stdout.flush()
+        if arguments is None:
+            # the interpreter looks for cycles once more at its end, to free what the process gives back anyway
+            gc.freeze()
+        return code
+    except (KeyboardInterrupt, EndedError) as ending:
+        return _ended(ending)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # no second complaint at exit
+        return READER_GONE
+    except (WrongUseError, ToolError) as error:
+        return _complain(str(error))
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        return _complain(f"{place}{error.strerror or error}")
+
+
+def _check_command(word: str) -> None:
+    """WrongUseError for a word that is neither a command nor the name of a file, but close to a command."""
+    if word.isidentifier() and not Path(word).exists():
+        remedy = did_you_mean(word, _COMMANDS, "")
+        if remedy:
+            raise WrongUseError(f"{word} is no command and no file; {remedy.replace('`', '`symgen ', 1)}")
+
+
+def _prepare_streams() -> None:
+    """Output may be closed, and a terminal may lack characters: neither is a reason to fail."""
+    sys.stdout, sys.stderr = sys.stdout or StringIO(), sys.stderr or StringIO()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors=SPELLED)
+
+
+def _ended(ending: KeyboardInterrupt | EndedError) -> int:
+    """Says what became of the output, and returns the exit code."""
+    word, code = "interrupted", INTERRUPTED
+    if isinstance(ending, EndedError):
+        word, code = ending.meaning, ending.number
+    folders = ", ".join(map(str, changed_folders()))
+    told = "earlier output is unchanged"
+    if folders:
+        told = f"new files are in {folders}, each complete; all else is unchanged"
+    with suppress(OSError):  # the terminal may be gone
+        print(f"\n{word}; {told}", file=sys.stderr, flush=True)
+    return code
+
+
+def _complain(message: str) -> int:
+    print(f"symgen: {message}", file=sys.stderr)
+    return WRONG_USE
+
+
+def _generate(arguments: list[str]) -> int:
+    purpose = "Verified, globally valid inverse dynamics of constrained mechanical systems."
+    parser = make_parser("symgen", purpose, _EPILOG)
+    add_models(parser)
+    add_generation(parser)
+    parser.add_argument("--outputs", metavar="A,B", type=names, help="quantities, or all (default: the model's list)")
+    parser.add_argument(
+        "--scalar", choices=tuple(_SCALARS), default="both", help="scalar types of the C (default: both)"
+    )
+    parser.add_argument("--only", metavar="PARTS", type=parts, default=PARTS, help="of c,python,report,package,proof")
+    parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
+    parser.add_argument(
+        "--recorded",
+        metavar="DIR",
+        type=Path,
+        help="in place of verification, take what it led to from DIR/<model>/derivation.json",
+    )
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="write nothing; exit 1 and list what differs from the disk (no verification)",
+    )
+    parser.add_argument("--version", action="version", version=f"symgen {__version__}")
+    given = parser.parse_args(arguments)
+    options = Options(
+        outputs=given.outputs,
+        scalars=_SCALARS[given.scalar],
+        parts=given.only,
+        verify=given.verify and not given.check and given.recorded is None,
+        states=given.states,
+        forms=chosen_forms(given.forms),
+        trig=given.trig,
+        measured=given.recorded or given.out,
+        as_recorded=given.check or given.recorded is not None,
+    )
+    finish = _check_files if given.check else _write_files
+    recover_folders(given.out)
+    return _each_model(given.models, options, given.quiet, lambda result: finish(result, given.out, given.quiet))
+
+
+def _verify(arguments: list[str]) -> int:
+    parser = make_parser(
+        "symgen verify", "Compiles the C, runs C and Python against the reference, writes the certificate."
+    )
+    add_models(parser)
+    add_generation(parser)
+    given = parser.parse_args(arguments)
+    from symgen.verify.compile import find_compiler
+
+    if find_compiler() is None:
+        raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")
+    recover_folders(given.out)
+    options = Options(parts=("c", "python"), states=given.states, forms=chosen_forms(given.forms), trig=given.trig)
+    return _each_model(
+        given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)
+    )
+
+
+def _explain(arguments: list[str]) -> int:
+    parser = make_parser("symgen explain", "Closed forms, structure, and what is skipped and why.")
+    parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file")
+    parser.add_argument("quantity", metavar="QUANTITY", nargs="?", help="one quantity (default: an overview)")
+    add_form(parser)
+    add_out(parser, "takes what verification led to from DIR/<model>/ (default: generated)")
+    given = parser.parse_args(arguments)
+
+    check_present([given.model])
+
+    def explain() -> int:
+        from symgen.pipeline import explain
+
+        progress = Progress(given.model.stem, quiet=not sys.stderr.isatty())
+        text = explain(given.model, given.quantity, progress, chosen_forms(given.forms), given.out)
+        progress.done()
+        print(text)
+        return DONE
+
+    return guarded(explain)
+
+
+def _schema(arguments: list[str]) -> int:
+    make_parser("symgen schema", "Prints the JSON Schema of model files.").parse_args(arguments)
+    import json
+
+    from symgen.model.file.schema import json_schema
+
+    print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+    return DONE
+
+
+def _new(arguments: list[str]) -> int:
+    parser = make_parser("symgen new", "Writes NAME.yaml, a commented model to start from.")
+    parser.add_argument("name", metavar="NAME", help="the model's name, a C identifier")
+    given = parser.parse_args(arguments)
+    from symgen.cli.starting_model import write_starting_model
+
+    print(f"written: {write_starting_model(given.name, Path())}")
+    return DONE
+
+
+_COMMANDS: dict[str, Callable[[list[str]], int]] = {
+    "verify": _verify,
+    "bench": bench,
+    "stress": stress,
+    "target": target,
+    "simulate": simulate,
+    "new": _new,
+    "explain": _explain,
+    "schema": _schema,
+}
+
+
+def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: Callable[[Result], int]) -> int:
+    """Every model, also after one that failed; the highest exit code wins."""
+    seen: dict[str, Path] = {}
+
+    def one(path: Path) -> int:
+        from symgen.pipeline import generate
+
+        progress = Progress(path.stem, quiet)
+        try:
+            result = generate(path, options, progress)
+        finally:
+            progress.done()
+        other = seen.setdefault(result.model.name, path)
+        if other != path:
+            raise WrongUseError(f"{other} and {path} are both models named {result.model.name}")
+        for notice in () if quiet else result.notices:
+            print(notice_line(str(path), notice), file=sys.stderr)
+        if result.failures:
+            print(f"{path}: verification failed, nothing is written", file=sys.stderr)
+            print(*(f"  {failure}" for failure in result.failures), sep="\n", file=sys.stderr)
+            _tell_left_out(path, result)
+            return MODEL_WRONG
+        code = finish(result)
+        _tell_left_out(path, result)
+        return MODEL_WRONG if result.left_out else code
+
+    check_present(models)
+    return max([guarded(partial(one, path)) for path in models])
+
+
+def _tell_left_out(path: Path, result: Result) -> None:
+    for one in result.left_out:
+        types = " and ".join(one.scalars)
+        print(f"{path}: {one.quantity} is left out in {types}: verification rejects every way of it", file=sys.stderr)
+        print(*(f"  {way}: {why}" for way, why in one.tried), f"  remedy: {one.remedy}", sep="\n", file=sys.stderr)
+
+
+def _write_files(result: Result, out: Path, quiet: bool) -> int:
+    tell = _unheard if quiet else _heard
+    written = write_files(out / result.model.name, result.files, tell)
+    if not quiet:
+        print(summary_table(result.model.name, result.summary, terminal_width(sys.stdout)))
+        print("written:", *(f"  {path}" for path in written), "", sep="\n")
+    return DONE
+
+
+def _heard(message: str) -> None:
+    print(message, file=sys.stderr)
+
+
+def _unheard(_message: str) -> None:
+    return
+
+
+def _write_certificate(result: Result, out: Path, quiet: bool) -> int:
+    """The certificate speaks of what symgen makes now; other files on disk are a failure, not a certificate."""
+    folder = out / result.model.name
+    certificate = {path: content for path, content in result.files.items() if path == "certificate.json"}
+    sources = {path: content for path, content in result.files.items() if path.startswith(("c/", "python/"))}
+    differences = compare(folder, sources)
+    if differences:
+        print("the files on disk are not the ones verified (run symgen again):", file=sys.stderr)
+        print(*(f"  {line}" for line in differences), sep="\n", file=sys.stderr)
+        return MODEL_WRONG
+    written = write_files(folder, certificate)
+    if not quiet:
+        print(summary_table(result.model.name, result.summary, terminal_width(sys.stdout)))
+        print("written:", *(f"  {path}" for path in written), "", sep="\n")
+    return DONE
+
+
+def _check_files(result: Result, out: Path, quiet: bool) -> int:
+    differences = compare(out / result.model.name, result.files)
+    if differences:
+        print(*differences, sep="\n")
+        return MODEL_WRONG
+    if not quiet:
+        print(f"{result.model.name}: as on disk")
+    return DONE

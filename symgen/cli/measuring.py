@@ -1,0 +1,107 @@
+"""The commands that measure models: bench, stress, target, simulate.
+
+Each takes what stands behind its name on the command line and returns the exit code.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from symgen.cli.arguments import add_models, add_out, add_quiet, make_parser, number_of_states, positive, values
+from symgen.cli.outcome import each_file
+from symgen.terminal import Progress
+
+
+def bench(arguments: list[str]) -> int:
+    """Run time against error of C and Python, beside other tools."""
+    parser = make_parser("symgen bench", "Run time against error of C and Python, beside other tools on the same work.")
+    add_models(parser)
+    add_out(parser)
+    parser.add_argument(
+        "--states", metavar="N", type=number_of_states, default=1000, help="admissible states (default: 1000)"
+    )
+    parser.add_argument(
+        "--bodies", action="store_true", help="u alone, beside peers that walk frames; for mechanisms of any size"
+    )
+    add_quiet(parser)
+    given = parser.parse_args(arguments)
+
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.laboratory.bench.command import run_bench, run_mechanism_bench
+
+        if given.bodies:
+            return run_mechanism_bench(path, given.out, given.quiet, progress)
+        return run_bench(path, given.out, given.states, given.quiet, progress)
+
+    return each_file(given.models, given.quiet, one)
+
+
+def stress(arguments: list[str]) -> int:
+    """Errors near singularities, for extreme values and over a long run."""
+    parser = make_parser(
+        "symgen stress",
+        "Errors against the distance to singularities and for extreme values, statuses, other units, a long run.",
+    )
+    add_models(parser)
+    add_out(parser)
+    parser.add_argument(
+        "--steps", metavar="N", type=int, default=1_000_000, help="steps of the long run, 0 for none (default: 1000000)"
+    )
+    add_quiet(parser)
+    given = parser.parse_args(arguments)
+
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.laboratory.stress.command import run_stress
+
+        return run_stress(path, given.out, max(0, given.steps), given.quiet, progress)
+
+    return each_file(given.models, given.quiet, one)
+
+
+def target(arguments: list[str]) -> int:
+    """The C on emulated microcontrollers."""
+    from symgen.laboratory.target.cores import BY_NAME, CORES
+
+    parser = make_parser(
+        "symgen target",
+        "Runs the generated C on emulated microcontrollers: the same bits as here, instructions per call, footprint.",
+    )
+    add_models(parser)
+    cpus = (*BY_NAME, "all")
+    parser.add_argument(
+        "--cpu", metavar="CPU", choices=cpus, action="append", required=True, help=f"{', '.join(cpus)}; repeatable"
+    )
+    add_out(parser)
+    add_quiet(parser)
+    given = parser.parse_args(arguments)
+    cores = [core for core in CORES if core.name in given.cpu or "all" in given.cpu]
+
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.laboratory.target.command import run_target
+
+        return run_target(path, given.out, cores, given.quiet, progress)
+
+    return each_file(given.models, given.quiet, one)
+
+
+def simulate(arguments: list[str]) -> int:
+    """Motion from a consistent start."""
+    parser = make_parser("symgen simulate", "Integrates a model from a consistent start: CSV, chart and animation.")
+    add_models(parser)
+    parser.add_argument("--duration", metavar="S", type=positive, default=5.0, help="seconds (default: 5)")
+    parser.add_argument("--frames", metavar="N", type=int, default=50, help="frames a second (default: 50)")
+    parser.add_argument(
+        "--start", metavar="x=1,x_dot=2", type=values, default={}, help="coordinates and rates at the start"
+    )
+    parser.add_argument("--inputs", metavar="u=1", type=values, default={}, help="constant inputs (default: 0)")
+    add_out(parser)
+    add_quiet(parser)
+    given = parser.parse_args(arguments)
+
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.simulate.command import Request, run_simulate
+
+        request = Request(given.duration, max(1, given.frames), given.start, given.inputs)
+        return run_simulate(path, given.out, request, given.quiet, progress)
+
+    return each_file(given.models, given.quiet, one)

@@ -1,0 +1,100 @@
+"""derivation.json: structure, choices and operation counts, a function of the model and symgen's version alone.
+
+The counts are the baseline against which a change of symgen is held.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from symgen import __version__
+from symgen.backends.operations import count_operations
+from symgen.backends.quantities import BATCHED
+from symgen.ir.given_trig import given_trig
+from symgen.ir.kernel import Kernel, Program
+from symgen.ir.prepare import prepare
+from symgen.mechanics.structure import Structure
+from symgen.methods.selection import MethodChoice
+from symgen.model.model import Model
+from symgen.quantities.select import Selection
+
+
+def derivation_json(model: Model, derivations: Selection, structure: Structure, program: Program) -> str:
+    """The file's text; keys in a fixed order."""
+    generic = derivations.generic
+    ways = {choice.quantity: choice for choice in derivations.choices}
+    rejected, left_out = derivations.rejected, derivations.left_out
+    kernels: dict[str, Any] = {}
+    for kernel in program.kernels:
+        choice = ways[kernel.name]
+        kernels[kernel.name] = {
+            "shape": list(kernel.shape),
+            "way": choice.way,
+            **({"form": choice.form} if choice.form else {}),
+            **({"twice_the_digits": list(choice.wide)} if choice.wide else {}),
+            "counted_cost": dict(choice.costs),
+            "operations": _operations(kernel),
+            "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),
+        }
+    prepared = prepare(program, BATCHED)
+    for kernel in () if prepared is None else prepared.kernels:
+        kernels[kernel.name]["operations_prepared"] = _operations(kernel)
+    for kernel in program.kernels:
+        if kernel.name in BATCHED and (given := given_trig(kernel)) is not None:
+            kernels[kernel.name]["operations_sines_given"] = _operations(given.kernel)
+    content = {
+        "symgen": __version__,
+        "model": model.name,
+        "model_sha256": model.text_hash,
+        "sizes": {
+            "n": generic.n,
+            "r": generic.r,
+            "rank": generic.rank,
+            "m": generic.m,
+            "delta_loc": generic.delta_loc,
+            "delta_diff": generic.delta,
+            "alpha": generic.alpha,
+        },
+        **({"parameters_as_numbers": [name for name, _ in model.taken]} if model.taken else {}),
+        "actuation": structure.actuation,
+        "blocks": [
+            {
+                "rows": list(block.rows),
+                "coordinates": list(block.coordinates),
+                "rank": block.rank,
+                "delta": block.delta,
+                "way": block.way,
+            }
+            for block in structure.blocks
+        ],
+        "free_coordinates": list(structure.free_coordinates),
+        "dependent_rows": list(structure.dependent_rows),
+        "skipped": [{"what": d.what, "why": d.why} for d in structure.decisions],
+        "absent": [{"quantity": name, "why": why} for name, why in derivations.absent],
+        **({"rejected": [{"quantity": r.quantity, "way": r.way, "why": r.why} for r in rejected]} if rejected else {}),
+        **({"left_out": [{"quantity": name, "scalars": list(types)} for name, types in left_out]} if left_out else {}),
+        "sine_and_cosine": "libm" if program.sincos is None else "portable",
+        "form_of_inverse_dynamics": _form(derivations.form),
+        **{f"form_of_{quantity}": _form(form) for quantity, form in derivations.named},
+        "kernels": kernels,
+    }
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def _form(form: MethodChoice | None) -> dict[str, Any] | None:
+    """A quantity's form: whether it is valid at every regular state, why or where not, and what is known of others."""
+    if form is None:
+        return None
+    return {
+        "name": form.way,
+        "valid_at_every_regular_state": form.verdict.admitted,
+        "because": form.verdict.explanation,
+        "singular": [{"where_zero": s.where_zero, "for_example": dict(s.state)} for s in form.verdict.singular],
+        "forms": [{"name": name, "counted_cost": weight, "remark": remark} for name, weight, remark in form.others],
+    }
+
+
+def _operations(kernel: Kernel) -> dict[str, int]:
+    counts = count_operations(kernel.statements)
+    return {name: getattr(counts, name) for name in ("add", "mul", "div", "sqrt", "sincos", "other")}

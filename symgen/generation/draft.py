@@ -1,0 +1,156 @@
+"""A model on its way: derived and scheduled, nothing printed yet; what verification rejects is replaced here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from symgen.generation.results import Options, Trig, WrongUseError
+from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.ir.library_trig import with_library_trig
+from symgen.lowering.schedule import schedule
+from symgen.mechanics.structure import Structure, analyse
+from symgen.model.model import Model
+from symgen.quantities.alternatives import Alternative
+from symgen.quantities.select import Choice, NoSuchFormError, Rejection, Selection, derive_quantities
+from symgen.records import dataclass
+from symgen.runtime.activity import working
+
+if TYPE_CHECKING:
+    from symgen.verify.certificate import LeftOut
+
+REJECTED = "verification rejects it"
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way.
+
+    `notice` says why it does not hold what an earlier verification led to, where that was asked for.
+    """
+
+    model: Model
+    derivations: Selection
+    structure: Structure
+    programs: Mapping[Scalar, Program]
+    trig: Trig
+    left_out: tuple[LeftOut, ...] = ()
+    notice: str = ""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be told of a draft that is not verified again: its notice, and what was left out before."""
+        left_out = self.derivations.left_out
+        told = (f"{name} is left out in {' and '.join(types)}: {REJECTED} in every way" for name, types in left_out)
+        return (*((self.notice,) if self.notice else ()), *told)
+
+    @property
+    def program(self) -> Program:
+        """The float64 program, which Python, the counts and the report are made from."""
+        return self.programs["float64"]
+
+    def choice(self, quantity: str) -> Choice:
+        """The way a quantity takes."""
+        return next(choice for choice in self.derivations.choices if choice.quantity == quantity)
+
+    def way(self, quantity: str) -> str:
+        """The way a quantity takes, and its form where that says more."""
+        choice = self.choice(quantity)
+        way = f"{choice.form} along {choice.way}" if choice.form not in ("", choice.way) else choice.way
+        return way + choice.digits
+
+    def taken(self, quantity: str) -> Alternative:
+        """The way a quantity takes, as it stands."""
+        derivations = self.derivations
+        derived = next(one for one in derivations.quantities if one.name == quantity)
+        form = derivations.form if quantity == "inverse_dynamics" else dict(derivations.named).get(quantity)
+        return Alternative(self.choice(quantity), derivations.mechanics, derived, form)
+
+    def kernels(self, quantity: str) -> dict[Scalar, Kernel]:
+        """The kernels of a quantity by scalar type."""
+        found = ((scalar, kernel) for scalar, program in self.programs.items() for kernel in program.kernels)
+        return {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
+
+    def kernels_along(self, alternative: Alternative, scalars: Sequence[Scalar]) -> dict[Scalar, Kernel]:
+        """The kernels of a quantity along another way."""
+        wide = set(alternative.choice.wide).intersection(scalars)
+        # thresholds of pairs of float32 lie between those of both types
+        made = tuple(dict.fromkeys((*scalars, "float64"))) if wide else scalars
+        programs = schedule(alternative.mechanics, [alternative.derived], made)
+        if self.trig == "libm":
+            programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
+        kernels = {scalar: program.kernels[0] for scalar, program in programs.items()}
+        if not wide:
+            return kernels
+        from symgen.ir.wide import widened, with_sharp_thresholds  # few models need it
+
+        found = {scalar: kernels[scalar] for scalar in scalars}
+        if "float32" in wide:
+            found["float32"] = with_sharp_thresholds(kernels["float32"], kernels["float64"])
+        return {scalar: widened(one, scalar) if scalar in wide else one for scalar, one in found.items()}
+
+    def along(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Draft:
+        """The draft with a quantity along another way, by kernels of `kernels_along`."""
+        name, derivations = alternative.choice.quantity, self.derivations
+        form, named = derivations.form, dict(derivations.named)
+        if alternative.form is not None and name == "inverse_dynamics":
+            form = alternative.form
+        elif alternative.form is not None:
+            named[name] = alternative.form
+        else:
+            named.pop(name, None)
+        derivations = replace(
+            derivations,
+            quantities=tuple(alternative.derived if q.name == name else q for q in derivations.quantities),
+            choices=tuple(alternative.choice if c.quantity == name else c for c in derivations.choices),
+            form=form,
+            named=tuple(named.items()),
+        )
+        programs = {}
+        for scalar, program in self.programs.items():
+            exchanged = (kernels.get(scalar, k) if k.name == name else k for k in program.kernels)
+            programs[scalar] = replace(program, kernels=tuple(exchanged))
+        return replace(self, derivations=derivations, programs=programs)
+
+    def without(self, quantity: str, scalars: Sequence[Scalar], why: str) -> Draft:
+        """The draft without a quantity in some scalar types; without float64, which all else is made of, in none."""
+        derivations = self.derivations
+        left_out = tuple(one for one in derivations.left_out if one[0] != quantity)
+        derivations = replace(derivations, left_out=(*left_out, (quantity, tuple(scalars))))
+        programs = {
+            scalar: replace(program, kernels=tuple(kernel for kernel in program.kernels if kernel.name != quantity))
+            if scalar in scalars
+            else program
+            for scalar, program in self.programs.items()
+        }
+        if "float64" not in scalars:
+            return replace(self, derivations=derivations, programs=programs)
+        derivations = replace(
+            derivations,
+            quantities=tuple(q for q in derivations.quantities if q.name != quantity),
+            choices=tuple(c for c in derivations.choices if c.quantity != quantity),
+            absent=(*derivations.absent, (quantity, why)),
+            form=None if quantity == "inverse_dynamics" else derivations.form,
+            named=tuple(one for one in derivations.named if one[0] != quantity),
+        )
+        return replace(self, derivations=derivations, programs=programs)
+
+    def rejecting(self, rejected: tuple[Rejection, ...]) -> Draft:
+        """The draft that tells of more ways which verification rejected."""
+        return replace(self, derivations=replace(self.derivations, rejected=(*self.derivations.rejected, *rejected)))
+
+
+def draft_of(model: Model, outputs: Sequence[str], options: Options) -> Draft:
+    """What derivation chooses; raises WrongUseError for a form that the model does not have."""
+    try:
+        derivations = derive_quantities(model, tuple(outputs), options.forms)
+    except NoSuchFormError as reason:
+        raise WrongUseError(f"{model.name} has {reason}") from reason
+    with working("what is not needed"):
+        structure = analyse(derivations.mechanics, derivations.generic)
+    scalars: tuple[Scalar, ...] = ("float64", *(s for s in options.scalars if s != "float64"))
+    programs = schedule(derivations.mechanics, derivations.quantities, scalars)
+    if options.trig == "libm":
+        programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
+    return Draft(model, derivations, structure, programs, options.trig)

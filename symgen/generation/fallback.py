@@ -1,0 +1,278 @@
+"""What verification rejects takes the next valid way by counted cost, or is left out alone.
+
+Another way is held against the same states by interpretation before anything is printed or compiled; the files that
+come of it are then verified like any others.  A way that needs most of what is allowed at these states will need more
+at others: it is taken only where no other way keeps a margin.  Where none does, one that loses digits works with twice
+as many.  Where no way passes in float32, float64 stays.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import TypeAlias
+
+from symgen.diagnostics import SymgenBug
+from symgen.generation.draft import REJECTED, Draft
+from symgen.generation.results import AUTO, Options
+from symgen.ir.kernel import Kernel, Scalar
+from symgen.methods.quantity import scalars
+from symgen.quantities.alternatives import TIERS, Alternative, Alternatives, grouped
+from symgen.quantities.select import Choice, Rejection
+from symgen.records import dataclass
+from symgen.runtime.garbage import let_go, let_go_and_keep
+from symgen.symbolic.traverse import cost
+from symgen.verify.certificate import Certificate, ErrorRecord, Fault, LeftOut
+from symgen.verify.comparison import INACCURATE, VIOLATES
+from symgen.verify.exactness import difference
+from symgen.verify.expected import Expected
+from symgen.verify.interpreted import Measurements
+from symgen.verify.searched import WorstStateSearch
+from symgen.verify.tolerance import FACTOR
+
+TOO_LONG = "not tried: it takes many times as long to derive"
+# Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
+MARGIN = FACTOR / 2
+# What keeping a margin may cost, in operations.
+MARGIN_WORTH = Fraction(1, 2)
+# Ways that are tried once more with twice the digits, and what the longest one counts.
+WIDENED = 3
+LONGEST = 40_000
+Kernels: TypeAlias = Mapping[Scalar, Kernel]
+
+
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    """A way with its kernels and its largest error in `scalars`, where it passes."""
+
+    largest: float
+    scalars: tuple[Scalar, ...]
+    way: Alternative
+    kernels: Kernels
+
+
+class Fallback:
+    """The ways of one model that are left, through all rounds of its verification."""
+
+    def __init__(self, options: Options, progress: Callable[[str], None]) -> None:
+        self._options = options
+        self._progress = progress
+        self._alternatives: Alternatives | None = None
+        self._search: WorstStateSearch | None = None
+        self.measurements = Measurements()
+        self._searched: dict[str, Kernels] = {}
+        self._left: dict[tuple[str, int], deque[Alternative]] = {}
+        self._passing: defaultdict[str, list[_Candidate]] = defaultdict(list)
+        self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
+        # by their hashes: kernels that were rejected need not stay
+        self._seen: defaultdict[str, set[int]] = defaultdict(set)
+        self._weighed: set[str] = set()
+        self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
+        self._widened: set[str] = set()
+
+    def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
+        """The draft with other ways for what is rejected, or for what keeps no margin; None where nothing is better."""
+        if self._alternatives is None:
+            let_go_and_keep()
+            derivations = draft.derivations
+            self._alternatives = Alternatives(draft.model, derivations.generic, derivations.inverse)
+            self._search = WorstStateSearch(expected)
+        made = draft
+        for quantity, faults in (certificate.rejected | self._worst(draft, certificate, expected)).items():
+            made = self._replaced(made, quantity, faults, expected)
+            let_go()
+        if not certificate.faults:
+            worst = {one.quantity: one for one in sorted(certificate.errors, key=lambda record: record.largest)}
+            for record in worst.values():
+                if record.largest > MARGIN and record.quantity not in self._weighed:
+                    made = self._with_margin(made, record, expected)
+                    let_go()
+        return None if made is draft else made
+
+    def settle(self) -> None:
+        """Lets go of what is hardly needed any more, and derived again where it is."""
+        if self._alternatives is not None:
+            self._alternatives.settle()
+            let_go_and_keep()
+
+    def _worst(self, draft: Draft, certificate: Certificate, expected: Expected) -> dict[str, tuple[Fault, ...]]:
+        """What is wrong with quantities that nothing speaks against, at states where they are worst."""
+        found = {}
+        for quantity in (kernel.name for kernel in draft.program.kernels):
+            kernels = draft.kernels(quantity)
+            if quantity not in certificate.rejected and self._searched.get(quantity) != kernels:
+                self._progress(f"verifying: where {quantity} is worst")
+                self._searched[quantity] = kernels
+                judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
+                if judged and (faults := self._at_worst(draft, judged, _plain(draft.choice(quantity), kernels))):
+                    found[quantity] = tuple(faults)
+        return found
+
+    def _at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel | None) -> list[Fault]:
+        """What is wrong with kernels where they are worst, a `plain` one among them and others before."""
+        assert self._search is not None
+        if plain is not None:
+            self._search.look(plain)
+        sincos = {scalar: draft.programs[scalar].sincos for scalar in kernels}
+        faults = (self._search.fault(kernel, sincos[scalar], scalar) for scalar, kernel in kernels.items())
+        return [fault for fault in faults if fault is not None]
+
+    def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:
+        """The draft with a rejected quantity along its next way that passes, or without it."""
+        tried, passing = self._tried[quantity], self._passing[quantity]
+        known, kernels = len(tried), draft.kernels(quantity)
+        self._weighed.add(quantity)
+        _check_algebra(kernels["float64"], draft.way(quantity), expected, faults[0].state)
+        tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})"))
+        self._seen[quantity].add(_digest(kernels))
+        # laws that a number with few digits violates beside are no reason of their own: its algebra is right
+        if known == 0 and all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in faults):
+            self._inaccurate[quantity].append(draft.taken(quantity))
+        if all(fault.scalar == "float32" for fault in faults):
+            passing.append(_Candidate(0.0, ("float64",), draft.taken(quantity), kernels))
+        found = self._next(draft, quantity, expected)
+        draft = draft.rejecting(tuple(Rejection(quantity, way, why) for way, why in tried[known:]))
+        if found is not None:
+            draft = draft.along(found.way, found.kernels)
+        passed = () if found is None else found.scalars
+        without = tuple(scalar for scalar in kernels if scalar not in passed)
+        if not without:
+            return draft
+        given_up = () if self._alternatives is None else self._alternatives.too_long.get(quantity, ())
+        every = (*tried, *((name, TOO_LONG) for name in given_up))
+        left_out = LeftOut(quantity, without, every, self._remedy(quantity, without))
+        others = (one for one in draft.left_out if one.quantity != quantity)
+        return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
+
+    def _next(self, draft: Draft, quantity: str, expected: Expected) -> _Candidate | None:
+        """The next way that passes with a margin, or else the best of those that pass; others are noted."""
+        passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
+        for tier in range(TIERS):
+            for one in self._candidates(draft, quantity, tier, expected):
+                if one.scalars == needed and one.largest <= MARGIN:
+                    return one
+                if "float64" in one.scalars:
+                    passing.append(one)
+        for one in self._with_more_digits(draft, quantity, expected):
+            if one.scalars == needed and one.largest <= MARGIN:
+                return one
+            if "float64" in one.scalars:
+                passing.append(one)
+        if not passing:
+            return None
+        best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
+        passing.remove(best)
+        return best
+
+    def _with_margin(self, draft: Draft, record: ErrorRecord, expected: Expected) -> Draft:
+        """The draft with a quantity that passes narrowly along a way with half of its error, where that is not long."""
+        quantity = record.quantity
+        self._weighed.add(quantity)
+        taken, kernels = draft.taken(quantity), draft.kernels(quantity)
+        here = _Candidate(record.largest, tuple(kernels), taken, kernels)
+        self._seen[quantity].add(_digest(kernels))
+        most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
+        for one in self._candidates(draft, quantity, 0, expected):
+            if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.way.cost <= most:
+                self._passing[quantity].append(here)
+                why = f"error {record.largest:.3g} times d + eps |y*| of {FACTOR:g} ({record.target}) leaves no margin"
+                self._tried[quantity].append((draft.way(quantity), why))
+                return draft.along(one.way, one.kernels).rejecting((Rejection(quantity, draft.way(quantity), why),))
+            if "float64" in one.scalars:
+                self._passing[quantity].append(one)
+        return draft
+
+    def _candidates(self, draft: Draft, quantity: str, tier: int, expected: Expected) -> Iterator[_Candidate]:
+        """The ways of a tier that are left, measured; what fails is noted."""
+        if self._options.forms.get(quantity, AUTO) != AUTO or self._alternatives is None:
+            return
+        if (quantity, tier) not in self._left:
+            self._progress(f"other ways to {quantity}")
+            self._left[quantity, tier] = deque(self._alternatives.of(quantity, draft.choice(quantity), tier))
+        left = self._left[quantity, tier]
+        while left:
+            way = left.popleft()
+            self._progress(f"another way to {quantity}, {way.choice.way}")
+            kernels = draft.kernels_along(way, tuple(draft.kernels(quantity)))
+            if (digest := _digest(kernels)) not in self._seen[quantity]:
+                self._seen[quantity].add(digest)
+                one = self._measured(draft, way, kernels, expected)
+                if not way.grouped and "float64" in one.scalars:
+                    way = grouped(way)
+                    one = self._measured(draft, way, draft.kernels_along(way, tuple(kernels)), expected)
+                yield one
+
+    def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
+        """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
+        if quantity in self._widened or self._options.forms.get(quantity, AUTO) != AUTO:
+            return
+        self._widened.add(quantity)
+        scalars = tuple(draft.kernels(quantity))
+        passing = [one for one in self._passing[quantity] if "float32" in scalars and one.scalars == ("float64",)]
+        passing.sort(key=lambda one: (one.largest > MARGIN, one.way.cost))
+        single: tuple[Scalar, ...] = ("float32",)
+        chosen = [(one.way, single) for one in passing]
+        chosen += [(way, scalars) for way in sorted(self._inaccurate.pop(quantity, ()), key=lambda way: way.cost)]
+        for way, wide in [one for one in chosen if one[0].cost <= LONGEST][:WIDENED]:
+            self._progress(f"twice the digits for {quantity}, {way.choice.way}")
+            way = grouped(way)
+            way = replace(way, choice=replace(way.choice, wide=wide))
+            yield self._measured(draft, way, draft.kernels_along(way, scalars), expected)
+
+    def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
+        """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
+        passed: dict[Scalar, Kernel] = {}
+        worst = 0.0
+        for scalar, kernel in kernels.items():
+            if scalar in expected.scalars:
+                record, fault = self.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)
+                if fault is not None:
+                    name = way.choice.way + way.choice.digits
+                    _check_algebra(kernels["float64"], name, expected, record.worst_state)
+                    self._note(way, fault, inaccurate=not record.refused)
+                    if scalar == "float64":
+                        break  # float32 alone is of no use: the other type is what Python and the report are made of
+                    continue
+                worst = max(worst, record.largest)
+            passed[scalar] = kernel
+        judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
+        if judged:
+            for fault in self._at_worst(draft, judged, _plain(way.choice, kernels)):
+                self._note(way, fault, inaccurate=True)
+                passed.pop(fault.scalar)
+        scalars = tuple(passed) if "float64" in passed else ()
+        if scalars:
+            self._searched[way.choice.quantity] = kernels
+        return _Candidate(worst, scalars, way, kernels)
+
+    def _note(self, way: Alternative, fault: Fault, inaccurate: bool) -> None:
+        """What speaks against a way; one that is inaccurate may work with more digits."""
+        name = way.choice.way + way.choice.digits
+        self._tried[fault.quantity].append((name, f"{fault.what} ({fault.target})"))
+        if inaccurate and way not in self._inaccurate[fault.quantity]:
+            self._inaccurate[fault.quantity].append(way)
+
+    def _remedy(self, quantity: str, without: Sequence[Scalar]) -> str:
+        asked = self._options.forms.get(quantity, AUTO)
+        if asked != AUTO:
+            return f"leave `--form {quantity}={asked}` away: another form may pass"
+        if "float64" not in without:
+            return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
+        return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"
+
+
+def _digest(kernels: Kernels) -> int:
+    return hash(tuple(kernels.items()))
+
+
+def _plain(choice: Choice, kernels: Kernels) -> Kernel | None:
+    """The kernel of plain numbers among those of a way: where it is worst is looked for."""
+    return None if "float64" in choice.wide else kernels["float64"]
+
+
+def _check_algebra(kernel: Kernel, way: str, expected: Expected, worst: int) -> None:
+    """Raises SymgenBug where a rejected kernel computes something else: falling back would hide wrong algebra."""
+    if wrong := difference(kernel, expected, worst):
+        raise SymgenBug(f"{kernel.name} by {way}: {wrong}, in exact arithmetic")

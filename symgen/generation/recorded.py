@@ -1,0 +1,111 @@
+"""What verification led to, for commands that derive kernels anew: the record of the run that verified them.
+
+`symgen MODEL.yaml` leaves DIR/<model>/derivation.json.  It names the ways that verification rejected, the way that each
+quantity takes in their place, the scalar types in which it works with twice the digits, and what is left out.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from symgen import __version__
+from symgen.generation.draft import REJECTED, Draft, draft_of
+from symgen.quantities.alternatives import Alternatives
+from symgen.quantities.select import Rejection
+from symgen.records import dataclass
+
+if TYPE_CHECKING:
+    from symgen.generation.results import Options
+    from symgen.ir.kernel import Scalar
+    from symgen.model.model import Model
+
+RECORD = "derivation.json"
+
+
+@dataclass(frozen=True, slots=True)
+class _Taken:
+    """The way of a quantity that is made, and the types in which it works with twice the digits."""
+
+    way: str
+    wide: tuple[Scalar, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Record:
+    """What a derivation.json tells of a verification."""
+
+    rejected: tuple[Rejection, ...]
+    taken: Mapping[str, _Taken]
+    left_out: Mapping[str, tuple[Scalar, ...]]
+
+
+class _UnusableError(Exception):
+    """Why there is no record of the model."""
+
+
+def as_recorded(model: Model, outputs: Sequence[str], options: Options) -> Draft:
+    """The kernels of a model with what an earlier verification led to, as `options.measured` holds it.
+
+    Without a record they are what derivation chooses, and the draft's `notice` says so.  Raises WrongUseError for a
+    form that the model does not have.
+    """
+    draft = draft_of(model, outputs, options)
+    if options.measured is None:
+        return draft
+    file = options.measured / model.name / RECORD
+    try:
+        record = _read(file, model)
+    except _UnusableError as why:
+        told = f"{file} {why}: kernels are those that derivation chooses (`symgen` verifies them and writes it)"
+        return replace(draft, notice=told)
+    return _with_record(draft, record, options.forms)
+
+
+def _read(file: Path, model: Model) -> _Record:
+    try:
+        found = json.loads(file.read_bytes())
+    except OSError as error:
+        raise _UnusableError("is missing") from error
+    except ValueError as error:
+        raise _UnusableError("is damaged") from error
+    try:
+        if found["model_sha256"] != model.text_hash:
+            raise _UnusableError("is of another text of the model")
+        if found["symgen"] != __version__:
+            raise _UnusableError(f"is of symgen {found['symgen']}, this is {__version__}")
+        return _record(found)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise _UnusableError("is damaged") from error
+
+
+def _record(found: Mapping[str, Any]) -> _Record:
+    kernels = found["kernels"].items()
+    return _Record(
+        tuple(Rejection(str(r["quantity"]), str(r["way"]), str(r["why"])) for r in found.get("rejected", ())),
+        {name: _Taken(str(one["way"]), tuple(one.get("twice_the_digits", ()))) for name, one in kernels},
+        {str(one["quantity"]): tuple(one["scalars"]) for one in found.get("left_out", ())},
+    )
+
+
+def _with_record(draft: Draft, record: _Record, asked: Container[str]) -> Draft:
+    """The draft with the ways that stand in the record in place of rejected ones, but where a form was `asked` for."""
+    present = {choice.quantity for choice in draft.derivations.choices}
+    replaced = [name for name in dict.fromkeys(one.quantity for one in record.rejected) if name in present]
+    if not replaced:
+        return draft
+    others = Alternatives(draft.model, draft.derivations.generic, draft.derivations.inverse)
+    for quantity in replaced:
+        taken = record.taken.get(quantity)
+        if taken is not None and quantity not in asked:
+            way = others.named(quantity, taken.way)
+            if way is None or draft.choice(quantity).way == taken.way:
+                way = draft.taken(quantity)
+            way = replace(way, choice=replace(way.choice, wide=taken.wide))
+            draft = draft.along(way, draft.kernels_along(way, tuple(draft.programs)))
+        if quantity in record.left_out:
+            draft = draft.without(quantity, record.left_out[quantity], REJECTED)
+    return draft.rejecting(record.rejected)

@@ -1,0 +1,101 @@
+"""What a run of symgen is asked for and what it hands back: the nouns between pipeline and command line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from symgen.diagnostics import Notice
+from symgen.ir.kernel import Scalar
+from symgen.model.model import Model
+from symgen.records import dataclass
+
+if TYPE_CHECKING:
+    from symgen.ir.kernel import Program
+    from symgen.verify.certificate import LeftOut
+
+Part: TypeAlias = Literal["c", "python", "report", "package", "proof"]
+PARTS: tuple[Part, ...] = ("c", "python", "report", "package", "proof")
+DEFAULT_STATES = 64
+AUTO = "auto"
+_MOTIONS = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt", "articulated", "articulated_refined")
+# By quantity, the forms that may be asked for.
+FORMS: Mapping[str, tuple[str, ...]] = {
+    "inverse_dynamics": ("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"),
+    "forward_dynamics": _MOTIONS,
+    "multipliers": _MOTIONS,
+    "nullspace_projector": ("minor", "householder"),
+}
+Trig: TypeAlias = Literal["portable", "libm"]
+TRIG: tuple[Trig, ...] = ("portable", "libm")
+
+
+class WrongUseError(Exception):
+    """The command line asks for something that does not exist, such as an unknown quantity; exit code 2."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What to generate; `outputs` None takes the model's own list, `states` is the number of states to verify.
+
+    `measured` is where an earlier run may have left measurements (`<model>/target.json`), for the PDF.
+    `trig` says whose sine and cosine the code calls: its own, with the same bits everywhere, or the library's.
+    `as_recorded` takes over what the earlier run's verification led to, see `symgen.generation.recorded`.
+    """
+
+    outputs: tuple[str, ...] | None = None
+    scalars: tuple[Scalar, ...] = ("float64", "float32")
+    parts: tuple[Part, ...] = PARTS
+    verify: bool = True
+    trig: Trig = "portable"
+    states: int = DEFAULT_STATES
+    measured: Path | None = None
+    as_recorded: bool = False
+    forms: Mapping[str, str] = field(default_factory=dict)  # by quantity, of FORMS; without one the cheapest valid
+
+
+@dataclass(frozen=True, slots=True)
+class LargestError:
+    """The worst error of one target (`C float64`, ...) in units of d + eps |y|, and how many units are allowed.
+
+    d is how far the exact result moves when the inputs are rounded; see `symgen.verify.tolerance`.
+    """
+
+    target: str
+    quantity: str
+    error: float
+    tolerance: float
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """The table at the end of a run: sizes, what the scene does not need and why, operations, largest errors."""
+
+    n: int
+    r: int
+    delta: int
+    m: int
+    skipped: tuple[tuple[str, str], ...]
+    operations: tuple[tuple[str, int], ...]
+    errors: tuple[LargestError, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """All files of one model in memory (paths relative to its folder), and what to tell the user.
+
+    `failures` are verification failures: with any, nothing is written and the exit code is 1.  `left_out` are
+    quantities that verification rejects in every way: the rest is written, the exit code is 1.  `programs` are what
+    the files hold.
+    """
+
+    model: Model
+    files: Mapping[str, str | bytes]
+    summary: Summary
+    notices: tuple[Notice, ...] = ()
+    certificate: Mapping[str, Any] | None = None
+    failures: tuple[str, ...] = field(default=())
+    left_out: tuple[LeftOut, ...] = ()
+    programs: Mapping[Scalar, Program] = field(default_factory=dict)

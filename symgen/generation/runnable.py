@@ -1,0 +1,133 @@
+"""The generated kernels of a model, ready to run: compiled C, or the interpreter where there is no compiler."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from symgen.backends.c.plain import emit_c
+from symgen.generation.recorded import as_recorded
+from symgen.generation.results import Options
+from symgen.ir.interpret import Interpreter
+from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.model.model import Model
+from symgen.quantities.catalogue import CATALOGUE
+from symgen.verify.compile import CFunction, Compilation, Outcome, c_array, find_compiler
+from symgen.verify.reference.reference import State
+from symgen.verify.run import generated_sources
+from symgen.verify.states import Sample, rounded
+
+SCALARS: tuple[Scalar, ...] = ("float64", "float32")
+# What the formulas of the paper are computed from.
+PIECES = (
+    "mass_matrix",
+    "coriolis_matrix",
+    "potential_force",
+    "applied_force",
+    "constraint_jacobian",
+    "constraint_jacobian_dot",
+    "control_matrix",
+)
+STRESSED = ("inverse_dynamics", "forward_dynamics", "multipliers", "nullspace_projector")
+DRIVEN = ("constraint_residual", "energy", "admissible_velocity", "projected_configuration")
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """The way to the null space by which a quantity is computed."""
+
+    quantity: str
+    name: str
+
+
+class Runner:
+    """Programs ready to run: compiled C (`files`, by path), or the interpreter where there is no compiler."""
+
+    def __init__(self, model: Model, programs: Mapping[Scalar, Program], folder: Path) -> None:
+        self._programs = programs
+        self.files: dict[str, str] = {}
+        for program in programs.values():
+            self.files |= emit_c(model, program)
+        everywhere = set.intersection(*({kernel.name for kernel in program.kernels} for program in programs.values()))
+        self.names = tuple(kernel.name for kernel in programs["float64"].kernels if kernel.name in everywhere)
+        self.compiler = find_compiler()
+        self._kernels = {(s, k.name): k for s, program in programs.items() for k in program.kernels}
+        self._functions: dict[tuple[Scalar, str], CFunction] = {}
+        if self.compiler is None:
+            self._interpreters = {s: Interpreter(program.sincos, s) for s, program in programs.items()}
+            return
+        sources, _ = generated_sources(model, dict(self.files))
+        compilations = {s: Compilation(self.compiler, source, folder) for s, source in sources.items()}
+        try:
+            for scalar, compilation in compilations.items():
+                library = compilation.library()
+                for kernel in self._programs[scalar].kernels:
+                    self._functions[scalar, kernel.name] = CFunction(library, model.c_name, kernel, scalar)
+        finally:
+            for compilation in compilations.values():
+                compilation.cancel()
+
+    def kernel(self, name: str, scalar: Scalar) -> Kernel:
+        """The straight-line kernel of a quantity."""
+        return self._kernels[scalar, name]
+
+    def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
+        """One kernel at one state, whose numbers are of the scalar type already."""
+        parts = {part: getattr(state, part) for part in ("q", "qd", "qdd", "u")}
+        if self._functions:
+            arrays: dict[str, Any] = {part: c_array(scalar, values) for part, values in parts.items()}
+            return self._functions[scalar, name](arrays, c_array(scalar, state.parameters))
+        kernel = self._kernels[scalar, name]
+        status, outputs = self._interpreters[scalar].run(kernel, parts, tuple(map(float, state.parameters)))
+        return Outcome(int(status), tuple(outputs) or (math.nan,) * max(1, math.prod(kernel.shape)))
+
+
+class Kernels:
+    """Kernels by quantity name and scalar type, and the C they are made of (`files`, by path).
+
+    They are those of OUT/<model>, where a run has verified some; `notes` say what is to be told of that.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        folder: Path,
+        quantities: Sequence[str] = (*PIECES, *STRESSED, *DRIVEN),
+        out: Path | None = None,
+    ) -> None:
+        self.model, self.out = model, out
+        known = {entry.name for entry in CATALOGUE}
+        wanted = tuple(name for name in quantities if name in known)
+        draft = as_recorded(model, wanted, Options(scalars=SCALARS, measured=out))
+        self.notes = draft.notes
+        self.programs: Mapping[Scalar, Program] = draft.programs
+        self._ways = tuple(_Way(choice.quantity, choice.way) for choice in draft.derivations.choices)
+        self.runner = Runner(model, self.programs, folder)
+        self.files, self.names, self.compiler = self.runner.files, self.runner.names, self.runner.compiler
+
+    @property
+    def engine(self) -> str:
+        """What runs the kernels."""
+        return "interpreter" if self.compiler is None else "C"
+
+    def way(self, quantity: str) -> str:
+        """The way to the null space by which a quantity is computed; empty for one the model does not have."""
+        return next((way.name for way in self._ways if way.quantity == quantity), "")
+
+    def kernel(self, name: str, scalar: Scalar) -> Kernel:
+        """The straight-line kernel of a quantity."""
+        return self.runner.kernel(name, scalar)
+
+    def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
+        """One kernel at one state, whose numbers are of the scalar type already."""
+        return self.runner.run(name, state, scalar)
+
+
+def rounded_state(state: State, scalar: Scalar) -> State:
+    """The state with every number rounded to the scalar type."""
+    parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
+    doubles = State(*(tuple(float(x) for x in part) for part in parts))
+    return rounded(Sample(doubles, True, (1.0, 1.0)), scalar).state

@@ -1,0 +1,83 @@
+"""Long kernels are tried before any C is made of them.
+
+Writing and compiling tens of thousands of operations takes as long as deriving them. Interpreted at the states of the
+verification, where they have the bits of C and Python, they take a fraction of that: what is rejected takes another
+way first, and what is written and compiled is what stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from symgen.backends.literals import decimal_text
+from symgen.diagnostics import ModelError
+from symgen.generation.draft import Draft
+from symgen.generation.fallback import Fallback
+from symgen.generation.refusals import no_states
+from symgen.generation.results import Options
+from symgen.ir.kernel import Literal, Program, Scalar
+from symgen.verify.certificate import Certificate, Fault
+from symgen.verify.compile import find_compiler
+from symgen.verify.expected import Expected
+from symgen.verify.reference.reference import ReferenceValueError
+from symgen.verify.run import blank_certificate
+from symgen.verify.states import VerificationError
+
+
+class Trial:
+    """The kernels of one draft, and of those that replace it, at the states of its verification.
+
+    Raises ModelError, about the file at `path`, where there are no such states, and LiteralRangeError for a number
+    that a scalar type does not hold.
+    """
+
+    def __init__(self, path: Path, draft: Draft, options: Options, progress: Callable[[str], None]) -> None:
+        compiler = find_compiler() if "c" in options.parts else None
+        self._blank = blank_certificate(draft.model, compiler, {}, None)
+        chosen = {scalar: None for scalar in options.scalars if compiler is not None}
+        self._scalars = tuple(chosen | ({"float64": None} if "python" in options.parts else {}))
+        self._progress = progress
+        self.fallback = Fallback(options, progress)
+        _check_literals(draft.programs)
+        progress("verifying: looking for states")
+        names = dict.fromkeys(kernel.name for program in draft.programs.values() for kernel in program.kernels)
+        try:
+            self.expected = Expected(draft.model, tuple(names), options.states, progress)
+            for scalar in self._scalars:
+                self.expected.values(scalar)
+        except (VerificationError, ReferenceValueError) as fault:
+            found = replace(self._blank, faults=(Fault(str(fault)),))
+            raise ModelError(str(path), path.read_text(encoding="utf-8"), (no_states(draft.model, found),)) from fault
+
+    def settled(self, draft: Draft) -> tuple[Draft, Certificate]:
+        """The draft that nothing speaks against any more, and what its trial found."""
+        while True:
+            certificate = self._certificate(draft)
+            other = self.fallback.other(draft, certificate, self.expected)
+            if other is None or not other.program.kernels:
+                self.fallback.settle()
+                return other or draft, certificate
+            draft = other
+
+    def _certificate(self, draft: Draft) -> Certificate:
+        errors, faults = [], []
+        for scalar in self._scalars:
+            self._progress(f"verifying: trying kernels in {scalar}")
+            program = draft.programs[scalar]
+            for kernel in program.kernels:
+                record, fault = self.fallback.measurements.of(kernel, program.sincos, scalar, self.expected)
+                errors.append(record)
+                faults += [] if fault is None else [fault]
+        return replace(self._blank, errors=tuple(errors), faults=tuple(faults), left_out=draft.left_out)
+
+
+def _check_literals(programs: Mapping[Scalar, Program]) -> None:
+    """Raises LiteralRangeError as writing would."""
+    for scalar, program in programs.items():
+        for kernel in program.kernels:
+            for statement in kernel.statements:
+                for operand in statement.operands:
+                    if isinstance(operand, Literal):
+                        decimal_text(scalar, operand.value)

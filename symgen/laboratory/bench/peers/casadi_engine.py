@@ -1,0 +1,87 @@
+"""CasADi: scalars of `SX`, C by its own code generator."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import pi
+from typing import Any, ClassVar
+
+import casadi
+
+from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
+
+
+class CasadiEngine(Engine):
+    """Scalars are 1×1 SX; intermediates need no names, because SX shares what is equal."""
+
+    tool: ClassVar[str] = "CasADi"
+
+    def __init__(self) -> None:
+        self._arrays: dict[str, Any] = {}
+
+    def symbols(self, array: str, length: int) -> list[Symbol]:
+        self._arrays[array] = casadi.SX.sym(array, length)
+        return [self._arrays[array][i] for i in range(length)]
+
+    def number(self, value: Fraction) -> Symbol:
+        return casadi.SX(float(value))
+
+    def pi(self) -> Symbol:
+        return casadi.SX(pi)
+
+    def power(self, base: Symbol, exponent: Fraction) -> Symbol:
+        if exponent.denominator == 2:
+            return casadi.sqrt(base) ** exponent.numerator
+        return base ** float(exponent)
+
+    def call(self, function: str, arguments: Sequence[Symbol]) -> Symbol:
+        return getattr(casadi, function)(*arguments)
+
+    def derivative(self, value: Symbol, by: Symbol) -> Symbol:
+        return casadi.densify(casadi.jacobian(value, by))
+
+    def gradient(self, value: Symbol, by: Sequence[Symbol]) -> list[Symbol]:
+        found = casadi.densify(casadi.gradient(value, casadi.vertcat(*by)))
+        return [found[i] for i in range(len(by))]
+
+    def rates(self, values: Sequence[Symbol], by: Sequence[Symbol], direction: Sequence[Symbol]) -> list[Symbol]:
+        column = casadi.vertcat(*values)
+        found = casadi.densify(casadi.jtimes(column, casadi.vertcat(*by), casadi.vertcat(*direction)))
+        return [found[i] for i in range(len(values))]
+
+    def is_zero(self, value: Symbol) -> bool:
+        return bool(value.is_zero())
+
+    def name(self, value: Symbol) -> Symbol:
+        return value
+
+    def c_function(self, name: str, inputs: Inputs, outputs: Sequence[Symbol]) -> tuple[str, tuple[str, ...], bool]:
+        third = "qdd" if "qdd" in inputs else "u"
+        arrays = [self._arrays[array] for array in ("q", "qd", third, "p")]
+        source, functions = generated(name, arrays, casadi.vertcat(*outputs))
+        return source, functions, True
+
+
+def generated(name: str, arrays: Sequence[Any], value: Any) -> tuple[str, tuple[str, ...]]:
+    """C of `value` (after `cse`) with CasADi's calling convention, and the functions that run in a call."""
+    function = casadi.Function(name, list(arrays), [casadi.cse(casadi.densify(value))])
+    generator = casadi.CodeGenerator(f"{name}_file", {"with_header": False})
+    generator.add(function)
+    helpers = ("casadi_f0", *(f"{name}_file_{helper}" for helper in ("sq", "sign", "fmin", "fmax")))
+    return generator.dump(), (name, *helpers)
+
+
+def adaptor(entry: str, name: str) -> str:
+    """C that gives a CasADi function the signature of all kernels."""
+    arrays = "const REAL *q, const REAL *qd, const REAL *x, const REAL *p, REAL *y"
+    return (
+        f"int {name}(const REAL **, REAL **, long long *, REAL *, int);\n"
+        f"int {entry}({arrays});\n"
+        f"int {entry}({arrays})\n"
+        "{\n"
+        "    const REAL *arguments[4] = {q, qd, x, p};\n"
+        "    REAL *results[1] = {y};\n"
+        f"    return {name}(arguments, results, 0, 0, 0);\n"
+        "}\n"
+    )

@@ -1,0 +1,144 @@
+"""The peers of a mechanism given by bodies: every form from frames that are walked in the tool's own scalars."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.util import find_spec
+from typing import Any, TypeAlias
+
+from symgen.laboratory.bench.candidate import CCandidate, CUnit
+from symgen.laboratory.bench.peers import native
+from symgen.laboratory.bench.peers.algebra import DeadPivotError, ldl_solve
+from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine, adaptor, generated
+from symgen.laboratory.bench.peers.engine import Engine, Symbol
+from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
+from symgen.laboratory.bench.peers.forms import lean, part, range_form, selected_rows
+from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
+from symgen.laboratory.bench.peers.householder import householder_units
+from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
+from symgen.model.mechanism import WORLD
+from symgen.model.model import Model
+from symgen.witness.lagrange import Lagrange, differentiate
+
+Build: TypeAlias = Callable[[Engine, PeerSystem], list[Symbol]]
+Route: TypeAlias = Callable[[Engine, Model], PeerSystem]
+# Tools that write sums out need minutes for more links in a row than this; CasADi stands for them.
+DEEPEST_WRITTEN_OUT = 3
+MOST_LEAN = 8
+LONGEST_WRITTEN = 16
+MOST_DENSE = 14  # coordinates, of peers whose C grows with the square of their number or faster
+MOST_WITH_ENERGIES = 6
+SERIAL = "AD"
+SERIAL_IN_WORLD_AXES = "AD in world axes"
+FROM_ENERGIES = " from energies"
+
+
+def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], tuple[tuple[str, str], ...]]:
+    """Candidates in float64, and (name, reason) of what was left out; `states` (k, 3 n + P)."""
+    found = _as_written(model)
+    left_out: list[tuple[str, str]] = []
+    forms = _forms(model, states, left_out)
+    engines: list[type[Engine]] = [CasadiEngine]
+    if _depth(model) > DEEPEST_WRITTEN_OUT:
+        left_out.append(("SymPy, wrenfold", "written out, the sums of so many links in a row take minutes"))
+    else:
+        engines += _others(left_out)
+    for engine_type in engines:
+        routes: dict[str, Route] = {"": mechanics_by_frames}
+        if len(engines) > 1 and model.n <= MOST_WITH_ENERGIES:
+            routes[FROM_ENERGIES] = mechanics
+        for route, derive in routes.items():
+            for name, build in forms.items():
+                try:
+                    found.append(_candidate(engine_type(), model, f"{name}{route}", derive, build))
+                except DeadPivotError:
+                    left_out.append((f"{engine_type.tool} {name}{route}", "its fixed choice is singular everywhere"))
+    if model.n <= MOST_DENSE:
+        units, functions = householder_units(model, lagrange_by_frames(model), "c_householder_float64")
+        found.append(CCandidate("C", "Householder QR", "float64", "c_householder_float64", units, functions))
+    return tuple(found), tuple(left_out)
+
+
+def _depth(model: Model) -> int:
+    depths = {WORLD: 0}
+    for frame in model.mechanism.frames:
+        depths[frame.name] = depths[frame.parent] + 1
+    return max(depths.values())
+
+
+def _others(left_out: list[tuple[str, str]]) -> list[type[Engine]]:
+    from symgen.laboratory.bench.peers.sympy_engine import SympyEngine
+
+    found: list[type[Engine]] = [SympyEngine]
+    if find_spec("wrenfold") is None:
+        left_out.append(("wrenfold", "not installed"))
+    else:
+        from symgen.laboratory.bench.peers.wrenfold_engine import WrenfoldEngine
+
+        found.append(WrenfoldEngine)
+    return found
+
+
+def _forms(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
+    """lean up to a size, part, and range where M selects coordinates; a serial arm has one form."""
+    if not model.r:
+        return {SERIAL: lambda engine, s: range_form(engine, s, ())} if _selects(model) else {"lean": lean}
+    forms: dict[str, Build] = {}
+    if model.n <= MOST_LEAN or model.r > model.n // 2:
+        forms["lean"] = lean
+        forms["lean LDLᵀ"] = lambda engine, s: lean(engine, s, ldl_solve)
+    s = lagrange_by_frames(model)
+    short = model.n <= MOST_DENSE
+    independent = independent_coordinates(model, s, states, mechanics_by_frames) if short else None
+    free = free_multipliers(model, s, states, mechanics_by_frames)
+    if independent is not None:
+        forms["part"] = lambda engine, s: part(engine, s, independent, ldl_solve, direct=True)
+    if free is not None:
+        forms["range"] = lambda engine, s: range_form(engine, s, free)
+    else:
+        left_out.append(("form range", "the control matrix does not select coordinates"))
+    return forms
+
+
+def _selects(model: Model) -> bool:
+    engine = CasadiEngine()
+    return selected_rows(engine, mechanics_by_frames(engine, model).M) is not None
+
+
+def _as_written(model: Model) -> list[CCandidate]:
+    """(27) with (28): through the matrices G and C where they are short, and with tau along directions."""
+    if model.n > LONGEST_WRITTEN:
+        return []
+    routes: dict[str, Lagrange] = {"": lagrange_by_frames(model)}
+    if model.n <= MOST_LEAN and model.r:
+        routes[FROM_ENERGIES] = differentiate(model)
+    found = []
+    for route, s in routes.items():
+        if model.r:
+            found.append(_matrix_candidate(model, s, f"literal{route}", native.direct_balance))
+        if model.n <= MOST_DENSE:
+            found.append(_matrix_candidate(model, s, f"native{route}", native.user_matrices))
+    if not model.r:
+        s = lagrange_by_frames(model, world_axes=True)
+        found.append(_matrix_candidate(model, s, SERIAL_IN_WORLD_AXES, native.direct_balance))
+    return found
+
+
+def _matrix_candidate(model: Model, s: Lagrange, form: str, balance: Callable[[Lagrange], Any]) -> CCandidate:
+    entry = f"casadi_{form}_float64".lower().replace(" ", "_")
+    name = f"function_of_{entry}"
+    value = native.inverse_dynamics(model, s, balance)
+    source, functions = generated(name, [s.q, s.qd, s.qdd, s.p], value)
+    units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    return CCandidate("CasADi", form, "float64", entry, units, functions)
+
+
+def _candidate(engine: Engine, model: Model, form: str, derive: Route, build: Build) -> CCandidate:
+    entry = f"{engine.tool}_{form}_float64".lower().replace(" ldlᵀ", "_ldl").replace(" ", "_")
+    name = f"function_of_{entry}"
+    system = derive(engine, model)
+    source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
+    units: tuple[CUnit, ...] = (CUnit(source, renamed={name: entry}),)
+    if needs_adaptor:
+        units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    return CCandidate(engine.tool, form, "float64", entry, units, functions)

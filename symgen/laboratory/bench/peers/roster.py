@@ -1,0 +1,150 @@
+"""All peers of a task that can do it on this machine, as C candidates, and those left out with the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from typing import Any, TypeAlias
+
+from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
+from symgen.laboratory.bench.peers.engine import Engine, Symbol
+from symgen.laboratory.bench.peers.mechanics import PeerSystem
+from symgen.model.model import Model
+from symgen.witness.lagrange import Lagrange, differentiate
+
+Build: TypeAlias = Callable[[Engine, PeerSystem], list[Symbol]]
+# Tools that the extra `bench` installs, by module.
+OPTIONAL = {"wrenfold": "wrenfold", "SymForce": "symforce", "JAX": "jax"}
+# Cheaper than the study's Cholesky factors, by about the same for every tool; the one that is cheapest takes them.
+SYMPY_ONLY = ("lean LDLᵀ", "part LDLᵀ")
+
+
+@dataclass(frozen=True, slots=True)
+class Peers:
+    """The candidates in float64, and (name, reason) of what was left out."""
+
+    candidates: tuple[CCandidate, ...]
+    left_out: tuple[tuple[str, str], ...]
+
+
+def peers(model: Model, task: Task, states: Any) -> Peers:
+    """Peers for full-rank B; `states` (k, 2 n + third + P) are what an expert would look at to choose coordinates."""
+    s = differentiate(model)
+    if task.quantity != "inverse_dynamics":
+        return Peers((_native(model, s, task),), ())
+    forms, left_out = _forms(model, s, states)
+    # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
+    inlined = replace(_native(model, s, task, "native_fpie"), form="native -fPIE", flags=("-fPIE",))
+    found = [_native(model, s, task), inlined]
+    for engine_type in _engines():
+        for form, build in forms.items():
+            if form not in SYMPY_ONLY or engine_type.tool == "SymPy":
+                found.append(_candidate(engine_type(), model, form, build))
+    found.append(_householder(model, s))
+    absent = [(tool, "not installed") for tool, module in OPTIONAL.items() if find_spec(module) is None]
+    return Peers(tuple(found), (*left_out, *absent))
+
+
+def python_peers(model: Model, task: Task) -> list[PythonCandidate]:
+    """Peers that are functions of arrays, for u and full-rank B."""
+    if task.quantity != "inverse_dynamics":
+        return []
+    from symgen.laboratory.bench.peers.numpy_pinv import numpy_pinv
+
+    found = [numpy_pinv(model)]
+    if find_spec("jax") is not None:
+        from symgen.laboratory.bench.peers.jax_batch import jax_batch
+
+        found.append(jax_batch(model))
+    return found
+
+
+def in_single(candidate: CCandidate) -> CCandidate:
+    """The same C for float32: sources differ in `REAL` and in the type that their names end in."""
+
+    def single(text: str) -> str:
+        return text.replace("_float64", "_float32")
+
+    units = tuple(
+        replace(unit, source=single(unit.source), renamed={single(a): single(b) for a, b in unit.renamed.items()})
+        for unit in candidate.units
+    )
+    functions = tuple(map(single, candidate.functions))
+    return replace(candidate, scalar="float32", entry=single(candidate.entry), units=units, functions=functions)
+
+
+def _forms(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
+    from symgen.laboratory.bench.peers.algebra import ldl_solve
+    from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
+    from symgen.laboratory.bench.peers.forms import lean, part, range_form
+
+    forms: dict[str, Build] = {"lean": lean, "lean LDLᵀ": lambda engine, system: lean(engine, system, ldl_solve)}
+    left_out = []
+    independent = independent_coordinates(model, s, states)
+    if independent is None:
+        left_out.append(("form part", "fewer inputs than degrees of freedom, or too many choices of coordinates"))
+    else:
+        forms["part"] = lambda engine, system: part(engine, system, independent)
+        forms["part LDLᵀ"] = lambda engine, system: part(engine, system, independent, ldl_solve, direct=True)
+    free = free_multipliers(model, s, states)
+    if free is None:
+        left_out.append(("form range", "the control matrix does not select coordinates"))
+    else:
+        forms["range"] = lambda engine, system: range_form(engine, system, free)
+    return forms, left_out
+
+
+def _engines() -> list[type[Engine]]:
+    from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
+    from symgen.laboratory.bench.peers.sympy_engine import SympyEngine
+
+    found: list[type[Engine]] = [CasadiEngine, SympyEngine]
+    if find_spec("wrenfold") is not None:
+        from symgen.laboratory.bench.peers.wrenfold_engine import WrenfoldEngine
+
+        found.append(WrenfoldEngine)
+    if find_spec("symforce") is not None:
+        from symgen.laboratory.bench.peers.symforce_engine import SymforceEngine
+
+        found.append(SymforceEngine)
+    return found
+
+
+def _candidate(engine: Engine, model: Model, form: str, build: Build) -> CCandidate:
+    from symgen.laboratory.bench.peers.casadi_engine import adaptor
+    from symgen.laboratory.bench.peers.mechanics import mechanics
+
+    entry = f"{engine.tool.lower()}_{form}_float64".replace(" LDLᵀ", "_ldl")
+    name = f"function_of_{entry}"
+    system = mechanics(engine, model)
+    source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
+    if needs_adaptor:
+        units: tuple[CUnit, ...] = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    else:
+        units = (CUnit(source, renamed={name: entry}),)
+    return CCandidate(engine.tool, form, "float64", entry, units, functions)
+
+
+def _native(model: Model, s: Lagrange, task: Task, name: str = "native") -> CCandidate:
+    from symgen.laboratory.bench.peers import native
+    from symgen.laboratory.bench.peers.casadi_engine import adaptor, generated
+
+    if task.quantity == "inverse_dynamics":
+        value = native.inverse_dynamics(model, s)
+    else:
+        value = native.forward_dynamics(model, s)[task.quantity == "multipliers"]
+    entry = f"casadi_{name}_float64"
+    name = f"casadi_{name}_function_float64"
+    third = s.qdd if task.third == "qdd" else s.u
+    source, functions = generated(name, [s.q, s.qd, third, s.p], value)
+    units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    return CCandidate("CasADi", "native", "float64", entry, units, functions)
+
+
+def _householder(model: Model, s: Lagrange) -> CCandidate:
+    from symgen.laboratory.bench.peers.householder import householder_units
+
+    entry = "c_householder_float64"
+    units, functions = householder_units(model, s, entry)
+    return CCandidate("C", "Householder QR", "float64", entry, units, functions)

@@ -1,0 +1,145 @@
+"""symgen's own candidates: every valid way, with portable sine and cosine and with the C library's, C and Python."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+from symgen.backends.c.causes import cause_names
+from symgen.backends.c.pairs import pair_names
+from symgen.backends.c.plain import emit_c
+from symgen.backends.c.steps import TABLE, step_names
+from symgen.backends.operations import count_operations
+from symgen.backends.python.module import emit_python
+from symgen.backends.scalars import SUFFIX
+from symgen.generation.draft import Draft
+from symgen.generation.recorded import as_recorded
+from symgen.generation.results import Options
+from symgen.ir.kernel import Kernel, Literal, Program, Scalar
+from symgen.ir.library_trig import with_library_trig
+from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
+from symgen.lowering.schedule import schedule
+from symgen.mechanics.system import System
+from symgen.methods.compared import motions_of
+from symgen.methods.quantity import Quantity
+from symgen.methods.selection import forms_of
+from symgen.model.model import Model
+from symgen.quantities.select import ABSOLUTE
+from symgen.verify.python_module import PythonModule
+
+PORTABLE, LIBRARY = "portable", "libm"
+
+
+def generated(model: Model, task: Task, scalars: Sequence[Scalar], out: Path | None) -> Draft:
+    """The task's kernel as a verified run left it in OUT/<model>; without one, or `out`, as derivation chooses it."""
+    return as_recorded(model, (task.quantity,), Options(scalars=tuple(scalars), measured=out))
+
+
+def programs_of(
+    model: Model, task: Task, scalars: Sequence[Scalar], draft: Draft | None = None
+) -> dict[str, Mapping[Scalar, Program]]:
+    """The task's kernel alone, by form; the first is the `draft` that symgen generates, the others it did not take."""
+    draft = draft or generated(model, task, scalars, None)
+    choice = draft.choice(task.quantity)
+    absolute = " in absolute angles" if choice.form and choice.way == ABSOLUTE else ""
+    name = (choice.form or choice.way) + absolute + choice.digits
+    found: dict[str, Mapping[Scalar, Program]] = {name: draft.programs}
+    for form, (mechanics, quantity) in _forms(model, task.quantity):
+        if form not in found:
+            programs = schedule(mechanics, [quantity], scalars)
+            if not any(map(_never_valid, programs.values())):
+                found[form] = programs
+    return found
+
+
+def _never_valid(program: Program) -> bool:
+    """Whether a form divides by 0 at every state: one through the inverse of G, where a coordinate has no mass."""
+    statements = (statement for kernel in program.kernels for statement in kernel.statements)
+    divisors = (statement.operands[1] for statement in statements if statement.operation == "div")
+    return any(isinstance(divisor, Literal) and divisor.value == 0 for divisor in divisors)
+
+
+def _forms(model: Model, quantity: str) -> Iterator[tuple[str, tuple[System, Quantity]]]:
+    """Every form by name, each on a graph of its own."""
+    if quantity == "inverse_dynamics":
+        yield from forms_of(model).items()
+        return
+    for form, (mechanics, derived) in motions_of(model).items():
+        for one in derived:
+            if one.name == quantity:
+                yield form, (mechanics, one)
+
+
+def symgen_candidates(
+    model: Model, programs: Mapping[str, Mapping[Scalar, Program]], scalar: Scalar
+) -> tuple[CCandidate, ...]:
+    """The C of every way for one scalar type."""
+    found = []
+    for number, (way, by_scalar) in enumerate(programs.items()):
+        portable = by_scalar[scalar]
+        trigonometric = any(s.operation == "sincos" for kernel in portable.kernels for s in kernel.statements)
+        variants = {PORTABLE: portable} | ({LIBRARY: with_library_trig(portable)} if trigonometric else {})
+        found += [
+            replace(_candidate(model, program, way, trig), chosen=number == 0) for trig, program in variants.items()
+        ]
+    return tuple(found)
+
+
+def symgen_python(
+    model: Model, programs: Mapping[str, Mapping[Scalar, Program]], task: Task
+) -> tuple[PythonCandidate, ...]:
+    """The NumPy modules of every form, first the one that symgen generates."""
+    return tuple(
+        _python(model, by_scalar["float64"], form, task, number == 0)
+        for number, (form, by_scalar) in enumerate(programs.items())
+    )
+
+
+def _python(model: Model, program: Program, form: str, task: Task, chosen: bool) -> PythonCandidate:
+    (source,) = emit_python(model, program).values()
+    module = PythonModule(str(source)).module
+    function = getattr(module, task.quantity)
+
+    def batch(q: Any, qd: Any, third: Any, p: Any) -> Any:
+        return function(*_arrays(program.kernels[0], q, qd, third), p=module.Parameters(*p.T))
+
+    def single(q: Sequence[float], qd: Sequence[float], third: Sequence[float], p: Sequence[float]) -> Any:
+        return function(*_arrays(program.kernels[0], q, qd, third), p=module.Parameters(*p))
+
+    return PythonCandidate("symgen", f"{form}, Python", batch, single, chosen)
+
+
+def _arrays(kernel: Kernel, q: Any, qd: Any, third: Any) -> list[Any]:
+    """The arguments the kernel has; those of length 0 are left out of signatures."""
+    given = {"q": q, "qd": qd, "qdd": third, "u": third}
+    return [given[argument.name] for argument in kernel.arguments if argument.length]
+
+
+def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidate:
+    kernel = program.kernels[0]
+    files = emit_c(model, program)
+    suffix = SUFFIX[program.scalar]
+    stem = model.c_name + suffix
+    function = f"{model.c_name}_{kernel.name}{suffix}"
+    entry = re.sub(r"\W", "_", f"symgen_{way}_{trig}_{program.scalar}")
+    defaults = f"{model.c_name}_default_params{suffix}"  # every variant brings its own
+    headers = {f"{stem}.h": str(files[f"c/{stem}.h"])}
+    source = str(files[f"c/{stem}.c"])
+    if any(a.name in ("qdd", "u") and a.length for a in kernel.arguments):
+        units: tuple[CUnit, ...] = (CUnit(source, headers, {function: entry, defaults: f"{entry}_defaults"}),)
+    else:
+        own = f"{entry}_function"
+        arguments = "const REAL *q, const REAL *qd, const REAL *x, const REAL *p, REAL *y"
+        adaptor = (
+            f"int {own}(const REAL *, const REAL *, const REAL *, REAL *);\nint {entry}({arguments});\n"
+            f"int {entry}({arguments})\n{{\n    (void)x;\n    return {own}(q, qd, p, y);\n}}\n"
+        )
+        kept = CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"})
+        units = (kept, CUnit(adaptor, is_adaptor=True))
+    helpers = pair_names(model.c_name, suffix) | step_names(model.c_name, suffix) | {TABLE}
+    functions = (function, *cause_names(kernel, function), *sorted(helpers))
+    operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}
+    return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, functions, operations)

@@ -1,0 +1,53 @@
+"""The forms of u, q̈, λ and N_B other than the generated ones, compiled as these are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from symgen.generation.runnable import SCALARS, Runner
+from symgen.ir.kernel import Scalar, Status
+from symgen.lowering.schedule import schedule
+from symgen.methods.compared import motions_of
+from symgen.methods.form import FORM_NAMES
+from symgen.methods.forward_dynamics.motions import BY_FRAMES, MOTION_NAMES
+from symgen.methods.quantity import scalars
+from symgen.methods.selection import forms_of
+from symgen.model.model import Model
+from symgen.symbolic.traverse import cost
+from symgen.verify.reference.reference import State
+
+# Sums of minors of large systems grow past what a compiler takes in minutes.
+MOST_OPERATIONS = 20_000
+LABELS: dict[str, str] = {name: f"form {name}" for name in dict.fromkeys((*FORM_NAMES, *MOTION_NAMES, BY_FRAMES))}
+
+
+class FormKernels:
+    """Every form of the `quantities` of a model, for both scalar types; `left_out` says which are too long."""
+
+    def __init__(self, model: Model, folder: Path, quantities: Sequence[str]) -> None:
+        derived = [(name, mechanics, found) for name, (mechanics, found) in motions_of(model).items()]
+        if "inverse_dynamics" in quantities:
+            derived += [(name, mechanics, (found,)) for name, (mechanics, found) in forms_of(model).items()]
+        self._runners: list[tuple[str, Runner]] = []
+        self.left_out: tuple[str, ...] = ()
+        for count, (name, mechanics, found) in enumerate(derived):
+            asked = [quantity for quantity in found if quantity.name in quantities]
+            weights = {quantity.name: cost(scalars(quantity)).weight for quantity in asked}
+            wanted = [quantity for quantity in asked if weights[quantity.name] <= MOST_OPERATIONS]
+            self.left_out += tuple(
+                f"{LABELS[name]} of {quantity}: not run, {weight} operations"
+                for quantity, weight in weights.items()
+                if weight > MOST_OPERATIONS
+            )
+            if wanted:
+                place = folder / f"form_{count}"
+                place.mkdir()
+                self._runners.append((LABELS[name], Runner(model, schedule(mechanics, wanted, SCALARS), place)))
+
+    def run(self, state: State, scalar: Scalar) -> Iterator[tuple[str, str, Sequence[float] | None]]:
+        """Label, quantity and result of each form; None where the form refuses the state."""
+        for label, runner in self._runners:
+            for name in runner.names:
+                outcome = runner.run(name, state, scalar)
+                yield label, name, outcome.entries if outcome.status == Status.OK else None

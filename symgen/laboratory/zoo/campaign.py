@@ -1,0 +1,120 @@
+"""Many draws, each run, judged and, where it fails, made small; several at a time where there are cores to spare."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import dataclass, replace
+from itertools import islice
+from multiprocessing import get_context
+from pathlib import Path
+
+from symgen.laboratory.zoo.cases import case_of
+from symgen.laboratory.zoo.describe import Description
+from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.records import Record
+from symgen.laboratory.zoo.refusals import judged
+from symgen.laboratory.zoo.run import run_command
+from symgen.laboratory.zoo.shrink import shrink
+from symgen.laboratory.zoo.verdict import FAILED, REFUSED, Verdict, verdict_of, without_numbers
+from symgen.laboratory.zoo.witness import check
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Which draws, where their files go, how many runs a failing one is made small in (0: not at all)."""
+
+    seed: int
+    folder: Path
+    family: str = ""
+    shrinking: int = 0
+
+
+def judge(description: Description, model: Path) -> tuple[Verdict, float, float]:
+    """Writes the model file, runs the command beside it and looks at the numbers; verdict, CPU seconds, megabytes."""
+    model.parent.mkdir(parents=True, exist_ok=True)
+    model.write_text(description.text, encoding="utf-8")
+    for name, text in description.files.items():
+        (model.parent / name).write_text(text, encoding="utf-8")
+    folder = model.with_suffix("")
+    run = run_command(model, folder)
+    verdict = judged(description, verdict_of(run))
+    if not verdict.failed and verdict.ending != REFUSED:
+        verdict, told = _witnessed(description, folder, verdict)
+        (folder / "stderr").write_text(told + run.err, encoding="utf-8")
+    return verdict, run.cpu, run.megabytes
+
+
+def _witnessed(description: Description, folder: Path, verdict: Verdict) -> tuple[Verdict, str]:
+    """What the numbers make of a verdict, and what there is to say about it."""
+    made = folder / str(description.blocks["model"])
+    if not (made / "derivation.json").exists():
+        return Verdict(FAILED, "nothing written"), ""
+    try:
+        checked = check(description, made)
+    except Exception as fault:  # a draw on which the witness itself breaks must not end a campaign of a thousand
+        return Verdict(FAILED, "fault of the zoo", without_numbers(f"{type(fault).__name__}: {fault}")), f"{fault!r}\n"
+    if checked.findings:
+        first = checked.findings[0]
+        told = "".join(f"{finding.text}\n" for finding in checked.findings)
+        return Verdict(FAILED, first.kind, without_numbers(first.text)), told
+    return (verdict, "") if checked.states else (replace(verdict, signature="no state to compare"), "")
+
+
+def one_draw(campaign: Campaign, index: int) -> tuple[Record, str]:
+    """A draw from its number to its record, and a line about it."""
+    description = draw(campaign.seed, index, campaign.family)
+    model = campaign.folder / f"{campaign.seed}_{index}" / "zoo.yaml"
+    verdict, cpu, megabytes = judge(description, model)
+    record = Record(
+        campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature, round(cpu, 1),
+        round(megabytes), str(model) if verdict.failed else "",
+    )  # fmt: skip
+    if not verdict.failed:
+        shutil.rmtree(model.parent, ignore_errors=True)
+    elif campaign.shrinking:
+        small = shrunk(description, verdict, model.with_name("small.yaml"), campaign.shrinking)
+        model.with_name("case.yaml").write_text(case_of(small, verdict).text, encoding="utf-8")
+    told = f"{record.ending} {record.kind} {record.signature} ({record.cpu} s, {record.megabytes} MB)"
+    return record, f"{record.seed}:{index} {record.family}: {' '.join(told.split())}"
+
+
+def run_campaign(campaign: Campaign, indices: Iterable[int], seconds: float, jobs: int, tell: Tell) -> Iterator[Record]:
+    """Draws until they or the seconds (0: no limit) are used up, `jobs` at a time, in the order in which they end."""
+    began = time.monotonic()
+    waiting = iter(indices)
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        running: set[Future[tuple[Record, str]]] = set()
+        while True:
+            late = bool(seconds) and time.monotonic() - began > seconds
+            for index in islice(waiting, 0 if late else jobs - len(running)):
+                running.add(pool.submit(one_draw, campaign, index))
+            if not running:
+                return
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                record, line = future.result()
+                tell(line)
+                yield record
+
+
+def usual_jobs() -> int:
+    """As many as there are processors."""
+    return os.cpu_count() or 1
+
+
+def shrunk(description: Description, verdict: Verdict, model: Path, most: int) -> Description:
+    """The draw made small, still with the same ending."""
+
+    def fails(candidate: Description) -> bool:
+        other = judge(candidate, model)[0]
+        # what takes too long need not stop at the same step
+        alike = other.signature == verdict.signature or other.kind in ("time", "memory", "no end")
+        return alike and other.kind == verdict.kind
+
+    return shrink(description, fails, most)

@@ -1,0 +1,47 @@
+"""Stored cases: model files that once failed, with what they must end as, so that they are tests from then on."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from symgen.laboratory.zoo.describe import Description
+from symgen.laboratory.zoo.dice import exact
+from symgen.laboratory.zoo.verdict import VERIFIED, Verdict
+
+FOUND, EXPECTED, START = "# found by the zoo: ", "# expected: ", "# start: "
+
+
+@dataclass(frozen=True)
+class Case:
+    """A model file, how it failed once, what it must end as, and a configuration on the branch that is meant."""
+
+    found: str
+    expected: str
+    start: dict[str, float]
+    model: str
+
+    @property
+    def text(self) -> str:
+        """The file as it is stored: the model behind three lines of comment."""
+        told = ", ".join(f"{name} = {exact(value)}" for name, value in self.start.items())
+        return f"{FOUND}{self.found}\n{EXPECTED}{self.expected}\n{START}{told}\n{self.model}"
+
+
+def case_of(description: Description, verdict: Verdict, expected: str = VERIFIED) -> Case:
+    """The case of a failure."""
+    return Case(f"{verdict.kind}: {verdict.signature}", expected, dict(description.start), description.text)
+
+
+def read_case(path: Path) -> Case:
+    """A stored case."""
+    text = path.read_text(encoding="utf-8")
+    values = re.findall(r"(\w+) = ([^,\n]+)", _line(text, START))
+    start = {name: float(value) for name, value in values}
+    model = "\n".join(line for line in text.splitlines() if not line.startswith((FOUND, EXPECTED, START)))
+    return Case(_line(text, FOUND), _line(text, EXPECTED), start, model + "\n")
+
+
+def _line(text: str, begin: str) -> str:
+    return next((line[len(begin) :] for line in text.splitlines() if line.startswith(begin)), "")

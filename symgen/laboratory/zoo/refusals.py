@@ -1,0 +1,31 @@
+"""Whether a refusal is true: reasons for which a legal draw may be refused, looked at with the zoo's own numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from symgen.laboratory.zoo.describe import MISTAKE, Description
+from symgen.laboratory.zoo.drawn import Drawn
+from symgen.laboratory.zoo.urdf_file import expanded
+from symgen.laboratory.zoo.verdict import FAILED, REFUSED, Verdict
+
+# what symgen says of a system as a whole, and what must be so then
+REASONS: dict[str, Callable[[Drawn], bool]] = {
+    "the accelerations are undetermined": lambda drawn: drawn.undetermined,
+    "the mechanism cannot move": lambda drawn: drawn.freedom == 0,
+    "only singular configurations were found": lambda drawn: drawn.singular,
+}
+
+
+def judged(description: Description, verdict: Verdict) -> Verdict:
+    """The verdict, a failure where a legal draw was refused, or a mistake that was drawn on purpose was not told."""
+    mistaken = MISTAKE in description.marks
+    if mistaken and not verdict.failed and verdict.ending != REFUSED:
+        return Verdict(FAILED, "mistake not told", verdict.signature)
+    if verdict.ending != REFUSED or mistaken:
+        return verdict
+    for words, is_true in REASONS.items():
+        if words in verdict.signature:
+            drawn = Drawn(expanded(description.blocks, description.files), description.start)
+            return verdict if is_true(drawn) else Verdict(FAILED, "refused without reason", verdict.signature)
+    return Verdict(FAILED, "refused without reason", verdict.signature)

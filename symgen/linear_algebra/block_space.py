@@ -1,0 +1,105 @@
+"""The null space of B block by block, where its rows fall into groups that share no coordinate.
+
+N_B and B^+ are block diagonal then.  Taken together the minors of k blocks multiply in number; block by block they add.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import comb
+
+from symgen.linear_algebra.blocks import Component, components
+from symgen.linear_algebra.exterior import ActuationForms
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.null_spaces import HouseholderSpace, InputEquations, MinorSpace, NullSpace, Restriction
+from symgen.symbolic.matrix import Matrix, Vector, identity, transpose
+from symgen.symbolic.scalar import Graph, Scalar
+
+# A block with more minors than this is reflected.
+BLOCK_MINOR_LIMIT = 60
+
+
+@dataclass(frozen=True)
+class _Part:
+    """One block: where its rows and coordinates stand, and its own null space."""
+
+    places: Component
+    space: NullSpace
+
+    def of_coordinates(self, x: Vector) -> Vector:
+        return tuple(x[j] for j in self.places.columns)
+
+    def of_rows(self, a: Vector) -> Vector:
+        return tuple(a[i] for i in self.places.rows)
+
+
+class BlockSpace:
+    """Independent rows in two blocks or more, each with a null space of its own."""
+
+    def __init__(self, graph: Graph, rows: Matrix, n: int) -> None:
+        self.graph, self.rows, self.n = graph, rows, n
+        self.delta = n - len(rows)
+        self._parts = [_Part(places, _space(graph, rows, places)) for places in components(rows)]
+
+    @cached_property
+    def guards(self) -> tuple[Guard, ...]:
+        """Those of all blocks."""
+        return tuple(guard for part in self._parts for guard in part.space.guards)
+
+    @property
+    def size(self) -> Scalar:
+        return self.graph.product(part.space.size for part in self._parts)
+
+    @cached_property
+    def projector(self) -> Matrix:
+        entries = [list(row) for row in identity(self.graph, self.n)]
+        for part in self._parts:
+            own = part.space.projector
+            for i, row in zip(part.places.columns, own, strict=True):
+                for j, entry in zip(part.places.columns, row, strict=True):
+                    entries[i][j] = entry
+        return tuple(map(tuple, entries))
+
+    @cached_property
+    def pseudoinverse(self) -> Matrix:
+        return transpose(tuple(self.lift(e) for e in identity(self.graph, len(self.rows))), self.n)
+
+    def project(self, x: Vector) -> Vector:
+        result = list(x)
+        for part in self._parts:
+            projected = part.space.project(part.of_coordinates(x))
+            for j, entry in zip(part.places.columns, projected, strict=True):
+                result[j] = entry
+        return tuple(result)
+
+    def lift(self, a: Vector) -> Vector:
+        result = [self.graph.zero] * self.n
+        for part in self._parts:
+            for j, entry in zip(part.places.columns, part.space.lift(part.of_rows(a)), strict=True):
+                result[j] = entry
+        return tuple(result)
+
+    def lift_transposed(self, x: Vector) -> Vector:
+        result = [self.graph.zero] * len(self.rows)
+        for part in self._parts:
+            own = part.space.lift_transposed(part.of_coordinates(x))
+            for i, entry in zip(part.places.rows, own, strict=True):
+                result[i] = entry
+        return tuple(result)
+
+    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        """Inputs couple the blocks: as if there were one."""
+        return HouseholderSpace(self.graph, self.rows, self.n).actuation(inputs, degree)
+
+    def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        return HouseholderSpace(self.graph, self.rows, self.n).listed_actuation(inputs, degree)
+
+
+def _space(graph: Graph, rows: Matrix, places: Component) -> NullSpace:
+    own = tuple(tuple(rows[i][j] for j in places.columns) for i in places.rows)
+    width, rank = len(places.columns), len(places.rows)
+    if comb(width, rank) > BLOCK_MINOR_LIMIT:
+        return HouseholderSpace(graph, own, width)
+    return MinorSpace(graph, own, width, rank)

@@ -1,0 +1,125 @@
+"""Denominators a result depends on, and how small is too small.
+
+A kernel decides on its own denominators: the status is not OK where |D| <= threshold * D_max, with D_max the sum of
+the absolute terms of D when every sine and cosine is 1, or what D would be if nothing were lost.
+
+A status says that one direction is all but lost.  A determinant is what is left of several directions multiplied, and
+where each of them is a little poor it is small without any of them being lost.  So pivots are compared one by one, each
+with what it is left of, and the threshold of a determinant falls with the number of its directions, down to what
+rounding leaves of one that is 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from symgen.ir.kernel import Status
+from symgen.records import dataclass
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import reached, substitute, topological
+
+# What a direction may be shorter by, in lengths or in squares, without being lost.
+POORER = 6
+# In units of eps: what rounding may leave of a determinant that is 0, rounded angles included.
+LEFT = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """Return `status` where `denominator` is negligible.
+
+    `degree` is 2 for a sum of squares (the threshold is squared), else 1.  `first` holds guards that are looked at
+    only on failure, to name the cause.  `scale` takes the place of D_max where another factor of the denominator
+    has a guard of its own.  `directions` is how many the denominator is a determinant of, in this scale.
+    """
+
+    status: Status
+    denominator: Scalar
+    degree: int
+    first: tuple[Guard, ...] = ()
+    scale: Scalar | None = None
+    directions: int = 1
+
+    def threshold(self, n: int, unit_roundoff: Fraction) -> Fraction:
+        """8 n eps for one direction, n eps for determinants of three or more; squared for sums of squares."""
+        loss = LEFT if self.directions > 2 else POORER if self.directions == 2 else 1
+        return (max(Fraction(LEFT * n, loss), Fraction(LEFT)) * unit_roundoff) ** self.degree
+
+
+def beside_lengths(status: Status, pivots: Sequence[Scalar], lengths: Sequence[Scalar]) -> tuple[Guard, ...]:
+    """One guard for each squared pivot: what is left of a vector beside the vectors before, and its squared length."""
+    pairs = list(zip(pivots, lengths, strict=True))
+    moving = [pair for pair in pairs if pair[0] is not pair[1] or pair[0].constant is None]
+    return tuple(Guard(status, pivot, 2, scale=length) for pivot, length in moving)
+
+
+def multiplied(status: Status, pivots: Sequence[Scalar], lengths: Sequence[Scalar]) -> tuple[Guard, ...]:
+    """The guard of squared pivots where a step loses again what the steps before have lost.
+
+    What one direction of several loses ordinarily hardly counts: else many of them would be taken for a lost one.  Of a
+    share s it is 6 s / (1 + 5 s), and no smaller of two: compilers make jumps of such a choice.
+    """
+    guards = beside_lengths(status, pivots, lengths)
+    if len(guards) < 2:
+        return guards
+    graph = pivots[0].graph
+    pairs = [(pivot, length) for pivot, length in zip(pivots, lengths, strict=True) if pivot is not length]
+    kept = [POORER * pivot / (length + (POORER - 1) * pivot) for pivot, length in pairs]
+    return (Guard(status, graph.product(kept), 2, scale=graph.one),)
+
+
+def where_negligible(graph: Graph, total: Scalar, values: Sequence[Scalar]) -> list[Scalar]:
+    """Values as they are where a sum of squares is 0 to rounding; as they stand if `total` is no sum of squares.
+
+    Each root of its squares is 0 then, and the cosine of an angle whose sine is 0 is 1 or -1.  It is replaced where
+    both signs give the same values, that is where it stands in squares.  Values with quotients stay as they stand.
+    """
+    roots = _roots(total)
+    if any(node.op in ("div", "ratio_or_zero") for node in reached(values)):
+        return list(values)
+    found = substitute(graph, values, dict.fromkeys(roots, graph.zero))
+    for root in roots:
+        if root.op == "sin":
+            cosine = graph.trig("cos", root.args[0])
+            either = [substitute(graph, found, {cosine: sign}) for sign in (graph.one, -graph.one)]
+            if either[0] == either[1]:
+                found = either[0]
+    return found
+
+
+def _roots(total: Scalar) -> list[Scalar]:
+    """What the terms of a sum are squares of; none if there is a term that is no square."""
+    terms, roots = [total], []
+    while terms:
+        term = terms.pop()
+        if term.op == "add":
+            terms += term.args
+        elif term.op == "mul" and term.args[0] is term.args[1]:
+            roots.append(term.args[0])
+        else:
+            return []
+    return roots
+
+
+def magnitude(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+    """Upper bounds of |output| for every angle: sums of absolute terms with sines and cosines set to 1."""
+    bound: dict[Scalar, Scalar] = {}
+    for node in topological(outputs):
+        args = [bound[argument] for argument in node.args]
+        match node.op:
+            case "sin" | "cos":
+                bound[node] = graph.one
+            case "add" | "sub":
+                bound[node] = args[0] + args[1]
+            case "mul":
+                bound[node] = args[0] * args[1]
+            case "neg" | "abs" | "copysign" | "rounded":
+                bound[node] = args[0]
+            case "div":
+                bound[node] = args[0] / graph.function("abs", (node.args[1],))
+            case "sqrt":
+                bound[node] = graph.function("sqrt", (args[0],))
+            case _:
+                bound[node] = graph.function("abs", (node,))
+    return [bound[output] for output in outputs]

@@ -1,0 +1,310 @@
+"""Two ways to the null space of B: by minors (`MinorSpace`) and by Householder reflections (`HouseholderSpace`).
+
+Both are valid wherever B has its generic rank, and choose no coordinates, columns or rows: the minors enter
+symmetrically, the reflections take the rows as they come.  The reflections need independent rows (rho = r).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Protocol
+
+from symgen.ir.kernel import Status
+from symgen.linear_algebra.exterior import ActuationForms, RowForms, small_family
+from symgen.linear_algebra.guards import Guard, beside_lengths
+from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
+from symgen.symbolic.scalar import Graph, Scalar
+
+# Minors are built only while their number stays small; beyond, Householder reflections are cheaper anyway.
+MINOR_LIMIT = 300
+# Up to this many squared pivots are multiplied as they are.
+LONGEST_PRODUCT = 6
+# Of the squared lengths of all rows together, what one of them is taken for at least: 1e-6 of their length.
+VANISHING = Fraction(1, 2**40)
+
+
+class InputEquations(Protocol):
+    """The equations of the inputs along a null space: by determinants, or by reflections where these are too many."""
+
+    @property
+    def single(self) -> bool:
+        """Whether one determinant is divided by."""
+
+    @property
+    def minors(self) -> frozenset[Scalar]:
+        """What is small where the inputs lose an effect, besides the denominator."""
+
+    def cancelled(self, cancel: Callable[[Scalar], Scalar]) -> InputEquations:
+        """The same with a single determinant multiplied out."""
+
+    def solve(self, force: Vector) -> Vector:
+        """The inputs of least norm."""
+
+    def square(self) -> Scalar:
+        """The sum of the squared determinants."""
+
+    def denominator(self) -> Scalar:
+        """What vanishes where a rank drops."""
+
+
+class NullSpace(Protocol):
+    """What the derivations need to know of the constraints at a configuration."""
+
+    graph: Graph
+    rows: Matrix
+    n: int
+    delta: int
+
+    @property
+    def guards(self) -> tuple[Guard, ...]:
+        """The denominators that vanish where the rank of B drops."""
+
+    @property
+    def size(self) -> Scalar:
+        """What det(B B^T) is measured by: the product of the squared lengths of the rows (Hadamard's bound)."""
+
+    @property
+    def projector(self) -> Matrix:
+        """N_B (21), n x n."""
+
+    @property
+    def pseudoinverse(self) -> Matrix:
+        """B^+, n x r."""
+
+    def project(self, x: Vector) -> Vector:
+        """N_B x."""
+
+    def lift(self, a: Vector) -> Vector:
+        """B^+ a."""
+
+    def lift_transposed(self, x: Vector) -> Vector:
+        """(B^+)^T x."""
+
+    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        """What solves for inputs, and the map that brings forces to where they live."""
+
+    def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        """The same by determinants, however many they are."""
+
+
+class Restriction:
+    """Brings a generalized force to the space in which the input equations are solved."""
+
+    def __init__(self, reflections: Reflections | None, skip: int) -> None:
+        self._reflections = reflections
+        self._skip = skip
+
+    def __call__(self, force: Vector) -> Vector:
+        """The force itself, or its components F^T f along the orthonormal null-space basis."""
+        if self._reflections is None:
+            return force
+        return self._reflections.apply_transposed(force)[self._skip :]
+
+
+class MinorSpace:
+    """By the minors of B: polynomials and one division."""
+
+    def __init__(self, graph: Graph, rows: Matrix, n: int, rank: int) -> None:
+        self.graph, self.rows, self.n, self.rank = graph, rows, n, rank
+        self.delta = n - rank
+        self.forms = RowForms(graph, rows, n, rank)
+
+    @property
+    def guards(self) -> tuple[Guard, ...]:
+        if self.rank == 0:
+            return ()
+        if self.rank < len(self.rows):
+            measure, bound = self.forms.at_one_length(self.lengths), self.graph.product(self.lengths)
+            return (Guard(Status.CONSTRAINT_RANK, measure, 2, scale=bound, directions=self.rank),)
+        return (Guard(Status.CONSTRAINT_RANK, self.forms.square, 2, scale=self.size, directions=self.rank),)
+
+    @cached_property
+    def squares(self) -> list[Scalar]:
+        """The squared lengths of the rows."""
+        return [dot(self.graph, row, row) for row in self.rows]
+
+    @cached_property
+    def lengths(self) -> list[Scalar]:
+        """The same of rows that depend on each other, none of them 0: one that vanishes is missed by nothing."""
+        least = self.graph.sum(self.squares) * VANISHING
+        return [square + least for square in self.squares]
+
+    @cached_property
+    def size(self) -> Scalar:
+        return self.graph.sum(self.graph.product(self.squares[k] for k in subset) for subset in self.forms.subsets)
+
+    @cached_property
+    def projector(self) -> Matrix:
+        return self.forms.projector()
+
+    @cached_property
+    def pseudoinverse(self) -> Matrix:
+        return self.forms.pseudoinverse()
+
+    def project(self, x: Vector) -> Vector:
+        return matvec(self.graph, self.projector, x)
+
+    def lift(self, a: Vector) -> Vector:
+        return matvec(self.graph, self.pseudoinverse, a)
+
+    def lift_transposed(self, x: Vector) -> Vector:
+        return matvec(self.graph, transpose(self.pseudoinverse, len(self.rows)), x)
+
+    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        if small_family(self.forms.forms, inputs, degree):
+            return self.listed_actuation(inputs, degree)
+        from symgen.linear_algebra.pivoted import reflected  # which is made of what is here
+
+        return reflected(self.graph, self.rows, self.n, self.rank).actuation(inputs, degree)
+
+    def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        return ActuationForms(self.forms, inputs, degree), Restriction(None, 0)
+
+
+class Reflections:
+    """Householder reflections that bring the columns a_1..a_r to upper triangular form (Golub and Van Loan, 5.2).
+
+    With `everywhere` a column that vanishes is left alone instead of giving 0/0.
+    """
+
+    def __init__(self, graph: Graph, columns: Sequence[Vector], n: int, everywhere: bool = False) -> None:
+        self.graph, self.n, self.everywhere = graph, n, everywhere
+        self.reflectors: list[tuple[int, Vector, Scalar]] = []
+        self.pivots: list[Scalar] = []
+        self.triangle: list[Vector] = []
+        for k, column in enumerate(columns):
+            y = self.apply_transposed(column)
+            tail = y[k:]
+            if all(entry.is_zero for entry in tail[1:]):
+                self.pivots.append(tail[0] * tail[0])
+                self.triangle.append((*y[:k], tail[0]))
+                continue
+            squared = graph.sum(entry * entry for entry in tail)
+            norm = graph.function("sqrt", (squared,))
+            head = tail[0]
+            # the sign that adds: no cancellation in the first component
+            signed = norm if head.is_zero else graph.function("copysign", (norm, head))
+            reach = norm * (norm + graph.function("abs", (head,)))
+            factor = graph.function("ratio_or_zero", (graph.one, reach)) if everywhere else 1 / reach
+            self.reflectors.append((k, (head + signed, *tail[1:]), factor))
+            self.pivots.append(squared)
+            self.triangle.append((*y[:k], -signed))
+
+    def apply_transposed(self, x: Vector) -> Vector:
+        """Q^T x."""
+        for reflector in self.reflectors:
+            x = self._reflect(reflector, x)
+        return x
+
+    def apply(self, x: Vector) -> Vector:
+        """Q x."""
+        for reflector in reversed(self.reflectors):
+            x = self._reflect(reflector, x)
+        return x
+
+    def _reflect(self, reflector: tuple[int, Vector, Scalar], x: Vector) -> Vector:
+        k, v, factor = reflector
+        share = dot(self.graph, v, x[k:]) * factor
+        if share.is_zero:
+            return x
+        return (*x[:k], *(entry - share * component for entry, component in zip(x[k:], v, strict=True)))
+
+
+class HouseholderSpace:
+    """By the orthogonal factorisation B^T = Q R."""
+
+    def __init__(self, graph: Graph, rows: Matrix, n: int, everywhere: bool = False) -> None:
+        self.graph, self.rows, self.n = graph, rows, n
+        self.rank = len(rows)
+        self.delta = n - self.rank
+        self.reflections = Reflections(graph, rows, n, everywhere)
+
+    @cached_property
+    def guards(self) -> tuple[Guard, ...]:
+        """What the rows before leave of each row, beside its length."""
+        return beside_lengths(Status.CONSTRAINT_RANK, self.reflections.pivots, self.lengths)
+
+    @cached_property
+    def volume(self) -> Guard:
+        """The same as one denominator, det(B B^T), for what multiplies it by others or tells causes by it."""
+        if self.rank > LONGEST_PRODUCT:
+            # quotients stay in the range of a float32 however many rows there are
+            quotients = [pivot / length for pivot, length in zip(self.reflections.pivots, self.lengths, strict=True)]
+            measure, size = self.graph.product(quotients), self.graph.one
+        else:
+            measure, size = self.graph.product(self.reflections.pivots), self.size
+        return Guard(Status.CONSTRAINT_RANK, measure, 2, scale=size, directions=self.rank)
+
+    @cached_property
+    def lengths(self) -> list[Scalar]:
+        """The squared lengths of the rows."""
+        return [dot(self.graph, row, row) for row in self.rows]
+
+    @cached_property
+    def size(self) -> Scalar:
+        return self.graph.product(self.lengths)
+
+    @property
+    def square(self) -> Scalar:
+        """det(B B^T)."""
+        return self.graph.product(self.reflections.pivots)
+
+    @cached_property
+    def basis(self) -> Matrix:
+        """An orthonormal null-space basis F (n x delta): the last columns of Q."""
+        units = identity(self.graph, self.n)[self.rank :]
+        return transpose(tuple(self.reflections.apply(e) for e in units), self.n)
+
+    @cached_property
+    def projector(self) -> Matrix:
+        graph, n = self.graph, self.n
+        upper = {(i, j): dot(graph, self.basis[i], self.basis[j]) for i in range(n) for j in range(i, n)}
+        return tuple(tuple(upper[min(i, j), max(i, j)] for j in range(n)) for i in range(n))
+
+    @cached_property
+    def pseudoinverse(self) -> Matrix:
+        return transpose(tuple(self.lift(e) for e in identity(self.graph, self.rank)), self.n)
+
+    def project(self, x: Vector) -> Vector:
+        zeros = (self.graph.zero,) * self.rank
+        return self.reflections.apply((*zeros, *self.reflections.apply_transposed(x)[self.rank :]))
+
+    def lift(self, a: Vector) -> Vector:
+        """Solve R^T y = a forwards, then Q [y; 0]."""
+        y: list[Scalar] = []
+        for k, column in enumerate(self.reflections.triangle):
+            y.append((a[k] - dot(self.graph, column[:k], y)) / column[k])
+        return self.reflections.apply((*y, *(self.graph.zero,) * self.delta))
+
+    def lift_transposed(self, x: Vector) -> Vector:
+        """Solve R y = (Q^T x)_1 backwards."""
+        head = list(self.reflections.apply_transposed(x)[: self.rank])
+        y: list[Scalar] = [self.graph.zero] * self.rank
+        for k in reversed(range(self.rank)):
+            y[k] = head[k] / self.reflections.triangle[k][k]
+            for i in range(k):
+                head[i] = head[i] - self.reflections.triangle[k][i] * y[k]
+        return tuple(y)
+
+    def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        restriction = Restriction(self.reflections, self.rank)
+        columns = [restriction(column) for column in inputs]
+        if small_family([[0]], columns, degree):
+            return ActuationForms(RowForms(self.graph, (), self.delta, 0), columns, degree), restriction
+        from symgen.linear_algebra.reflected_inputs import ReflectedInputs  # which is made of what is here
+
+        return ReflectedInputs(self.graph, columns, self.delta, degree, self.reflections.everywhere), restriction
+
+    def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        restriction = Restriction(self.reflections, self.rank)
+        free = RowForms(self.graph, (), self.delta, 0)
+        return ActuationForms(free, [restriction(column) for column in inputs], degree), restriction
+
+
+def residual(space: NullSpace, force: Vector, inputs: Sequence[Vector], u: Vector) -> Vector:
+    """N_B (f - M u)."""
+    graph = space.graph
+    supplied = tuple(graph.sum(column[i] * x for column, x in zip(inputs, u, strict=True)) for i in range(space.n))
+    return space.project(subtract_vectors(force, supplied))

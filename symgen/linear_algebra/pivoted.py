@@ -1,0 +1,147 @@
+"""The null space of B where rows depend on each other: Householder reflections that pivot by arithmetic.
+
+rho reflections, rho = the generic rank, each towards the row of which most is left beside the directions already taken,
+times the share that this is of its own length (Golub and Van Loan, 5.4; the selection is a product with 0 or 1 made by
+copysign, hence the same code for every state).  By length alone, what rounding leaves of a long row that follows from
+others may be longer than a short row of its own; by shares alone, a row that is all but 0 here, and of which rounded
+angles leave few digits, is as good as the longest.  A fixed choice of rows would be a parametrisation; this one follows
+the configuration.  What is left of the other rows, zero on V and of the size of the drift beside it, is dropped.  With
+B = L Q_1^T, L of full column rank, B^+ = Q_1 L^+ comes from a second factorisation, of L (complete orthogonal
+decomposition).
+
+Rows of what inputs do along the constraints are no rows of their own: they are components in an orthonormal basis, one
+of which may vanish at any configuration.  Of those the longest is taken as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+from symgen.linear_algebra.null_spaces import HouseholderSpace, Reflections
+from symgen.symbolic.matrix import Matrix, Vector, dot, identity, transpose
+from symgen.symbolic.scalar import Graph, Scalar
+
+
+class PivotedReflections(Reflections):
+    """`rank` reflections, each made from the row with the longest remainder.
+
+    `lengths` are the squared lengths of the rows chosen, `coefficients` L: the rows in terms of the directions taken,
+    `rest` what is left of the rows beside these directions.  With `own` remainders count beside the rows' lengths.
+    """
+
+    def __init__(
+        self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+    ) -> None:
+        super().__init__(graph, (), n, everywhere)
+        remaining = list(rows)
+        squares = [dot(graph, row, row) for row in rows]
+        self.lengths: list[Scalar] = []
+        for k in range(rank):
+            left = [dot(graph, row[k:], row[k:]) for row in remaining]
+            shares = [graph.function("ratio_or_zero", pair) for pair in zip(left, squares, strict=True)]
+            # long rows are known to more digits than short ones that hold the same
+            chosen = longest(graph, [a * b for a, b in zip(left, shares, strict=True)] if own else left)
+            pairs = list(zip(chosen, remaining, strict=True))
+            tail = tuple(graph.sum(c * row[i] for c, row in pairs) for i in range(k, n))
+            self.lengths.append(graph.sum(c * square for c, square in zip(chosen, squares, strict=True)))
+            self._add(k, tail)
+            turned = [self._reflect(self.reflectors[-1], row) for row in remaining]
+            # the chosen row lies in the directions taken; what rounding leaves of it must not be chosen again
+            remaining = [
+                (*row[: k + 1], *(entry * (1 - c) for entry in row[k + 1 :]))
+                for c, row in zip(chosen, turned, strict=True)
+            ]
+        self.rest: Matrix = tuple(remaining)
+        self.coefficients: Matrix = tuple(row[:rank] for row in remaining)
+
+    def _add(self, k: int, tail: Vector) -> None:
+        graph = self.graph
+        squared = graph.sum(entry * entry for entry in tail)
+        norm = graph.function("sqrt", (squared,))
+        signed = graph.function("copysign", (norm, tail[0]))
+        reach = norm * (norm + graph.function("abs", (tail[0],)))
+        factor = graph.function("ratio_or_zero", (graph.one, reach)) if self.everywhere else 1 / reach
+        self.reflectors.append((k, (tail[0] + signed, *tail[1:]), factor))
+        self.pivots.append(squared)
+
+
+def longest(graph: Graph, sizes: Sequence[Scalar]) -> list[Scalar]:
+    """1 for the largest of the sizes, the last one where several are equal, 0 for the others."""
+    best = sizes[0]
+    wins = [graph.one]
+    for size in sizes[1:]:
+        win = (1 + graph.function("copysign", (graph.one, size - best))) / 2
+        wins = [*(earlier * (1 - win) for earlier in wins), win]
+        best = graph.function("max", (best, size))
+    return wins
+
+
+class PivotedSpace(HouseholderSpace):
+    """By reflections of as many rows as the rank, chosen by length at each configuration."""
+
+    def __init__(
+        self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+    ) -> None:
+        self.graph, self.rows, self.n, self.rank = graph, rows, n, rank
+        self.delta = n - rank
+        self._everywhere = everywhere
+        self._pivoted = PivotedReflections(graph, rows, n, rank, everywhere, own)
+        self.reflections = self._pivoted
+
+    @cached_property
+    def lengths(self) -> list[Scalar]:
+        """The squared lengths of the rows that were chosen."""
+        return self._pivoted.lengths
+
+    @cached_property
+    def _inner(self) -> Reflections:
+        columns = transpose(self._pivoted.coefficients, self.rank)
+        return Reflections(self.graph, columns, len(self.rows), self._everywhere)
+
+    @property
+    def square(self) -> Scalar:
+        """det L^T L, on V the sum of det(B_I B_I^T) over the row subsets I of size rho."""
+        return self.graph.product(self._inner.pivots)
+
+    @cached_property
+    def pseudoinverse(self) -> Matrix:
+        return transpose(tuple(self.lift(axis) for axis in identity(self.graph, len(self.rows))), self.n)
+
+    def lift(self, a: Vector) -> Vector:
+        """Q_1 L^+ a."""
+        y = list(self._inner.apply_transposed(a)[: self.rank])
+        triangle = self._inner.triangle
+        for k in reversed(range(self.rank)):
+            y[k] = y[k] / triangle[k][k]
+            for i in range(k):
+                y[i] = y[i] - triangle[k][i] * y[k]
+        return self.reflections.apply((*y, *(self.graph.zero,) * self.delta))
+
+    def lift_transposed(self, x: Vector) -> Vector:
+        """(L^+)^T Q_1^T x, the one of least norm."""
+        right = self.reflections.apply_transposed(x)[: self.rank]
+        y: list[Scalar] = []
+        for column, entry in zip(self._inner.triangle, right, strict=True):
+            y.append((entry - dot(self.graph, column[: len(y)], y)) / column[len(y)])
+        return self._inner.apply((*y, *(self.graph.zero,) * (len(self.rows) - self.rank)))
+
+
+def reflected(
+    graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+) -> HouseholderSpace:
+    """The null space by reflections, with pivoting only where rows depend on each other.
+
+    With `own` each row counts by what is left of its own length.
+    """
+    if rank == len(rows):
+        return HouseholderSpace(graph, rows, n, everywhere)
+    return PivotedSpace(graph, rows, n, rank, everywhere, own)
+
+
+def elementary_symmetric(graph: Graph, values: Sequence[Scalar], degree: int) -> Scalar:
+    """The sum of the products of `degree` of the values."""
+    sums = [graph.one, *(graph.zero for _ in range(degree))]
+    for value in values:
+        sums = [sums[0], *(sums[k] + value * sums[k - 1] for k in range(1, degree + 1))]
+    return sums[degree]

@@ -1,0 +1,112 @@
+"""What is generically true of a system: the rank of B on V and the degree of actuation (model/branches)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from symgen.diagnostics import SymgenBug
+from symgen.mechanics.system import System
+from symgen.model.configurations.assembly import Assembly
+from symgen.model.configurations.branches import branches
+from symgen.model.configurations.mechanics import NumericSystem as Numbers
+from symgen.model.configurations.sparse import PLAIN, clear_rank
+from symgen.model.model import Model
+from symgen.records import dataclass
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.translate import translate
+
+POINTS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Genericity:
+    """Generic ranks on V: rho = rank B, delta = n - rho, alpha = rank of the projected control matrix (26).
+
+    The ranks of B and of [B; M^T] are identical where no configuration, on V or off it, exceeds them.
+    """
+
+    n: int
+    r: int
+    m: int
+    rank: int
+    alpha: int
+    geometric_rank: int
+    rank_is_identical: bool = True
+    actuation_is_identical: bool = True
+
+    @property
+    def delta(self) -> int:
+        """Differential degree of freedom (5)."""
+        return self.n - self.rank
+
+    @property
+    def delta_loc(self) -> int:
+        """Local degree of freedom (4)."""
+        return self.n - self.geometric_rank
+
+    @property
+    def minors(self) -> int:
+        """How many minors of the generic rank B has."""
+        return math.comb(self.n, self.rank) * math.comb(self.r, self.rank)
+
+    @property
+    def full_actuation(self) -> bool:
+        """Whether the inputs span every admissible direction."""
+        return self.alpha == self.delta
+
+
+def parameter_values(mechanics: System) -> dict[str, float]:
+    """The default parameters in double precision."""
+    graph = mechanics.graph
+    values: dict[str, float] = {}
+    for parameter in mechanics.model.parameters:
+        names = {name: graph.symbol(name) for name in values}
+        values[parameter.name] = Evaluator([translate(graph, parameter.value, names)])(values)[0]
+    return values
+
+
+def assembly_of(model: Model) -> Assembly:
+    """What loading found about the configurations; found here where the model was not read from a file."""
+    if model.assembly is not None:
+        return model.assembly
+    seen = Numbers(
+        model.coordinates,
+        model.parameters,
+        model.definitions,
+        model.constraints,
+        model.kinetic_energy,
+        model.mechanism,
+    )
+    found = branches(seen, model.inputs, {name: float(value) for name, value in model.configuration})
+    if not isinstance(found, Assembly):
+        raise SymgenBug(f"genericity: no configuration of {model.name} satisfies its constraints")
+    return found
+
+
+def configurations(mechanics: System, count: int = POINTS) -> list[dict[str, float]]:
+    """Configurations on V with the generic ranks, parameters included; where the declared start leads is the first."""
+    parameters = parameter_values(mechanics)
+    names = [c.name for c in mechanics.model.coordinates]
+    places = assembly_of(mechanics.model).places[:count]
+    return [parameters | dict(zip(names, place.q, strict=True)) for place in places]
+
+
+def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:
+    """Rank by elimination with complete pivoting of the row-normalised matrix; None where it is not clear-cut."""
+    work = []
+    for row in rows:
+        length = math.hypot(*row)
+        if not length < math.inf:
+            return None
+        work.append({j: x / length for j, x in enumerate(row) if x} if length else {})
+    return clear_rank(work, plain)
+
+
+def genericity(mechanics: System) -> Genericity:
+    """The ranks kernels are made for: those of the branch that is meant."""
+    found = assembly_of(mechanics.model)
+    ranks, identical = found.ranks, (found.rank_is_identical, found.actuation_is_identical)
+    return Genericity(
+        mechanics.n, mechanics.r, mechanics.m, ranks.constraints, ranks.actuation, ranks.geometric, *identical
+    )

@@ -1,0 +1,358 @@
+"""Generalized forces of the bodies by Newton and Euler's equations, frame by frame in body axes.
+
+Outwards: angular velocity, angular acceleration and acceleration of each origin.  Inwards: the force and moment every
+frame passes to its parent.  A frame's coordinates get the power of that wrench on their own relative motion; no energy
+is formed or differentiated (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 5.3; Luh, Walker, Paul 1980).
+
+Lumped, the bodies of a frame are one, given by mass, first moment and inertia about the frame's origin; the mass of a
+frame that turns about a point of its parent is put there as a point mass, and a rotor on a fixed axis is part of what
+it turns (base parameters: Khalil and Dombre, Modeling, Identification and Control of Robots, 2002, ch. 9).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+from symgen.mechanics.bodies import Bodies, Vector3
+from symgen.model.kinematics.triples import Rows, applied, cross, plus, transposed, triple
+from symgen.model.mechanism import WORLD, Body, Frame, RotorInertia
+from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.matrix import Vector
+from symgen.symbolic.scalar import Scalar
+
+
+@dataclass(frozen=True)
+class FrameMotion:
+    """Angular velocity and acceleration of a frame and the acceleration of its origin, in its axes.
+
+    `field` is the matrix U with U r = w' x r + w x (w x r): what its points are accelerated by beside their origin.
+    """
+
+    velocity: Vector3
+    acceleration: Vector3
+    linear: Vector3
+    field: Rows[Scalar]
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """Force and moment about a frame's origin, in its axes."""
+
+    force: Vector3
+    moment: Vector3
+
+
+@dataclass(frozen=True)
+class Lump:
+    """Mass, first moment and inertia tensor about a frame's origin, in its axes."""
+
+    mass: Scalar
+    first: Vector3
+    tensor: tuple[Vector3, Vector3, Vector3]
+
+
+def newton_euler(
+    bodies: Bodies,
+    qd: Vector,
+    qdd: Vector,
+    gravity: Vector3,
+    lumped: bool = False,
+    twists: Mapping[str, Sequence[int]] = MappingProxyType({}),
+    named: Callable[[Body, FrameMotion], Wrench | None] = lambda *_: None,
+) -> Vector:
+    """d/dt dT/dq_dot - dT/dq + dU/dq of all bodies and rotors for the accelerations `qdd`.
+
+    `qd` is the symbols of the rates, or zeros for a mechanism at rest; `gravity` may be zero to leave out weights.
+    `lumped` tells whether parameters are regrouped first: cheaper where frames share parameters.
+    The frames of `twists` hand nothing on: force and moment about their origin, in their axes, stand in six places of
+    the result.
+    `named` may give the inertial wrench of a body a name, which stands in the result for what it is.
+    """
+    return _Recursion(bodies, qd, qdd, gravity, named).forces(lumped, twists)
+
+
+def inertial_wrench(motion: FrameMotion, mass: Scalar, com: Vector3, tensor: Rows[Scalar]) -> Wrench:
+    """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w."""
+    x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
+    return Wrench((x, y, z), plus(_turning_moment(tensor, motion), cross(com, (x, y, z))))
+
+
+def motion(velocity: Vector3, acceleration: Vector3, linear: Vector3) -> FrameMotion:
+    """A motion by angular velocity, angular acceleration and acceleration of the origin."""
+    return FrameMotion(velocity, acceleration, linear, _field(velocity, acceleration))
+
+
+def inertial_wrenches(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> dict[str, Wrench]:
+    """What moving its own bodies so takes of each frame, and nothing of rotors; arguments as for `newton_euler`."""
+    recursion = _Recursion(bodies, qd, qdd, gravity)
+    return recursion.wrenches(recursion.moving(), recursion.motions)
+
+
+def frame_motions(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> dict[str, FrameMotion]:
+    """How the frames that carry bodies move, gravity taken off their accelerations; arguments as for `newton_euler`."""
+    recursion = _Recursion(bodies, qd, qdd, gravity)
+    recursion.moving()
+    return recursion.motions
+
+
+class _Recursion:
+    def __init__(
+        self,
+        bodies: Bodies,
+        qd: Vector,
+        qdd: Vector,
+        gravity: Vector3,
+        named: Callable[[Body, FrameMotion], Wrench | None] = lambda *_: None,
+    ) -> None:
+        self.named = named
+        self.bodies, self.graph, self.kinematics = bodies, bodies.graph, bodies.kinematics
+        self.at_rest = all(rate.is_zero for rate in qd)
+        # relative velocities are linear in the rates: at rest their derivatives have terms in q_ddot alone
+        motion = {} if self.at_rest else dict(zip(bodies.q, bodies.qd, strict=True))
+        self.direction = {**motion, **dict(zip(bodies.qd, qdd, strict=True))}
+        self.moves = not (self.at_rest and all(rate.is_zero for rate in qdd))
+        zero = self.graph.zero
+        self.none: Vector3 = (zero, zero, zero)
+        self.motions = {WORLD: FrameMotion(self.none, self.none, _negative(gravity), (self.none, self.none, self.none))}
+
+    def forces(self, lumped: bool, twists: Mapping[str, Sequence[int]]) -> Vector:
+        """One generalized force for each coordinate."""
+        frames = self.moving()
+        rotors = list(self.bodies.mechanism.rotor_inertias)
+        working = {f.name: self.motions[f.name] if f.name in twists else self._working(f.name) for f in frames}
+        if lumped:
+            lumps, rotors = self._lumps([frame.name for frame in frames])
+            wrenches = {name: self._inertial_about_origin(lump, working[name]) for name, lump in lumps.items()}
+        else:
+            wrenches = self.wrenches(frames, working)
+        totals = [self.graph.zero] * len(self.bodies.q)
+        for frame in reversed(frames):
+            wrench, joint = wrenches[frame.name], self.kinematics.joint(frame.name)
+            carried = applied(joint.axes, wrench.force)
+            absolute = self.kinematics.twist(frame.name).angular
+            # a moment that works on the frame's own rate alone need not be handed to the parent and taken off again
+            handed = self._terms(absolute) >= self._terms(joint.turning)
+            if frame.name in twists:
+                for j, load in zip(twists[frame.name], (*wrench.force, *wrench.moment), strict=True):
+                    totals[j] = totals[j] + load
+                continue
+            self._work(totals, joint.turning if handed else absolute, wrench.moment)
+            self._work(totals, joint.place_rate, carried)
+            if frame.parent != WORLD:
+                moment = self._cross(joint.place, carried)
+                moment = plus(applied(joint.axes, wrench.moment), moment) if handed else moment
+                wrenches[frame.parent] = _sum(wrenches[frame.parent], Wrench(carried, moment))
+        for rotor in rotors:
+            rate = self.bodies.names[f"{rotor.coordinate}_dot"]
+            acceleration = derivative_along(self.graph, [rate], self.direction)[0]
+            torque = self.bodies.scalars.value(rotor.inertia) * acceleration
+            self._work(totals, (rate,), (torque,))
+        return tuple(totals)
+
+    def moving(self) -> list[Frame]:
+        """The frames that carry bodies, from the root outwards, their motions known from here on."""
+        loaded = self._loaded()
+        frames = [frame for frame in self.bodies.mechanism.frames if frame.name in loaded]
+        for frame in frames:
+            self.motions[frame.name] = self._motion(frame.name)
+        return frames
+
+    def wrenches(self, frames: Sequence[Frame], motions: Mapping[str, FrameMotion]) -> dict[str, Wrench]:
+        """What the bodies of each frame take, about its origin."""
+        found = {frame.name: Wrench(self.none, self.none) for frame in frames}
+        for body in self.bodies.mechanism.bodies:
+            if body.frame != WORLD:
+                found[body.frame] = _sum(found[body.frame], self._inertial(body, motions[body.frame]))
+        return found
+
+    def _loaded(self) -> set[str]:
+        """Frames that carry bodies, by themselves or further out."""
+        loaded: set[str] = set()
+        for body in self.bodies.mechanism.bodies:
+            loaded.update(self.kinematics.lineage(body.frame))
+        return loaded
+
+    def _motion(self, name: str) -> FrameMotion:
+        """The parent's motion carried to the frame's origin, the joint's own added."""
+        joint, parent = self.kinematics.joint(name), self.motions[self.kinematics.frames[name].parent]
+        inward = transposed(joint.axes)
+        linear = plus(parent.linear, applied(parent.field, joint.place))
+        if self.moves:
+            linear = plus(linear, self._rates(joint.place_rate))
+        acceleration = applied(inward, parent.acceleration)
+        if self.moves:
+            acceleration = plus(acceleration, self._rates(joint.turning))
+        if self.at_rest:
+            return FrameMotion(self.none, acceleration, applied(inward, linear), _field(self.none, acceleration))
+        linear = plus(linear, self._cross(parent.velocity, plus(joint.place_rate, joint.place_rate)))
+        velocity = self.kinematics.twist(name).angular
+        axis = self._shared_axis(name)
+        if axis is None:
+            acceleration = plus(acceleration, self._cross(applied(inward, parent.velocity), joint.turning))
+        else:
+            acceleration = _about_shared_axis(velocity, acceleration, axis[0], applied(inward, axis[1]))
+        return FrameMotion(velocity, acceleration, applied(inward, linear), _field(velocity, acceleration))
+
+    def _shared_axis(self, name: str) -> tuple[int, Vector3] | None:
+        """The main axis k a frame turns about, and U e_k of its parent, whose main axis it is too; None without one.
+
+        Frames without bodies have no use for U, so that there is nothing to share.
+        """
+        joint, parent = self.kinematics.joint(name), self.kinematics.frames[name].parent
+        turning = [k for k, x in enumerate(joint.turning) if not x.is_zero]
+        if len(turning) != 1 or all(body.frame != parent for body in self.bodies.mechanism.bodies):
+            return None
+        along = transposed(joint.axes)[turning[0]]
+        places = [n for n, x in enumerate(along) if not x.is_zero]
+        if len(places) != 1:
+            return None
+        (n,) = places
+        x, y, z = (along[n] * row[n] for row in self.motions[parent].field)
+        return turning[0], (x, y, z)
+
+    def _working(self, name: str) -> FrameMotion:
+        """The frame's motion, as far as work can be done on it: w x (w x r) has no moment about a fixed axis.
+
+        A frame that the world holds by a joint about one axis passes its force and other moments to nobody else.
+        """
+        motion = self.motions[name]
+        held = self.kinematics.frames[name].parent == WORLD
+        held = held and all(rate.is_zero for rate in self.kinematics.joint(name).place_rate)
+        if not held or sum(not x.is_zero for x in motion.velocity) != 1:
+            return motion
+        return replace(motion, field=_field(self.none, motion.acceleration))
+
+    def _inertial(self, body: Body, motion: FrameMotion) -> Wrench:
+        """What the body takes of its frame, or the name of that."""
+        mass, com = self.bodies.scalars.value(body.mass), self.kinematics.space.values(body.com)
+        found = self.named(body, motion)
+        return inertial_wrench(motion, mass, com, self.bodies.inertia(body.name)) if found is None else found
+
+    def _inertial_about_origin(self, lump: Lump, motion: FrameMotion) -> Wrench:
+        """m a + U h and its moment, I w' + w x I w + h x a."""
+        x, y, z = (lump.mass * a for a in motion.linear)
+        moment = plus(_turning_moment(lump.tensor, motion), self._cross(lump.first, motion.linear))
+        return Wrench(plus(applied(motion.field, lump.first), (x, y, z)), moment)
+
+    def _lumps(self, frames: Sequence[str]) -> tuple[dict[str, Lump], list[RotorInertia]]:
+        """What each frame carries, and the rotors that are not part of it."""
+        zero, space = self.graph.zero, self.kinematics.space
+        lumps = {name: Lump(zero, self.none, (self.none, self.none, self.none)) for name in frames}
+        for body in self.bodies.mechanism.bodies:
+            if body.frame != WORLD:
+                mass, com = self.bodies.scalars.value(body.mass), space.values(body.com)
+                about_centre = _with_tensor(lumps[body.frame], self.bodies.inertia(body.name))
+                lumps[body.frame] = _with_point(about_centre, mass, com)
+        for name in reversed(frames):
+            joint, parent = self.kinematics.joint(name), self.kinematics.frames[name].parent
+            if parent != WORLD and all(rate.is_zero for rate in joint.place_rate):
+                lumps[parent] = _with_point(lumps[parent], lumps[name].mass, joint.place)
+                lumps[name] = replace(lumps[name], mass=zero)
+        rotors = []
+        for rotor in self.bodies.mechanism.rotor_inertias:
+            held = self._turned_alone_by(rotor.coordinate, frames)
+            if held is None:
+                rotors.append(rotor)
+            else:
+                name, axis = held
+                inertia = self.bodies.scalars.value(rotor.inertia)
+                rows = [tuple(inertia if i == j == axis else zero for j in range(3)) for i in range(3)]
+                lumps[name] = _with_tensor(lumps[name], (triple(rows[0]), triple(rows[1]), triple(rows[2])))
+        return lumps, rotors
+
+    def _turned_alone_by(self, coordinate: str, frames: Sequence[str]) -> tuple[str, int] | None:
+        """The frame, and its main axis, that turns by this coordinate alone about a fixed place of the world."""
+        rate = self.bodies.names[f"{coordinate}_dot"]
+        for name in frames:
+            joint = self.kinematics.joint(name)
+            turning = [k for k, x in enumerate(joint.turning) if not x.is_zero]
+            if self.kinematics.frames[name].parent not in self._still(frames) or len(turning) != 1:
+                continue
+            if joint.turning[turning[0]] is rate and all(x.is_zero for x in joint.place_rate):
+                return name, turning[0]
+        return None
+
+    def _still(self, frames: Sequence[str]) -> set[str]:
+        """The world, and the frames that do not move."""
+        still = {WORLD}
+        for name in frames:
+            joint = self.kinematics.joint(name)
+            fixed = all(x.is_zero for x in (*joint.turning, *joint.place_rate))
+            if fixed and self.kinematics.frames[name].parent in still:
+                still.add(name)
+        return still
+
+    def _rates(self, rates: Vector3) -> Vector3:
+        x, y, z = derivative_along(self.graph, rates, self.direction)
+        return x, y, z
+
+    def _work(self, totals: list[Scalar], rates: Sequence[Scalar], load: Sequence[Scalar]) -> None:
+        """Adds the power of a load on relative rates, per rate of each coordinate."""
+        for rate, component in zip(rates, load, strict=True):
+            if rate.is_zero or component.is_zero:
+                continue
+            for index, share in enumerate(gradient(self.graph, rate, self.bodies.qd)):
+                if not share.is_zero:
+                    totals[index] = totals[index] + share * component
+
+    def _terms(self, rates: Vector3) -> int:
+        """How many rates of coordinates the components depend on, in all."""
+        shares = (gradient(self.graph, rate, self.bodies.qd) for rate in rates if not rate.is_zero)
+        return sum(not share.is_zero for row in shares for share in row)
+
+    def _cross(self, a: Vector3, b: Vector3) -> Vector3:
+        return self.none if a is self.none or b is self.none else cross(a, b)
+
+
+def _field(w: Vector3, turning: Vector3) -> Rows[Scalar]:
+    """[w']x + [w]x [w]x, with each product of two rates once."""
+    (x, y, z), (a, b, c) = w, turning
+    xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
+    return (-(yy + zz), xy - c, xz + b), (xy + c, -(xx + zz), yz - a), (xz - b, yz + a, -(xx + yy))
+
+
+def _about_shared_axis(w: Vector3, turning: Vector3, k: int, column: Vector3) -> Vector3:
+    """w' of a frame that turns about its axis k, which its parent shares: there both have the same U e_k.
+
+    Of what the frames' angular accelerations are, only the component k of `turning` is looked at.
+    """
+    i, j = (k + 1) % 3, (k + 2) % 3
+    found = list(turning)
+    found[i], found[j] = w[j] * w[k] - column[j], column[i] - w[i] * w[k]
+    return triple(found)
+
+
+def _turning_moment(tensor: Rows[Scalar], motion: FrameMotion) -> Vector3:
+    """I w' + w x I w, sorted by the entries of the tensor: they meet sums that the accelerations of points hold too."""
+    (i_xx, i_xy, i_xz), (_, i_yy, i_yz), (_, _, i_zz) = tensor
+    (x, y, z), (a, b, c) = motion.velocity, motion.acceleration
+    (_, u_xy, u_xz), (u_yx, _, u_yz), (u_zx, u_zy, _) = motion.field
+    return (
+        i_xx * a + (i_zz - i_yy) * (y * z) + i_xz * u_yx - i_xy * u_zx + i_yz * (y * y - z * z),
+        i_yy * b + (i_xx - i_zz) * (x * z) + i_xy * u_zy - i_yz * u_xy + i_xz * (z * z - x * x),
+        i_zz * c + (i_yy - i_xx) * (x * y) + i_yz * u_xz - i_xz * u_yz + i_xy * (x * x - y * y),
+    )
+
+
+def _with_point(lump: Lump, mass: Scalar, at: Vector3) -> Lump:
+    """With a point mass: m (|c|^2 1 - c c^T) about the origin."""
+    x, y, z = at
+    mx, my, mz = first = (mass * x, mass * y, mass * z)
+    xx, yy, zz, xy, xz, yz = mx * x, my * y, mz * z, mx * y, mx * z, my * z
+    rows = ((yy + zz, -xy, -xz), (-xy, xx + zz, -yz), (-xz, -yz, xx + yy))
+    return _with_tensor(Lump(lump.mass + mass, plus(lump.first, first), lump.tensor), rows)
+
+
+def _with_tensor(lump: Lump, tensor: tuple[Vector3, Vector3, Vector3]) -> Lump:
+    x, y, z = (plus(a, b) for a, b in zip(lump.tensor, tensor, strict=True))
+    return replace(lump, tensor=(x, y, z))
+
+
+def _negative(vector: Vector3) -> Vector3:
+    return -vector[0], -vector[1], -vector[2]
+
+
+def _sum(one: Wrench, other: Wrench) -> Wrench:
+    return Wrench(plus(one.force, other.force), plus(one.moment, other.moment))

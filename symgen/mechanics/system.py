@@ -1,0 +1,387 @@
+"""The mechanical system on the scalar graph: energies, forces, constraints and their derivatives.
+
+Everything is computed on first use, so a quantity that no output reaches costs nothing.  Velocities are arguments,
+because several quantities are evaluated along a projected velocity rather than along q_dot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+from symgen.mechanics.absolute_angles import AbsoluteAngles
+from symgen.mechanics.bodies import Bodies, Vector3
+from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
+from symgen.model.expressions.expression import Expression
+from symgen.model.kinematics.components import components_in, definitions_before_frames
+from symgen.model.kinematics.triples import Rows
+from symgen.model.model import Model
+from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
+from symgen.symbolic.passes.factoring import Factoring
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.translate import translate
+from symgen.symbolic.traverse import cost, reached, substitute
+
+
+class System:
+    """A model's energies, forces and constraint rows as scalars of one graph.
+
+    `change` describes the system in other coordinates on the graph of `base`; q, qd and qdd are then those.
+    `lumped` regroups the parameters of bodies (`newton_euler`).
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        base: System | None = None,
+        change: AbsoluteAngles | None = None,
+        lumped: bool = False,
+    ) -> None:
+        self.model = model
+        self.lumped = lumped
+        graph = Graph() if base is None else base.graph
+        self.graph: Graph = graph
+        self.change = change
+        mark = "" if change is None else " absolute"
+        symbol = graph.symbol if change is None else graph.stand_in
+        self.q: Vector = tuple(symbol(c.name + mark) for c in model.coordinates)
+        self.qd: Vector = tuple(symbol(c.rate + mark) for c in model.coordinates)
+        self.qdd: Vector = tuple(symbol(c.acceleration + mark) for c in model.coordinates)
+        self.parameters: Vector = tuple(graph.symbol(p.name) for p in model.parameters)
+        self.u: Vector = tuple(graph.symbol(i.name) for i in model.inputs)
+        q, qd = (self.q, self.qd) if change is None else (change.relative(self.q), change.relative(self.qd))
+        self.names: dict[str, Scalar] = {
+            **{c.name: node for c, node in zip(model.coordinates, q, strict=True)},
+            **{c.rate: node for c, node in zip(model.coordinates, qd, strict=True)},
+            **{p.name: node for p, node in zip(model.parameters, self.parameters, strict=True)},
+        }
+        self.bodies = self._bodies()
+        for definition in model.definitions:
+            if definition.name not in self.names:
+                self.names[definition.name] = translate(graph, definition.value, self.names)
+        self.factoring = Factoring(graph, self.parameters)
+        self.definitions = {d.name: self.names[d.name] for d in model.definitions}
+
+    def apart(self) -> System:
+        """The same system on a graph of its own, where no function of it is known yet."""
+        plain = System(self.model, lumped=self.lumped)
+        return plain if self.change is None else System(self.model, plain, self.change, self.lumped)
+
+    def _bodies(self) -> Bodies:
+        """The bodies, and every component of points and frames that a formula uses, entered in `names`."""
+        for definition in definitions_before_frames(self.model):
+            self.names[definition.name] = translate(self.graph, definition.value, self.names)
+        bodies = Bodies(self.model.mechanism, self.graph, dict(self.names), self.q, self.qd)
+        for name in components_in(self.model):
+            self.names[name] = bodies.component(name)
+        return bodies
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.q)
+
+    @property
+    def r(self) -> int:
+        """Number of constraint rows."""
+        return len(self.model.constraints)
+
+    @property
+    def m(self) -> int:
+        """Number of inputs."""
+        return len(self.u)
+
+    @cached_property
+    def positive(self) -> frozenset[str]:
+        """The parameters that are positive, by their ranges or by nature."""
+        return positive_parameters(self.model)
+
+    @cached_property
+    def nonnegative(self) -> frozenset[str]:
+        """The parameters that are positive or 0, by nature: masses and moments of inertia."""
+        return nonnegative_parameters(self.model)
+
+    # energies --------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def kinetic_energy(self) -> Scalar:
+        """T(q, q_dot)."""
+        return self._written_energy + self.bodies.kinetic_energy
+
+    @cached_property
+    def _written_energy(self) -> Scalar:
+        """T as far as it is written out in the model."""
+        return translate(self.graph, self.model.kinetic_energy, self.names)
+
+    @cached_property
+    def potential_energy(self) -> Scalar:
+        """U(q)."""
+        return self._written_potential + self.bodies.potential_energy
+
+    @cached_property
+    def _written_potential(self) -> Scalar:
+        """U as far as it is written out in the model."""
+        return translate(self.graph, self.model.potential_energy, self.names)
+
+    @cached_property
+    def momentum(self) -> Vector:
+        """p = dT/dq_dot = G q_dot."""
+        return tuple(gradient(self.graph, self.kinetic_energy, self.qd))
+
+    @cached_property
+    def mass_matrix(self) -> Matrix:
+        """G (3): the momentum's derivatives by the rates, the upper triangle used twice."""
+        zero_rates = dict.fromkeys(self.qd, self.graph.zero)
+        rows = [
+            substitute(self.graph, gradient(self.graph, p, self.qd), zero_rates) for p in self.momentum
+        ]
+        return tuple(tuple(rows[min(i, j)][max(i, j)] for j in range(self.n)) for i in range(self.n))
+
+    @cached_property
+    def _mass_slopes(self) -> tuple[dict[tuple[int, int], Scalar], ...]:
+        """The entries of dG/dq^k that are not zero, i <= j, for every k; rows of many machines have few."""
+        graph, n = self.graph, self.n
+        upper = {(i, j): x for i in range(n) for j in range(i, n) if (x := self.mass_matrix[i][j]).op != "const"}
+        moved: dict[Scalar, list[tuple[int, int]]] = {}
+        for place, entry in upper.items():
+            for node in reached([entry]):
+                if node.op == "symbol":
+                    moved.setdefault(node, []).append(place)
+        slopes = []
+        for q in self.q:
+            places = moved.get(q, [])
+            found = derivative_along(graph, [upper[place] for place in places], {q: graph.one})
+            slopes.append({place: x for place, x in zip(places, found, strict=True) if not x.is_zero})
+        return tuple(slopes)
+
+    @cached_property
+    def mass_matrix_gradient(self) -> tuple[Matrix, ...]:
+        """dG/dq^k for every k."""
+        zeros = (self.graph.zero,) * self.n
+        gradients = []
+        for slopes in self._mass_slopes:
+            rows = {i: list(zeros) for place in slopes for i in place}
+            for (i, j), slope in slopes.items():
+                rows[i][j] = rows[j][i] = slope
+            gradients.append(tuple(tuple(rows[i]) if i in rows else zeros for i in range(self.n)))
+        return tuple(gradients)
+
+    def coriolis_matrix(self, velocity: Vector) -> Matrix:
+        """C (3) from Christoffel symbols, 1/2 sum_k (d_k G_ij + d_j G_ik - d_i G_jk) v_k: G_dot - 2 C is skew."""
+        graph, n, d = self.graph, self.n, self.mass_matrix_gradient
+        symmetric = [[dot(graph, [d[k][i][j] for k in range(n)], velocity) for j in range(n)] for i in range(n)]
+        gyroscopic = [[dot(graph, [d[j][i][k] for k in range(n)], velocity) for j in range(n)] for i in range(n)]
+        half = graph.const(1) / 2
+        return tuple(
+            tuple((symmetric[i][j] + (gyroscopic[i][j] - gyroscopic[j][i])) * half for j in range(n)) for i in range(n)
+        )
+
+    @cached_property
+    def potential_force(self) -> Vector:
+        """Q (3) = dU/dq."""
+        return tuple(gradient(self.graph, self.potential_energy, self.q))
+
+    @cached_property
+    def applied_force(self) -> Vector:
+        """Q_a(q, q_dot), on the right-hand side."""
+        (_, given), *others = self._applied
+        for magnitude, column in others:
+            given = tuple(x + magnitude * y for x, y in zip(given, column, strict=True))
+        return given
+
+    @cached_property
+    def _applied(self) -> list[tuple[Scalar, Vector]]:
+        """What acts on the coordinates themselves, and the magnitude of each force with what a unit of it does."""
+        forces = {f.coordinate: translate(self.graph, f.expression, self.names) for f in self.model.applied_forces}
+        direct = self._components(tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates))
+        others = (
+            (translate(self.graph, force.magnitude, self.names), self._worked_on(force.velocity))
+            for force in self.model.forces
+        )
+        return [(self.graph.one, direct), *others]
+
+    def applied_force_at(self, velocity: Vector) -> Vector:
+        """Q_a along another velocity."""
+        if velocity == self.qd:
+            return self.applied_force
+        return tuple(substitute(self.graph, self.applied_force, dict(zip(self.qd, velocity, strict=True))))
+
+    @cached_property
+    def coriolis_force(self) -> Vector:
+        """C q_dot, straight from the energy."""
+        return self._inertial_force(tuple(self.graph.zero for _ in self.q))
+
+    @cached_property
+    def balance(self) -> Vector:
+        """tau = G q_ddot + C q_dot + Q - Q_a; built without the matrices G and C."""
+        return tuple(f - a for f, a in zip(self._conservative_force(self.qdd), self.applied_force, strict=True))
+
+    def _conservative_force(self, acceleration: Vector) -> Vector:
+        """G a + C q_dot + Q; with bodies in one recursion, where weight is an acceleration of the world."""
+        if self.model.mechanism.has_mass:
+            inertial = self._inertial_force_of_bodies(acceleration, self.bodies.gravity)
+            potential: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
+        else:
+            inertial, potential = self._inertial_force(acceleration), self.potential_force
+        return tuple(i + f for i, f in zip(inertial, potential, strict=True))
+
+    def _inertial_force(self, acceleration: Vector) -> Vector:
+        """d/dt dT/dq_dot - dT/dq: by differentiating the momentum, or through G, whichever counts less."""
+        graph = self.graph
+        if self.model.mechanism.has_mass:
+            none = self.graph.zero
+            return self._inertial_force_of_bodies(acceleration, (none, none, none))
+        motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
+        rates = derivative_along(graph, self.momentum, motion)
+        direct = [p - t for p, t in zip(rates, gradient(graph, self.kinetic_energy, self.q), strict=True)]
+        half = graph.const(1) / 2
+        squared: list[Scalar] = []
+        d = self.mass_matrix_gradient
+        for i, pairs in enumerate(self._products_of_rates()):
+            total = graph.zero
+            for j, k in pairs:
+                christoffel = d[k][i][j] + d[j][i][k] - d[i][j][k]
+                weight = half if j == k else graph.one
+                total = total + christoffel * weight * (self.qd[j] * self.qd[k])
+            squared.append(total)
+        linear = matvec(graph, self.mass_matrix, acceleration)
+        collected = [a + b for a, b in zip(linear, squared, strict=True)]
+        return tuple(min((direct, collected), key=lambda force: cost(force).weight))
+
+    def _products_of_rates(self) -> list[list[tuple[int, int]]]:
+        """For every i the pairs j <= k of rates that may load it: the others have no Christoffel symbol."""
+        pairs: list[set[tuple[int, int]]] = [set() for _ in self.q]
+        for k, slopes in enumerate(self._mass_slopes):
+            for i, j in slopes:
+                pairs[k].add((i, j))
+                pairs[i].add((min(j, k), max(j, k)))
+                pairs[j].add((min(i, k), max(i, k)))
+        return [sorted(these) for these in pairs]
+
+    def _inertial_force_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
+        """The same without the energies of the bodies, whose differentiation would undo the recursion."""
+        graph = self.graph
+        force = self._forces_of_bodies(acceleration, gravity)
+        if self._written_energy.is_zero:
+            return force
+        motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
+        rates = derivative_along(graph, gradient(graph, self._written_energy, self.qd), motion)
+        shifts = gradient(graph, self._written_energy, self.q)
+        return tuple(f + p - t for f, p, t in zip(force, rates, shifts, strict=True))
+
+    def _forces_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
+        """What Newton and Euler's equations ask of each coordinate."""
+        from symgen.mechanics.newton_euler import newton_euler  # models given by energies start without it
+
+        return newton_euler(self.bodies, self.qd, acceleration, gravity, self.lumped)
+
+    # constraints and inputs ------------------------------------------------------------------------------------------
+
+    @cached_property
+    def constraint_residual(self) -> Vector:
+        """g(q) (4)."""
+        rows = [row for row in self.model.constraints if row.kind == "geometric"]
+        return tuple(translate(self.graph, row.expression, self.names) for row in rows)
+
+    @cached_property
+    def geometric_jacobian(self) -> Matrix:
+        """dg/dq."""
+        return tuple(tuple(gradient(self.graph, g, self.q)) for g in self.constraint_residual)
+
+    @cached_property
+    def constraint_jacobian(self) -> Matrix:
+        """B (1): dg/dq above the coefficients of the non-holonomic rows."""
+        graph = self.graph
+        rows = [row for row in self.model.constraints if row.kind == "nonholonomic"]
+        zero_rates = dict.fromkeys(self.qd, graph.zero)
+        kinematic = [
+            substitute(graph, gradient(graph, translate(graph, row.expression, self.names), self.qd), zero_rates)
+            for row in rows
+        ]
+        return (*self.geometric_jacobian, *(tuple(row) for row in kinematic))
+
+    @cached_property
+    def coordinate_rows(self) -> Matrix:
+        """Rows with the rank of B in the model's coordinates, whatever moves the system here."""
+        return self.constraint_jacobian
+
+    @property
+    def turnings(self) -> tuple[tuple[tuple[int, int, int], Rows[Scalar]], ...]:
+        """For each body whose twist moves it here: its angles, and the angular velocity by their rates."""
+        return ()
+
+    @cached_property
+    def twist_determinant(self) -> Scalar:
+        """The determinant of what moves the system here by the rates of its coordinates."""
+        return self.graph.one
+
+    def constraint_jacobian_dot(self, velocity: Vector) -> Matrix:
+        """B_dot along a velocity."""
+        flat = [entry for row in self.constraint_jacobian for entry in row]
+        rates = iter(derivative_along(self.graph, flat, dict(zip(self.q, velocity, strict=True))))
+        return tuple(tuple(next(rates) for _ in range(self.n)) for _ in range(self.r))
+
+    def constraint_acceleration_bias(self, velocity: Vector) -> Vector:
+        """B_dot v along v: differentiating B v is cheaper than forming B_dot."""
+        graph = self.graph
+        frozen = tuple(graph.stand_in(f"{c.name}_frozen rate") for c in self.model.coordinates)
+        products = matvec(graph, self.constraint_jacobian, frozen)
+        rates = derivative_along(graph, products, dict(zip(self.q, velocity, strict=True)))
+        return tuple(substitute(graph, rates, dict(zip(frozen, velocity, strict=True))))
+
+    @cached_property
+    def control_matrix(self) -> Matrix:
+        """M (3): one column per input."""
+        columns = [
+            {name: translate(self.graph, value, self.names) for name, value in i.acts_on} for i in self.model.inputs
+        ]
+        given = (tuple(column.get(c.name, self.graph.zero) for c in self.model.coordinates) for column in columns)
+        found = [
+            self._components(column) if i.velocity is None else self._worked_on(i.velocity)
+            for i, column in zip(self.model.inputs, given, strict=True)
+        ]
+        return transpose(tuple(found), self.n)
+
+    def _worked_on(self, velocity: Expression) -> Vector:
+        """The generalized force of a unit force that works on this rate: its coefficients."""
+        rate = translate(self.graph, velocity, self.names)
+        zero_rates = dict.fromkeys(self.qd, self.graph.zero)
+        return tuple(substitute(self.graph, gradient(self.graph, rate, self.qd), zero_rates))
+
+    def _components(self, force: Vector) -> Vector:
+        """A generalized force of the model's coordinates in those of this system."""
+        return force if self.change is None else self.change.forces(force)
+
+    @cached_property
+    def inputs(self) -> tuple[Vector, ...]:
+        """The columns of M."""
+        return transpose(self.control_matrix, self.m)
+
+    @cached_property
+    def applied_balance(self) -> Vector:
+        """f = M u - C q_dot - Q + Q_a, the right-hand side of G q_ddot + B^T lambda = f."""
+        return subtract_vectors(matvec(self.graph, self.control_matrix, self.u), self.bias_force)
+
+    @cached_property
+    def given_force(self) -> Vector:
+        """M u + Q_a less the gradient of the written potential: f without the weights and inertial forces of bodies."""
+        driven = matvec(self.graph, self.control_matrix, self.u)
+        slopes = gradient(self.graph, self._written_potential, self.q)
+        return tuple(u + a - f for u, a, f in zip(driven, self.applied_force, slopes, strict=True))
+
+    def given_along(self, direction: Mapping[int, Scalar]) -> Scalar:
+        """The component of `given_force` along a direction in the coordinates.
+
+        Input by input and force by force, because it is exactly 0 of each of them that does no work there.
+        """
+        slopes: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
+        parts = [*zip(self.u, self.inputs, strict=True), *self._applied, (self.graph.const(-1), slopes)]
+        along = ((x, self.graph.sum(column[j] * d for j, d in direction.items())) for x, column in parts)
+        return self.graph.sum(x * component for x, component in along if not component.is_zero)
+
+    @cached_property
+    def bias_force(self) -> Vector:
+        """C q_dot + Q - Q_a."""
+        conservative = self._conservative_force(tuple(self.graph.zero for _ in self.q))
+        return tuple(f - a for f, a in zip(conservative, self.applied_force, strict=True))

@@ -1,0 +1,420 @@
+"""The quantities of the paper along one way to the null space of B.
+
+A `Derivation` holds what several quantities share, each part computed on first use.  The catalogue lists its methods
+by quantity name; `select` compares the derivations along different null spaces by counted cost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import cached_property
+
+from symgen.ir.kernel import Status
+from symgen.linear_algebra.constrained_inverse import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
+from symgen.linear_algebra.guards import Guard, magnitude
+from symgen.linear_algebra.null_spaces import (
+    LONGEST_PRODUCT,
+    HouseholderSpace,
+    InputEquations,
+    MinorSpace,
+    NullSpace,
+    Restriction,
+    residual,
+)
+from symgen.linear_algebra.pivoted import reflected
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.system import System
+from symgen.methods.allocation import InputAllocation
+from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
+from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
+from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
+from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motions import MotionName, candidates, cheapest, few_minors, motion
+from symgen.methods.forward_dynamics.schur import schur_qr
+from symgen.runtime.effort import TooLongError, at_most, worth_trying
+from symgen.symbolic.calculus import derivative_along
+from symgen.symbolic.matrix import (
+    Matrix,
+    Vector,
+    add,
+    dot,
+    flatten,
+    identity,
+    matmul,
+    matvec,
+    scale,
+    subtract,
+    subtract_vectors,
+    transpose,
+)
+from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.traverse import cost, substitute
+from symgen.validity.definiteness import positive_definite
+from symgen.validity.rank_measures import rank_measures
+from symgen.validity.solvable import solvable
+
+
+class Derivation:
+    """Every quantity of one system as scalars, along one `NullSpace`."""
+
+    def __init__(self, mechanics: System, generic: Genericity, space: NullSpace) -> None:
+        self.mechanics = mechanics
+        self.generic = generic
+        self.space = space
+        self.graph = mechanics.graph
+        self.n, self.r, self.m = mechanics.n, mechanics.r, mechanics.m
+
+    # shared parts ----------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def admissible(self) -> Vector:
+        """v = N_B q_dot, factored where that is no longer."""
+        plain = self.space.project(self.mechanics.qd)
+        factored = self.mechanics.factoring.shorten(plain)
+        return min((factored, plain), key=lambda v: cost(v).weight)
+
+    @cached_property
+    def common_speeds(self) -> frozenset[Scalar]:
+        """The sums that all components of v are multiples of: v itself varies in fewer directions than it has entries.
+
+        Left whole, they let what vanishes for admissible velocities cancel exactly.
+        """
+        return self.mechanics.factoring.common_sums(self.admissible)
+
+    @property
+    def whole(self) -> frozenset[Scalar]:
+        """What must stay whole where results are multiplied out: common speeds, and the minors of B.
+
+        Where the rank of B drops all minors are small together, and what they are multiplied out into is not.
+        """
+        minors = self.space.forms.minors if isinstance(self.space, MinorSpace) else frozenset()
+        return self.common_speeds | minors
+
+    @property
+    def whole_for_inputs(self) -> frozenset[Scalar]:
+        """The same for u, whose sums of squared determinants vanish where inputs lose an effect."""
+        forms, _ = self._actuation
+        return self.whole | forms.minors
+
+    @cached_property
+    def inertia(self) -> ConstrainedInertia:
+        """K = W (W^T G W)^-1 W^T, by the form that is valid wherever G is positive definite on ker B."""
+        mass_matrix, space = self.mechanics.mass_matrix, self.space
+        if self.generic.rank < self.r and self.generic.delta <= LARGEST_DELTA and isinstance(space, MinorSpace):
+            return MinorInertia(space, mass_matrix)
+        if isinstance(space, MinorSpace) and self.generic.delta <= LARGEST_DELTA:
+            return minor_motion(Problem(self.mechanics, space.guards))
+        if self.r == 0:
+            return FreeInertia(self.graph, mass_matrix)
+        if isinstance(space, HouseholderSpace):
+            return BasisInertia(space, mass_matrix)
+        return BasisInertia(reflected(self.graph, space.rows, self.n, self.generic.rank), mass_matrix)
+
+    @cached_property
+    def _motions(self) -> dict[MotionName, MotionMethod]:
+        names = candidates(self.generic, self.space)
+        if "nullspace" in names and not positive_definite(self.mechanics):
+            # not even built: equal functions are one node, and pivots of a singular G may be 0/0 where others are not
+            names = tuple(name for name in names if name != "schur_qr")
+            if self.generic.rank == self.r and few_minors(self.generic):
+                # where the constraints carry a load, what is left of it along a motion cancels in the minors only
+                names = ("minor", *names)
+        motions: dict[MotionName, MotionMethod] = {}
+        for name in names:
+            if name != "minor" or len(names) == 1:
+                motions[name] = self.motion(name)
+                continue
+            # sums of minors may double with each row; another form is at hand
+            with suppress(TooLongError), at_most(worth_trying(0)):
+                motions[name] = self.motion(name)
+        if self.generic.rank:
+            return motions
+        # rows that hold nothing press on nothing
+        still = (self.graph.zero,) * self.r
+        return {name: replace(made, multipliers=still) for name, made in motions.items()}
+
+    def motion(self, name: MotionName) -> MotionMethod:
+        """One form; `schur_qr` and `minor` are worked out in absolute angles.
+
+        There G keeps the inertias of bodies apart, and a crank does not feel what the links behind it carry.  They are
+        so on a graph of their own and brought here as they stand: beside each other equal functions are one node.
+        """
+        if name not in ("schur_qr", "minor"):
+            return motion(name, self.mechanics, self.space, self.inertia)
+        own, rank = self.mechanics, self.generic.rank
+        apart = own.apart() if own.change is not None else in_absolute_angles(own.model) or own.apart()
+        problem, completed = Problem(apart, ()), completed_multipliers(apart)
+        made = schur_qr(problem, rank) if name == "schur_qr" else minor_motion(problem).motion
+        # symbols of absolute angles stay where these are the coordinates of this derivation
+        made = replace(made, multipliers=completed(made.multipliers))
+        made = motion_brought_back(self.graph, apart if own.change is None else None, made)
+        apart.graph.dissolve()
+        # `schur_qr` measures ranks itself where rows are many, or depend on each other
+        measured = name == "schur_qr" and self.r > min(rank, LONGEST_PRODUCT)
+        return replace(made, guards=(*(() if measured else self.space.guards), *made.guards), name=name)
+
+    @cached_property
+    def acceleration(self) -> MotionMethod:
+        """The form of q_ddot that counts least."""
+        return cheapest(self._motions, "accelerations", self.mechanics)
+
+    @cached_property
+    def reaction(self) -> MotionMethod:
+        """The form of lambda that counts least."""
+        return cheapest(self._motions, "multipliers", self.mechanics)
+
+    @cached_property
+    def _actuation(self) -> tuple[InputEquations, Restriction]:
+        forms, restriction = self.space.actuation(self.mechanics.inputs, self.generic.alpha)
+        return forms.cancelled(self.mechanics.factoring.cancelled), restriction
+
+    @property
+    def actuation_guards(self) -> tuple[Guard, ...]:
+        """The denominator of the input equations; a drop of rank B is named first."""
+        forms, _ = self._actuation
+        return self._solvable(forms, self.mechanics.inputs, Status.ACTUATION_RANK)
+
+    def _solvable(self, forms: InputEquations, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
+        return solvable(self.mechanics, self.generic, self.space, forms, columns, status)
+
+    def _solve_inputs(self, force: Vector) -> Vector:
+        forms, restriction = self._actuation
+        return forms.solve(restriction(force))
+
+    def _columns(self, solve: Sequence[Vector]) -> Matrix:
+        return transpose(tuple(solve), len(solve[0])) if solve else ()
+
+    @cached_property
+    def control_pseudoinverse(self) -> Matrix:
+        """M~^+ (m x n): the input equations solved for unit forces."""
+        return self._columns([self._solve_inputs(axis) for axis in identity(self.graph, self.n)])
+
+    def _projected_square(self, a: Matrix) -> Matrix:
+        n, projector = self.n, self.space.projector
+        product = matmul(self.graph, matmul(self.graph, projector, a, n), projector, n)
+        return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(n)) for i in range(n))
+
+    def projector_dot(self, velocity: Vector) -> Matrix:
+        """N_B_dot = -X - X^T with X = B^+ B_dot N_B (Remark 9)."""
+        graph, n = self.graph, self.n
+        if self.r == 0:
+            return scale(identity(graph, n), graph.zero)
+        rates = matmul(graph, self.mechanics.constraint_jacobian_dot(velocity), self.space.projector, n)
+        x = matmul(graph, self.space.pseudoinverse, rates, n)
+        return tuple(tuple(-(x[min(i, j)][max(i, j)] + x[max(i, j)][min(i, j)]) for j in range(n)) for i in range(n))
+
+    # projections of Remark 9 -----------------------------------------------------------------------------------------
+
+    def admissible_acceleration(self) -> Vector:
+        """N q_ddot + N_dot v with v = N q_dot: on the manifold N_dot v = -B^+ B_dot v."""
+        projected = self.space.project(self.mechanics.qdd)
+        if self.r == 0:
+            return projected
+        bias = self.mechanics.constraint_acceleration_bias(self.admissible)
+        return subtract_vectors(projected, self.space.lift(bias))
+
+    def projected_configuration(self) -> Vector:
+        """Two Newton steps q <- q - B_g^+ g with the geometric rows."""
+        q = self.mechanics.q
+        step = self._newton_step
+        first = tuple(a - b for a, b in zip(q, step, strict=True))
+        again = substitute(self.graph, step, dict(zip(q, first, strict=True)))
+        return tuple(a - b for a, b in zip(first, again, strict=True))
+
+    @cached_property
+    def _newton_space(self) -> NullSpace:
+        rows = self.mechanics.geometric_jacobian
+        if isinstance(self.space, HouseholderSpace):
+            return reflected(self.graph, rows, self.n, self.generic.geometric_rank)
+        return MinorSpace(self.graph, rows, self.n, self.generic.geometric_rank)
+
+    @cached_property
+    def _newton_step(self) -> Vector:
+        if not self.mechanics.geometric_jacobian:
+            return (self.graph.zero,) * self.n
+        return self._newton_space.lift(self.mechanics.constraint_residual)
+
+    @property
+    def newton_guards(self) -> tuple[Guard, ...]:
+        """Where the geometric rows lose rank, at the given and at the improved configuration."""
+        if not self.mechanics.geometric_jacobian:
+            return ()
+        q = self.mechanics.q
+        moved = {a: a - b for a, b in zip(q, self._newton_step, strict=True)}
+        guards = self._newton_space.guards
+        return (*guards, *(self._moved(guard, moved) for guard in guards))
+
+    def _moved(self, guard: Guard, replacements: Mapping[Scalar, Scalar]) -> Guard:
+        scale = magnitude(self.graph, [guard.denominator])[0] if guard.scale is None else guard.scale
+        denominator, scale = substitute(self.graph, [guard.denominator, scale], replacements)
+        return replace(guard, denominator=denominator, scale=scale)
+
+    # projected equations (30) ----------------------------------------------------------------------------------------
+
+    def projected_mass_matrix(self) -> Matrix:
+        """G~ = N G N."""
+        return self._projected_square(self.mechanics.mass_matrix)
+
+    def projected_coriolis_matrix(self) -> Matrix:
+        """C~ = N (C N + G N_dot), both along N q_dot."""
+        graph, n, space = self.graph, self.n, self.space
+        coriolis = matmul(graph, self.mechanics.coriolis_matrix(self.admissible), space.projector, n)
+        inertial = matmul(graph, self.mechanics.mass_matrix, self.projector_dot(self.admissible), n)
+        return matmul(graph, space.projector, add(coriolis, inertial), n)
+
+    # weighted projection (17), (19) ----------------------------------------------------------------------------------
+
+    @cached_property
+    def weighted_projector(self) -> Matrix:
+        """N_{B,G} = K G."""
+        if self.r == 0:
+            return identity(self.graph, self.n)
+        return self._columns([self.inertia.solve(row) for row in self.mechanics.mass_matrix])
+
+    @cached_property
+    def weighted_pseudoinverse(self) -> Matrix:
+        """B_G^+, by the minors of B, or as (I - N_{B,G}) B^+."""
+        if isinstance(self.inertia, MinorMotion):
+            return self.inertia.pseudoinverse
+        complement = subtract(identity(self.graph, self.n), self.weighted_projector)
+        return matmul(self.graph, complement, self.space.pseudoinverse, self.r)
+
+    # minimal coordinates (8), (9) ------------------------------------------------------------------------------------
+
+    @cached_property
+    def _independent(self) -> tuple[int, ...]:
+        names = [c.name for c in self.mechanics.model.coordinates]
+        return tuple(names.index(name) for name in self.mechanics.model.independent_velocities)
+
+    @cached_property
+    def _partition(self) -> tuple[InputEquations, Restriction]:
+        axes = identity(self.graph, self.n)
+        family = [axes[i] for i in self._independent]
+        forms, restriction = self.space.actuation(family, len(self._independent))
+        return forms.cancelled(self.mechanics.factoring.cancelled), restriction
+
+    @cached_property
+    def complement(self) -> Matrix:
+        """F (8), n x delta: B F = 0, the identity in the independent rows; (M~^+)^T for an M that selects those."""
+        forms, restriction = self._partition
+        rows = tuple(forms.solve(restriction(axis)) for axis in identity(self.graph, self.n))
+        chosen = {i: k for k, i in enumerate(self._independent)}
+        units = identity(self.graph, len(self._independent))
+        return tuple(units[chosen[i]] if i in chosen else row for i, row in enumerate(rows))
+
+    @property
+    def partition_guards(self) -> tuple[Guard, ...]:
+        """The parametrisation singularity of the chosen independent velocities; reported as a drop of rank."""
+        forms, _ = self._partition
+        axes = identity(self.graph, self.n)
+        return self._solvable(forms, [axes[i] for i in self._independent], Status.CONSTRAINT_RANK)
+
+    def complement_dot(self, velocity: Vector) -> Matrix:
+        """F_dot = -(I - F E) B^+ B_dot F, with E selecting the independent rows."""
+        graph, n, delta = self.graph, self.n, self.generic.delta
+        if self.r == 0:
+            return scale(self.complement, graph.zero)
+        rates = matmul(graph, self.mechanics.constraint_jacobian_dot(velocity), self.complement, delta)
+        lifted = matmul(graph, self.space.pseudoinverse, rates, delta)
+        selected = tuple(lifted[i] for i in self._independent)
+        correction = matmul(graph, self.complement, selected, delta)
+        dependent = subtract(correction, lifted)
+        zeros = (graph.zero,) * delta
+        return tuple(zeros if i in self._independent else dependent[i] for i in range(n))
+
+    def minimal(self, a: Matrix) -> Matrix:
+        """F^T A F for symmetric A."""
+        graph, delta = self.graph, self.generic.delta
+        product = matmul(graph, transpose(self.complement, delta), matmul(graph, a, self.complement, delta), delta)
+        return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(delta)) for i in range(delta))
+
+    def minimal_vector(self, x: Vector) -> Vector:
+        """F^T x."""
+        return matvec(self.graph, transpose(self.complement, self.generic.delta), x)
+
+    def minimal_coriolis_matrix(self) -> Matrix:
+        """C- = F^T (C F + G F_dot), along q_dot as given."""
+        graph, delta, qd = self.graph, self.generic.delta, self.mechanics.qd
+        coriolis = matmul(graph, self.mechanics.coriolis_matrix(qd), self.complement, delta)
+        inertial = matmul(graph, self.mechanics.mass_matrix, self.complement_dot(qd), delta)
+        return matmul(graph, transpose(self.complement, delta), add(coriolis, inertial), delta)
+
+    # inverse dynamics (27) and Remark 10 -----------------------------------------------------------------------------
+
+    @cached_property
+    def inverse_dynamics(self) -> Vector:
+        """u = (W^T M)^+ W^T tau, the minimum-norm least-squares inputs, or as the model's `allocation` says."""
+        if self._allocation is not None:
+            return self._allocation.solve(self.mechanics.balance)
+        return self._solve_inputs(self.mechanics.balance)
+
+    @cached_property
+    def _allocation(self) -> InputAllocation | None:
+        allocation = self.mechanics.model.allocation
+        if allocation is None:
+            return None
+        return InputAllocation(self.mechanics, allocation, self.space, self.generic.alpha)
+
+    @property
+    def inverse_dynamics_guards(self) -> tuple[Guard, ...]:
+        """The denominator of the input equations, with the weights of the inputs."""
+        if self._allocation is None:
+            return self.actuation_guards
+        return self._solvable(self._allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
+
+    def inverse_dynamics_residual(self) -> Vector:
+        """N_B (tau - M u); nothing is left where the system is fully actuated."""
+        if self.generic.full_actuation:
+            return (self.graph.zero,) * self.n
+        least = self._solve_inputs(self.mechanics.balance)
+        return residual(self.space, self.mechanics.balance, self.mechanics.inputs, least)
+
+    @cached_property
+    def actuator_basis(self) -> Matrix:
+        """W = (M~^+)^T, n x m."""
+        return transpose(self.control_pseudoinverse, self.n)
+
+    def actuator_velocity(self) -> Vector:
+        """nu = M^T q_dot."""
+        return tuple(dot(self.graph, column, self.mechanics.qd) for column in self.mechanics.inputs)
+
+    def actuator_mass_matrix(self) -> Matrix:
+        """W^T G W."""
+        graph, m, w = self.graph, self.m, self.actuator_basis
+        half = matmul(graph, self.mechanics.mass_matrix, w, m)
+        product = matmul(graph, self.control_pseudoinverse, half, m)
+        return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(m)) for i in range(m))
+
+    def actuator_bias(self) -> Vector:
+        """W^T (G W_dot nu + C v + Q - Q_a) at v = W nu, with W differentiated along v."""
+        graph, mechanics, w = self.graph, self.mechanics, self.actuator_basis
+        nu = self.actuator_velocity()
+        v = matvec(graph, w, nu)
+        turning = derivative_along(graph, flatten(w), dict(zip(mechanics.q, v, strict=True)))
+        rate = tuple(dot(graph, turning[i * self.m : (i + 1) * self.m], nu) for i in range(self.n))
+        here = dict(zip((*mechanics.qd, *mechanics.qdd), (*v, *rate), strict=True))
+        force = substitute(graph, mechanics.balance, here)
+        return matvec(graph, self.control_pseudoinverse, tuple(force))
+
+    # forward dynamics (15) -------------------------------------------------------------------------------------------
+
+    @cached_property
+    def forward_dynamics(self) -> Vector:
+        """q_ddot of G q_ddot + B^T lambda = f, B q_ddot = -B_dot q_dot."""
+        return self.acceleration.accelerations
+
+    def multipliers(self) -> Vector:
+        """lambda of the same system, the one of least norm where rows depend on each other."""
+        return self.reaction.multipliers
+
+    # diagnostics -----------------------------------------------------------------------------------------------------
+
+    def energy(self) -> Vector:
+        """[T, U]."""
+        return self.mechanics.kinetic_energy, self.mechanics.potential_energy
+
+    def singularity(self) -> Vector:
+        """[det(B B^T) / prod |b_k|^2, e(M~)/e(M)]: how far both ranks are from dropping."""
+        return rank_measures(self.mechanics, self.generic, self.space)

@@ -1,0 +1,287 @@
+"""q_ddot and lambda of bodies by articulated inertias: reflections in the metric of G^-1, and G itself never formed.
+
+The forces of the constraints enter as wrenches on the frames that their points belong to, so that the columns of B^T
+are brought inwards joint by joint, too; so do weights and what rates take of the bodies.  Operations grow with the
+number of frames, and errors stay those of a chain of turns; dense factors lose what cancels between entries of G that
+were rounded one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
+from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.refinement import Solution, refined
+from symgen.mechanics.articulated_inertias import ArticulatedFactor, Six
+from symgen.mechanics.bodies import Vector3
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.newton_euler import frame_motions, inertial_wrenches
+from symgen.mechanics.system import System
+from symgen.methods.forward_dynamics.held_lengths import HeldLengths, LengthsApart, held_lengths
+from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points, wrenches
+from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.model.expressions.expression import Number
+from symgen.model.kinematics.components import components_in, definitions_before_frames
+from symgen.model.kinematics.triples import applied, transposed, triple
+from symgen.model.kinematics.walk import Kinematics, Twist
+from symgen.model.mechanism import WORLD, component
+from symgen.model.model import Model
+from symgen.symbolic.calculus import gradient
+from symgen.symbolic.matrix import Vector, dot
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.translate import translate
+from symgen.symbolic.traverse import substitute
+from symgen.validity.local_inertias import definite_along_motion, definite_by_frames
+
+
+class _Loose(Kinematics[Scalar, Scalar]):
+    """Every frame moves by itself: its turning rates and the velocity of its origin are symbols."""
+
+    def __init__(self, mechanics: System) -> None:
+        super().__init__(mechanics.model.mechanism, mechanics.bodies.scalars)
+        self._graph: Graph = mechanics.graph
+
+    def symbols(self, name: str) -> Six:
+        """Turning rates and velocity in the frame's axes."""
+        return tuple(self._graph.stand_in(f"{name} {kind}") for kind in ("wx", "wy", "wz", "vx", "vy", "vz"))
+
+    def _own_twist(self, name: str) -> Twist[Scalar]:
+        a, b, c, x, y, z = self.symbols(name)
+        return Twist((a, b, c), (x, y, z))
+
+
+class _Loops(Problem):
+    """Loops in space are accelerated as their points are; each has its rows along the axes of the frame beside it."""
+
+    def __init__(
+        self, mechanics: System, guards: tuple[Guard, ...], loops: Sequence[tuple[LoopPoint, str]]
+    ) -> None:
+        super().__init__(mechanics, guards)
+        self._loops = loops
+
+    @cached_property
+    def bias(self) -> Vector:
+        return self.bias_at((self.graph.zero,) * self.n)
+
+    def bias_at(self, q_ddot: Vector) -> Vector:
+        """B q_ddot + a."""
+        mechanics = self._mechanics
+        weight = mechanics.bodies.gravity
+        motions = frame_motions(mechanics.bodies, mechanics.qd, q_ddot, weight) if self._loops else {}
+        held = [i for loop, _ in self._loops if motions.keys() >= set(loop.frames) for i in loop.rows.values()]
+        if len(held) < self.r:
+            given = zip(self.rows, mechanics.constraint_acceleration_bias(mechanics.qd), strict=True)
+            return self._turned(tuple(a + dot(self.graph, row, q_ddot) for row, a in given), inward=True)
+        # nothing else is worked out: the first way to a function is the one that stands in the graph
+        found = dict[int, Scalar]()
+        for loop, axes in self._loops:
+            along = acceleration(mechanics, motions, loop, axes)
+            found |= {i: along[axis] for axis, i in loop.rows.items()}
+        return tuple(found[i] for i in range(self.r))
+
+    def of_the_model(self, multipliers: Vector) -> Vector:
+        """Multipliers of the model's rows from those of the rows along the loops' axes."""
+        return self._turned(multipliers, inward=False)
+
+    def _turned(self, values: Vector, inward: bool) -> Vector:
+        found = list(values)
+        for loop, frame in self._loops:
+            if frame != WORLD:
+                axes = self._mechanics.bodies.kinematics.axes(frame)
+                three = triple([values[i] for i in loop.rows.values()])
+                for i, x in zip(loop.rows.values(), applied(transposed(axes) if inward else axes, three), strict=True):
+                    found[i] = x
+        return tuple(found)
+
+
+class BodyEquations:
+    """G q_ddot + B^T lambda = f, B q_ddot = -a of bodies, solved from body to body.
+
+    With `turned` the rows of loops are taken along the axes that leave most entries out; `guards` are the denominators.
+    """
+
+    def __init__(
+        self, mechanics: System, factor: ArticulatedFactor, held: HeldLengths, rank: int, turned: bool
+    ) -> None:
+        self._mechanics, self._factor, graph = mechanics, factor, mechanics.graph
+        rows = mechanics.constraint_jacobian
+        others = held.others(len(rows))
+        tested = [rows[i] for i in others] if held.apart(rows) else rows
+        few = 0 < len(others) <= LONGEST_PRODUCT and rank == len(rows)
+        guards = reflected(graph, tuple(tested), mechanics.n, len(tested)).guards if few else ()
+        self._forces = _forces(mechanics)
+        columns = [factor.lowered(direct, loads) for direct, loads in self._forces]
+        loops = list[tuple[LoopPoint, str]]()
+        for loop in loop_points(mechanics) if turned else ():
+            places = list(loop.rows.values())
+            frame, own = _along_best_axes(mechanics, factor, loop, [columns[i] for i in places])
+            loads = wrenches(mechanics, loop, frame) if frame != WORLD else [self._forces[i][1] for i in places]
+            for i, column, load in zip(places, own, loads, strict=True):
+                columns[i], self._forces[i] = column, (self._forces[i][0], load)
+            loops.append((loop, frame))
+        self._problem = _Loops(mechanics, guards, loops)
+        self._completed = held.multipliers(mechanics)
+        self._apart = LengthsApart(self._problem, factor, columns, held, rank)
+        self.guards = self._apart.guards
+
+    def motion(self, by_bodies: bool = False) -> MotionMethod:
+        """q_ddot and lambda; `by_bodies` they are refined by Newton and Euler's equations of the bodies."""
+        mechanics, problem = self._mechanics, self._problem
+        none = (mechanics.graph.zero,) * mechanics.n
+        given = mechanics.given_force
+        force = self._factor.lowered(given, self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity))
+        if not by_bodies:
+            found = self._apart.solve(force, problem.bias)
+        else:
+
+            def left_over(q_ddot: Vector, multipliers: Vector) -> Solution:
+                loads = self._inertial_forces(mechanics.qd, q_ddot, mechanics.bodies.gravity)
+                return self._less(given, loads, q_ddot, multipliers), problem.bias_at(q_ddot)
+
+            found = self._refined(force, problem.bias, left_over)
+        return MotionMethod(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
+
+    def answered(self, asked: Vector) -> Vector:
+        """x with G x + B^T lambda = 0, B x = `asked`, of rows that are not `turned`."""
+        graph = self._mechanics.graph
+        still: Vector3 = (graph.zero,) * 3
+        none = (graph.zero,) * self._mechanics.n
+        bias = tuple(-x for x in asked)
+
+        def left_over(x: Vector, multipliers: Vector) -> Solution:
+            lacking = (a + dot(graph, row, x) for a, row in zip(bias, self._problem.rows, strict=True))
+            return self._less(none, self._inertial_forces(none, x, still), x, multipliers), tuple(lacking)
+
+        return self._refined(none, bias, left_over)[0]
+
+    def _refined(self, force: Vector, bias: Vector, left_over: Callable[[Vector, Vector], Solution]) -> Solution:
+        def solved(force: Vector, bias: Vector) -> Solution:
+            return self._apart.solve(force, bias, refining=False)
+
+        return refined(self._mechanics.graph, solved(force, bias), left_over, solved)
+
+    def _less(self, given: Vector, loads: dict[str, Six], q_ddot: Vector, multipliers: Vector) -> Vector:
+        """L^-1 of given forces and loads less those of rotors and rows.
+
+        Summed body by body each rounding is that of a mass, a length or a turn.
+        """
+        rotors = self._factor.rotors
+        direct = [f - rotors[j] * q_ddot[j] if j in rotors else f for j, f in enumerate(given)]
+        for factor, (own, load) in zip(multipliers, self._forces, strict=True):
+            direct = [x - factor * y for x, y in zip(direct, own, strict=True)]
+            for name, wrench in load.items():
+                before = loads.get(name, (self._mechanics.graph.zero,) * 6)
+                loads[name] = tuple(x - factor * y for x, y in zip(before, wrench, strict=True))
+        return self._factor.lowered(direct, loads)
+
+    def _inertial_forces(self, qd: Vector, q_ddot: Vector, gravity: Vector3) -> dict[str, Six]:
+        """Weights and what bodies put on their frames for these rates and accelerations.
+
+        As a force of the coordinates each would hold what all frames further out need, which is taken off again on the
+        way inwards: in chains the difference of two numbers a hundred times larger than the torques.
+        """
+        found = inertial_wrenches(self._mechanics.bodies, qd, q_ddot, gravity)
+        return {name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in found.items()}
+
+
+def articulated(model: Model, generic: Genericity, by_bodies: bool = False) -> tuple[System, MotionMethod] | None:
+    """The motion and the system it was derived on, a graph of its own; `by_bodies` it is refined by their equations.
+
+    None where T is not that of bodies alone, a coordinate moves several frames or none, or G is not definite.
+    """
+    found = body_equations(model, generic, turned=generic.rank == generic.r)
+    return None if found is None else (found[0], found[1].motion(by_bodies))
+
+
+def body_equations(model: Model, generic: Genericity, turned: bool) -> tuple[System, BodyEquations] | None:
+    """The equations of a system of bodies on a graph of their own; None where it lacks that form."""
+    energy = model.kinetic_energy
+    if not model.mechanism.has_mass or not isinstance(energy, Number) or energy.value != 0:
+        return None
+    mechanics = System(model)
+    try:
+        factor = ArticulatedFactor(mechanics.bodies)
+    except ValueError:
+        return None
+    rows = mechanics.constraint_jacobian
+    held = held_lengths(factor.quaternions, rows, mechanics.graph)
+    if held is None or (generic.rank < generic.r and not held.apart(rows)):
+        return None
+    # where no row may hold what has no mass, pivots vanish only where the motion is not determined
+    definite = definite_by_frames if held.others(len(rows)) else definite_along_motion
+    if not definite(mechanics, factor):
+        return None
+    return mechanics, BodyEquations(mechanics, factor, held, generic.rank, turned)
+
+
+def lacking(model: Model, generic: Genericity) -> str:
+    """Why a system of bodies has no articulated form, and what would give it one."""
+    energy = model.kinetic_energy
+    if not isinstance(energy, Number) or energy.value != 0:
+        return "part of the kinetic energy is written out: describe it by bodies"
+    if generic.rank < generic.r:
+        return "constraints depend on each other: leave out those that others imply"
+    try:
+        ArticulatedFactor(System(model).bodies)
+    except ValueError:
+        return "a coordinate moves several frames, or none: give each joint a coordinate of its own"
+    return "the mass matrix is not shown to be positive definite: give masses and inertias a `range` above 0"
+
+
+def _along_best_axes(
+    mechanics: System, factor: ArticulatedFactor, loop: LoopPoint, columns: list[Vector]
+) -> tuple[str, list[Vector]]:
+    """The frame along whose axes a loop's columns hold least, and these; they are given along the axes of the world."""
+    none = (mechanics.graph.zero,) * mechanics.n
+    found = {WORLD: columns}
+    if len(loop.rows) == 3:
+        for frame in loop.frames:
+            found[frame] = [factor.lowered(none, loads) for loads in wrenches(mechanics, loop, frame)]
+    return min(found.items(), key=lambda one: sum(not entry.is_zero for column in one[1] for entry in column))
+
+
+def _forces(mechanics: System) -> list[tuple[Vector, Mapping[str, Six]]]:
+    """For each row of B what it does to the coordinates directly, and the wrenches it puts on frames."""
+    graph, model = mechanics.graph, mechanics.model
+    loose = _Loose(mechanics)
+    stand_ins = {name: graph.stand_in(f"component {name}") for name in components_in(model)}
+    names = _names(mechanics, stand_ins)
+    values = {symbol: mechanics.names[name] for name, symbol in stand_ins.items()}
+    rates = {name: loose.component_rate(component(name)) for name in stand_ins}
+    rows = [row for row in model.constraints if row.kind == "geometric"]
+    rows += [row for row in model.constraints if row.kind == "nonholonomic"]
+    found: list[tuple[Vector, Mapping[str, Six]]] = []
+    for row in rows:
+        expression = translate(graph, row.expression, names)
+        used = [name for name in stand_ins if row.kind == "geometric" or component(name).is_rate]
+        slopes = gradient(graph, expression, [stand_ins[name] for name in used])
+        own = gradient(graph, expression, mechanics.q if row.kind == "geometric" else mechanics.qd)
+        slopes, own = substitute(graph, slopes, values), substitute(graph, own, values)
+        speed = graph.sum(x * rates[name] for x, name in zip(slopes, used, strict=True) if not x.is_zero)
+        direct = tuple(a + b for a, b in zip(own, gradient(graph, speed, mechanics.qd), strict=True))
+        wrenches = {}
+        for frame in model.mechanism.frames:
+            wrench = tuple(gradient(graph, speed, loose.symbols(frame.name)))
+            if not all(entry.is_zero for entry in wrench):
+                wrenches[frame.name] = wrench
+        found.append((direct, wrenches))
+    return found
+
+
+def _names(mechanics: System, stand_ins: Mapping[str, Scalar]) -> dict[str, Scalar]:
+    """The names of formulas with symbols in place of components of points and frames."""
+    graph, model = mechanics.graph, mechanics.model
+    names = {
+        **{c.name: node for c, node in zip(model.coordinates, mechanics.q, strict=True)},
+        **{c.rate: node for c, node in zip(model.coordinates, mechanics.qd, strict=True)},
+        **{p.name: node for p, node in zip(model.parameters, mechanics.parameters, strict=True)},
+        **{d.name: mechanics.names[d.name] for d in definitions_before_frames(model)},
+        **stand_ins,
+    }
+    for definition in model.definitions:
+        if definition.name not in names:
+            names[definition.name] = translate(graph, definition.value, names)
+    return names

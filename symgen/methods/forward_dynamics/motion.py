@@ -1,0 +1,73 @@
+"""The equations of motion as one linear system, and what a form of its solution consists of.
+
+G q_ddot + B^T lambda = f and B q_ddot = -a, with f = M u - C q_dot - Q + Q_a and a = B_dot q_dot (3), (1).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from symgen.linear_algebra.guards import Guard
+from symgen.mechanics.system import System
+from symgen.records import dataclass
+from symgen.symbolic.angles import share_angles
+from symgen.symbolic.identity import same_values
+from symgen.symbolic.matrix import Matrix, Vector
+from symgen.symbolic.polynomial import Multiplier, refactored
+from symgen.symbolic.scalar import Graph, Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class MotionMethod:
+    """q_ddot (n) and lambda (r) with the denominators they depend on, by the form of this name."""
+
+    accelerations: Vector
+    multipliers: Vector
+    guards: tuple[Guard, ...]
+    name: str = ""
+
+
+class Problem:
+    """A system's equations of motion; `guards` tell where B loses rank."""
+
+    def __init__(self, mechanics: System, guards: tuple[Guard, ...]) -> None:
+        self.graph: Graph = mechanics.graph
+        self.guards = guards
+        self.n, self.r = mechanics.n, mechanics.r
+        self._mechanics = mechanics
+        self._multipliers: dict[frozenset[Scalar], Multiplier] = {}
+
+    @property
+    def mass_matrix(self) -> Matrix:
+        """G (n x n)."""
+        return self._mechanics.mass_matrix
+
+    @property
+    def rows(self) -> Matrix:
+        """B (r x n)."""
+        return self._mechanics.constraint_jacobian
+
+    @cached_property
+    def force(self) -> Vector:
+        """f (n)."""
+        return self._mechanics.applied_balance
+
+    @cached_property
+    def bias(self) -> Vector:
+        """a (r)."""
+        return self._mechanics.constraint_acceleration_bias(self._mechanics.qd) if self.r else ()
+
+    def multiplied_out(self, values: list[Scalar], kept: frozenset[Scalar] = frozenset()) -> list[Scalar]:
+        """The values with sums of parameters multiplied out too, where that is not too long; sums in `kept` stay whole.
+
+        Inertias that occur in several entries of G (an angle relative to a turning body) then cancel exactly.  What
+        becomes small where a rank drops has to be kept: the square of a small difference, multiplied out, is the
+        difference of numbers that are not small.
+        """
+        fixed = self._mechanics.factoring.fixed
+        if kept not in self._multipliers:
+            self._multipliers[kept] = Multiplier(self.graph, lambda node: node in kept)
+        shared = share_angles(self.graph, values)
+        found = refactored(self.graph, shared, self._multipliers[kept], fixed)
+        same_values("multiplying sums of parameters out", shared, found)
+        return found

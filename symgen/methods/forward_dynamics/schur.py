@@ -1,0 +1,175 @@
+"""q_ddot and lambda by elimination of the accelerations: G = L D L^T, then the constraints in the metric of G^-1.
+
+With A = L^-1 B^T the system G q_ddot + B^T lambda = f, B q_ddot = -a becomes x + A lambda = L^-1 f, A^T D^-1 x = -a
+for x = D L^T q_ddot.  `schur_qr` factorises A = V R with columns of V that are orthogonal in the metric D^-1, so that
+the squared condition number of A^T D^-1 A is never met; `schur_ldl` forms that matrix, which is shorter and loses it
+(Golub and Van Loan, Matrix Computations, 4.1 and 5.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from symgen.ir.kernel import Status
+from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
+from symgen.linear_algebra.orthogonal import PivotedGramSchmidt, WeightedGramSchmidt
+from symgen.linear_algebra.refinement import Solution, less_forces, missing, of_columns, refined
+from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.symbolic.matrix import Matrix, Vector, dot, subtract_vectors
+from symgen.symbolic.scalar import Graph, Scalar
+
+
+class Factor(Protocol):
+    """G = L D L^T with the pivots D; L may be triangular in any order of the coordinates."""
+
+    @property
+    def pivots(self) -> Sequence[Scalar]:
+        """D."""
+
+    @property
+    def guards(self) -> tuple[Guard, ...]:
+        """What must not vanish for G to be definite."""
+
+    def lowered(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L y = b."""
+
+    def raised(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L^T x = b."""
+
+
+class SchurQR:
+    """By A = V R: valid wherever G is positive definite and B has its generic `rank`, for any right-hand sides."""
+
+    def __init__(self, problem: Problem, rank: int) -> None:
+        self._graph = problem.graph
+        self._factor = OrderedCholesky(problem.graph, problem.mass_matrix)
+        columns = [self._factor.lowered(row) for row in problem.rows]
+        self._elimination = Elimination(problem, self._factor, columns, rank)
+
+    def motion(self, force: Vector, bias: Vector) -> MotionMethod:
+        """The solution of G q_ddot + B^T lambda = f, B q_ddot = -a."""
+        graph, factor, elimination, rows = self._graph, self._factor, self._elimination, self._elimination.rows
+        asked = elimination.asked(bias)
+
+        def left_over(x: Vector, multipliers: Vector) -> Solution:
+            # by L and D, because an inner entry of G has lost what it holds of light bodies; by B, because its columns
+            # may be of very different size, which L^-1 mixes
+            forces = subtract_vectors(factor.lowered(less_forces(graph, force, rows, multipliers)), x)
+            return forces, missing(graph, rows, asked, elimination.accelerations(x))
+
+        return elimination.motion(factor.lowered(force), asked, left_over)
+
+
+def schur_qr(problem: Problem, rank: int) -> MotionMethod:
+    """q_ddot and lambda of a system's own right-hand sides."""
+    return SchurQR(problem, rank).motion(problem.force, problem.bias)
+
+
+class Elimination:
+    """x + A lambda = L^-1 f, A^T D^-1 x = -a, refined once; `columns` are those of A.
+
+    `guards` are the denominators.
+    """
+
+    def __init__(self, problem: Problem, factor: Factor, columns: Sequence[Vector], rank: int) -> None:
+        graph, r = problem.graph, problem.r
+        self._graph, self._r, self._factor = graph, r, factor
+        self.weights: Vector = tuple(1 / pivot for pivot in factor.pivots)
+        self._columns = columns
+        self._orthogonal = (
+            WeightedGramSchmidt(graph, columns, self.weights)
+            if rank == r
+            else PivotedGramSchmidt(graph, columns, self.weights, rank)
+        )
+        self._all_rows = problem.rows
+        self.rows = self._orthogonal.chosen(problem.rows)
+        if r > min(rank, LONGEST_PRODUCT):
+            # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
+            self.guards: tuple[Guard, ...] = (*self._orthogonal.regularity(Status.CONSTRAINT_RANK), *factor.guards)
+        else:
+            # light bodies may leave nothing of the difference of two rows, which are far from parallel by themselves
+            metric = self._orthogonal.regularity(Status.MASS_RANK) if r > 1 else ()
+            self.guards = (*problem.guards, *factor.guards, *metric)
+
+    def asked(self, bias: Vector) -> Vector:
+        """What the rows that are solved with ask for."""
+        return self._orthogonal.asked(self._all_rows, tuple(-a for a in bias))
+
+    def accelerations(self, x: Vector) -> Vector:
+        """q_ddot of x = D L^T q_ddot."""
+        return self._factor.raised(tuple(entry * weight for entry, weight in zip(x, self.weights, strict=True)))
+
+    def motion(self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution]) -> MotionMethod:
+        """q_ddot and lambda for L^-1 f; `left_over` is what a solution leaves of the right-hand sides."""
+        x, multipliers = self._solution(force, asked, left_over)
+        return MotionMethod(self.accelerations(x), multipliers, self.guards)
+
+    def by_columns(self, force: Vector, bias: Vector, refining: bool = True) -> Solution:
+        """x and lambda for L^-1 f and a, refined by the columns of A."""
+        asked, columns = self.asked(bias), self._orthogonal.chosen(self._columns)
+        left_over = of_columns(self._graph, columns, self.weights, force, asked)
+        return self._solution(force, asked, left_over if refining else None)
+
+    def _solution(
+        self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution] | None
+    ) -> Solution:
+        solution = self._orthogonal.solve(force, asked)
+        if self._r and left_over is not None:
+            solution = refined(self._graph, solution, left_over, self._orthogonal.solve)
+        x, multipliers = solution
+        if isinstance(self._orthogonal, PivotedGramSchmidt):
+            multipliers = self._orthogonal.of_all(self._all_rows, multipliers)
+        return x, multipliers
+
+
+class OrderedCholesky:
+    """G = L D L^T from the coordinates that carry least to those that carry most: outer links before inner ones.
+
+    What an inner coordinate holds of the outer ones is taken off again as it stands, and exactly where nothing else is
+    in between; the other way round the pivot of a light link is a difference of heavy ones.
+    """
+
+    def __init__(self, graph: Graph, mass_matrix: Matrix) -> None:
+        n = len(mass_matrix)
+        self._order = sorted(range(n), key=lambda i: (mass_matrix[i][i].size, -i))
+        turned = tuple(tuple(mass_matrix[i][j] for j in self._order) for i in self._order)
+        self._factor = Cholesky(graph, turned, diagonal_sizes(graph, turned))
+        self.pivots: Sequence[Scalar] = self._factor.pivots
+        self.guards = self._factor.guards
+
+    def lowered(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L y = b."""
+        return self._factor.lowered([b[i] for i in self._order])
+
+    def raised(self, b: Sequence[Scalar]) -> Vector:
+        """The solution of L^T x = b."""
+        found = dict(zip(self._order, self._factor.raised(b), strict=True))
+        return tuple(found[i] for i in range(len(self._order)))
+
+
+def schur_ldl(problem: Problem) -> MotionMethod:
+    """By L D L^T of A^T D^-1 A = B G^-1 B^T: shorter, with an error that grows with the square of B's condition."""
+    graph = problem.graph
+    factor = Cholesky(graph, problem.mass_matrix, diagonal_sizes(graph, problem.mass_matrix))
+    weights = tuple(1 / pivot for pivot in factor.pivots)
+    columns = [factor.lowered(row) for row in problem.rows]
+    weighted = [tuple(x * w for x, w in zip(column, weights, strict=True)) for column in columns]
+    upper = {
+        (i, j): dot(graph, weighted[i], columns[j]) for i in range(len(columns)) for j in range(i, len(columns))
+    }
+    schur: Matrix = tuple(
+        tuple(upper[min(i, j), max(i, j)] for j in range(len(columns))) for i in range(len(columns))
+    )
+    inner = Cholesky(graph, schur, [schur[i][i] for i in range(len(schur))])
+    force = factor.lowered(problem.force)
+    right = [dot(graph, column, force) + a for column, a in zip(weighted, problem.bias, strict=True)]
+    multipliers = inner.solve(right)
+    rest = [
+        f - graph.sum(column[i] * x for column, x in zip(columns, multipliers, strict=True))
+        for i, f in enumerate(force)
+    ]
+    accelerations = factor.raised(tuple(entry * weight for entry, weight in zip(rest, weights, strict=True)))
+    return MotionMethod(accelerations, multipliers, (*problem.guards, *factor.guards))

@@ -1,0 +1,78 @@
+"""B_G^+ (17) and N_{B,G} (19) as accelerations: what a row asks for, or a force causes, solved for and refined.
+
+The columns of B_G^+ are the solutions of G x + B^T lambda = 0, B x = e_k; those of N_{B,G} the solutions of
+G x + B^T lambda = G e_j, B x = 0.  I - K G and K G, by any K, lose digits that these keep.
+"""
+
+from __future__ import annotations
+
+from symgen.linear_algebra.guards import Guard
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.system import System
+from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
+from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.schur import SchurQR
+from symgen.methods.selection import Moved
+from symgen.symbolic.matrix import Matrix, identity, matvec, transpose
+from symgen.symbolic.scalar import Scalar
+from symgen.validity.definiteness import positive_definite
+
+PSEUDOINVERSE, PROJECTOR = "weighted_pseudoinverse", "weighted_nullspace_projector"
+
+
+def weighted_projection(
+    mechanics: System, generic: Genericity, quantity: str, before: tuple[Guard, ...]
+) -> tuple[Matrix, tuple[Guard, ...]] | None:
+    """One of both quantities on the graph of `mechanics` with its guards; None where G is not positive definite.
+
+    `before` tell where B loses rank.  G is factorised in absolute angles, as for the form of the same name of q_ddot.
+    """
+    if not mechanics.r or not positive_definite(mechanics):
+        return None
+    changed = in_absolute_angles(mechanics.model)
+    there = changed or mechanics.apart()
+    solver = SchurQR(Problem(there, ()), generic.rank)
+    found = [motion_brought_back(mechanics.graph, changed, motion) for motion in _motions(there, solver, quantity)]
+    guards = tuple(dict.fromkeys((*before, *(guard for motion in found for guard in motion.guards))))
+    there.graph.dissolve()
+    return transpose(tuple(motion.accelerations for motion in found), mechanics.n), guards
+
+
+def projection_of_bodies(
+    mechanics: System, generic: Genericity, quantity: str, before: tuple[Guard, ...]
+) -> tuple[Matrix, tuple[Guard, ...]] | None:
+    """The same from body to body, refined by their equations; None for a system without articulated inertias.
+
+    A column of N_{B,G} is e_j less what B e_j asks for.
+    """
+    from symgen.methods.forward_dynamics.articulated import body_equations  # models given by energies have none
+
+    found = body_equations(mechanics.model, generic, turned=False) if mechanics.r else None
+    if found is None:
+        return None
+    there, equations = found
+    n, r = there.n, there.r
+    if quantity == PSEUDOINVERSE:
+        columns = [equations.answered(unit) for unit in identity(there.graph, r)]
+    else:
+        rows = transpose(there.constraint_jacobian, n)
+        parts = [equations.answered(tuple(-x for x in column)) for column in rows]
+        units = identity(there.graph, n)
+        columns = [tuple(x + y for x, y in zip(*pair, strict=True)) for pair in zip(units, parts, strict=True)]
+    moved = Moved(mechanics.graph)
+    guards = tuple(dict.fromkeys((*before, *moved.guards(equations.guards))))
+    brought = tuple(map(moved.scalars, columns))
+    there.graph.dissolve()
+    return transpose(brought, n), guards
+
+
+def _motions(mechanics: System, solver: SchurQR, quantity: str) -> list[MotionMethod]:
+    """The solution for each right-hand side."""
+    graph, n, r = mechanics.graph, mechanics.n, mechanics.r
+    nothing: tuple[tuple[Scalar, ...], tuple[Scalar, ...]] = (graph.zero,) * n, (graph.zero,) * r
+    if quantity == PSEUDOINVERSE:
+        return [solver.motion(nothing[0], tuple(-x for x in unit)) for unit in identity(graph, r)]
+    units = identity(graph, n)
+    if mechanics.change is not None:
+        units = tuple(map(mechanics.change.absolute, units))
+    return [solver.motion(matvec(graph, mechanics.mass_matrix, unit), nothing[1]) for unit in units]

@@ -1,0 +1,161 @@
+"""The null-space form: a closed basis W of ker B, then u = (W^T M)^+ W^T tau with delta x delta determinants.
+
+B q_dot = 0 is first reduced by steps that cannot fail (`rates`).  The small rest falls into components that share no
+rate.  Where one direction is left in a component, it is the cross product of its rows; where more are, some rates have
+to be solved for by Cramer's rule, and the basis fails where their determinant vanishes although the rest keeps its
+rank: that determinant is one of the form's pivots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from itertools import combinations, islice, product
+
+from symgen.ir.kernel import Status
+from symgen.linear_algebra.blocks import components
+from symgen.linear_algebra.exterior import ActuationForms, RowForms, cross_product, small_family
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.null_spaces import MinorSpace
+from symgen.methods.form import Method, form
+from symgen.methods.inverse_dynamics.rates import Rates, reduced_rates
+from symgen.methods.system import MethodInput
+from symgen.records import dataclass
+from symgen.symbolic.matrix import Matrix, Vector, identity, matmul, transpose
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import cost
+
+# Beyond this size the determinants of the rest cost more than reflections.
+LARGEST_REST = 4
+MOST_CHOICES = 6
+
+
+@dataclass(frozen=True, slots=True)
+class _Basis:
+    """W (n x delta) and the determinants that must not vanish for its columns to be independent."""
+
+    columns: Matrix
+    pivots: Vector
+    parts: tuple[Matrix, ...]  # of the rest, each with the rank of its rows where B has full rank
+
+
+@dataclass(frozen=True, slots=True)
+class _Kernel:
+    """Null vectors of the rest, and the determinants that make them independent."""
+
+    vectors: Matrix
+    pivots: Vector
+
+
+def nullspace_form(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Method | str:
+    """The form along the first choice of rates whose determinant is `allowed`, or along the first of all."""
+    reason = system.driven or system.regular
+    if reason is not None:
+        return reason
+    graph, mechanics, generic = system.mechanics.graph, system.mechanics, system.generic
+    choices = list(islice(_bases(system), MOST_CHOICES))
+    if not choices:
+        return f"more than {LARGEST_REST} constraint rows are left that no safe step solves"
+    basis = next((choice for choice in choices if all(map(allowed, choice.pivots))), choices[0])
+    w = transpose(basis.columns, generic.delta)
+    inputs = transpose(matmul(graph, w, mechanics.control_matrix, generic.m), generic.m)
+    force = tuple(row[0] for row in matmul(graph, w, tuple((f,) for f in mechanics.balance), 1))
+    regular = tuple(guard for part in basis.parts for guard in MinorSpace(graph, part, len(part[0]), len(part)).guards)
+    u = [graph.zero] * generic.m
+    guards: list[Guard] = []
+    for directions, acting in _decoupled(inputs, system):
+        columns = tuple(tuple(inputs[k][i] for i in directions) for k in acting)
+        degree = len(directions) if generic.full_actuation else generic.alpha
+        if not small_family([[0]], columns, degree):
+            return "the determinants of the inputs are too many"
+        forms = ActuationForms(RowForms(graph, (), len(directions), 0), columns, degree)
+        power = 1 if forms.single else 2
+        guards.append(Guard(Status.ACTUATION_RANK, forms.denominator(), power, regular, directions=degree))
+        for k, value in zip(acting, forms.solve(tuple(force[i] for i in directions)), strict=True):
+            u[k] = value
+    made = form("nullspace", "inverse_dynamics", tuple(u), tuple(guards), system.given)
+    pivots = tuple(pivot for pivot in basis.pivots if pivot not in made.divisors and pivot.constant is None)
+    return replace(made, divisors=(*made.divisors, *pivots))
+
+
+def _decoupled(inputs: Matrix, system: MethodInput) -> list[tuple[Sequence[int], Sequence[int]]]:
+    """Directions and the inputs that act on them, in parts that have no input in common.
+
+    Of many independent parts the product of all determinants is small, however far each of them is from 0.
+    """
+    generic = system.generic
+    if not generic.full_actuation:
+        return [(range(generic.delta), range(generic.m))]
+    return [(part.columns, part.rows) for part in components(inputs) if part.columns]
+
+
+def _bases(system: MethodInput) -> Iterator[_Basis]:
+    graph, mechanics, delta = system.mechanics.graph, system.mechanics, system.generic.delta
+    rest = reduced_rates(graph, system.definite, mechanics.constraint_jacobian, mechanics.n)
+    parts = _parts(rest)
+    families = [_kernels(graph, rest, rows, rates) for rows, rates in parts]
+    blocks = tuple(tuple(tuple(rest.core[i][j] for j in rates) for i in rows) for rows, rates in parts if rows)
+    for choice in product(*families):
+        vectors = [vector for kernel in choice for vector in kernel.vectors]
+        if len(vectors) == delta:
+            columns = matmul(graph, rest.motion, transpose(tuple(vectors), rest.width), delta)
+            yield _Basis(columns, tuple(pivot for kernel in choice for pivot in kernel.pivots), blocks)
+
+
+def _parts(rest: Rates) -> list[tuple[list[int], list[int]]]:
+    """The connected components (rows, rates) of the rest; a rate in no row is one of its own."""
+    parts: list[tuple[list[int], list[int]]] = []
+    left = list(range(rest.width))
+    while left:
+        rates, rows = [left.pop(0)], list[int]()
+        for rate in rates:
+            for i, row in enumerate(rest.core):
+                if i not in rows and not row[rate].is_zero:
+                    rows.append(i)
+                    fresh = [j for j in left if not row[j].is_zero]
+                    rates += fresh
+                    left = [j for j in left if j not in fresh]
+        parts.append((sorted(rows), sorted(rates)))
+    return parts
+
+
+def _kernels(graph: Graph, rest: Rates, rows: list[int], rates: list[int]) -> list[_Kernel]:
+    """Bases of the null space of one component, the cheapest first."""
+    part = tuple(tuple(rest.core[i][j] for j in rates) for i in rows)
+    width = rest.width
+    if len(rows) > LARGEST_REST or len(rows) > len(rates):
+        return []
+    if not rows:
+        return [_Kernel(_spread(graph, identity(graph, len(rates)), rates, width), ())]
+    if len(rates) == len(rows):
+        return [_Kernel((), ())]
+    if len(rates) == len(rows) + 1:
+        return [_Kernel(_spread(graph, (cross_product(graph, part, len(rates)),), rates, width), ())]
+    found = [_solved(graph, part, chosen) for chosen in combinations(range(len(rates)), len(rows))]
+    kernels = [_Kernel(_spread(graph, k.vectors, rates, width), k.pivots) for k in found if k is not None]
+    return sorted(kernels, key=lambda kernel: cost(x for v in kernel.vectors for x in v).weight)[:MOST_CHOICES]
+
+
+def _spread(graph: Graph, vectors: Matrix, rates: list[int], width: int) -> Matrix:
+    """Vectors of a component as vectors of all rates."""
+    placed = [dict(zip(rates, vector, strict=True)) for vector in vectors]
+    return tuple(tuple(values.get(j, graph.zero) for j in range(width)) for values in placed)
+
+
+def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> _Kernel | None:
+    """Null vectors with the rates `chosen` solved for, and det C_S; None where that is always 0.
+
+    The vector of a free rate f is the cross product of the rows on the columns S and f.
+    """
+    width = len(core[0])
+    vectors: list[Vector] = []
+    determinant = graph.zero
+    for free in (j for j in range(width) if j not in chosen):
+        places = sorted((*chosen, free))
+        part = cross_product(graph, tuple(tuple(row[j] for j in places) for row in core), len(places))
+        determinant = part[places.index(free)]
+        if determinant.is_zero:
+            return None
+        values = dict(zip(places, part, strict=True))
+        vectors.append(tuple(values.get(j, graph.zero) for j in range(width)))
+    return _Kernel(tuple(vectors), (determinant,))

@@ -1,0 +1,203 @@
+"""Whether the mechanism exists and moves: constraints consistent, δ > 0, masses where motion is possible."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.checks.masses import check_masses
+from symgen.model.configurations.assembly import Assembly, Place
+from symgen.model.configurations.branches import Open
+from symgen.model.configurations.dense import Rows, rank
+from symgen.model.configurations.mechanics import NumericSystem
+from symgen.model.expressions.expression import Binary, Expression, Name, Power
+from symgen.model.expressions.names import counted, shown_names
+from symgen.model.expressions.walk import evaluate
+from symgen.model.mechanism import Quaternion
+from symgen.model.model import Coordinate
+
+# Configurations at which masses are looked at.
+SAMPLES = 5
+FURTHER = 40
+
+MOST_SHOWN = 6
+
+FAR = 0.5  # rad, or of half a range, that a declared start is moved by
+
+
+def check_motion(
+    mechanics: NumericSystem,
+    found: Assembly | Open | None,
+    independent: tuple[str, ...],
+    declared: Mapping[str, float],
+    spans: dict[str, Span | None],
+) -> Iterator[Mistake | Notice]:
+    """What is wrong with the mechanism as a whole; `declared` is its start, `spans` are places to point at."""
+    if not isinstance(found, Assembly):
+        yield _no_configuration(mechanics, found, spans["geometric"])
+        return
+    n, rank = len(mechanics.coordinates), found.ranks.constraints
+    if rank == n:
+        against = f"{counted(n, 'coordinate')} under {counted(rank, 'independent constraint')}"
+        yield Mistake(
+            f"the mechanism cannot move: {against} (δ = 0)",
+            "remove a constraint, or add the coordinate that is still free",
+            spans["constraints"],
+        )
+        return
+    if not found.regular:
+        rows = shown_names(mechanics.constraints[i].name for i in found.losing)
+        lost = f"there {rows} {'lose' if len(found.losing) > 1 else 'loses'} rank, and " if found.losing else ""
+        yield Mistake(
+            f"only singular configurations were found, such as {_shown(mechanics, found.places[0])}: {lost}beside "
+            f"it the constraints that hold there have another rank than {rank}",
+            "check lengths: what closes in a singular pose alone cannot move; give a regular one under "
+            "`configuration`; write rows whose gradients do not vanish where they hold, no squares",
+            spans["geometric"],
+        )
+        return
+    regular = [(list(place.q), mechanics.jacobian(place.q)) for place in found.places[:SAMPLES]]
+    places = [q for q, _ in regular] + _further(mechanics, found)
+    yield from check_masses(mechanics, places, spans["kinetic_energy"])
+    yield from _held(mechanics, found, spans["constraints"])
+    yield from _far_start(mechanics, found, declared, spans["configuration"])
+    yield from _other_branches(mechanics, found, spans["configuration"])
+    if independent:
+        yield from _check_independent(mechanics, regular, independent, n - rank, spans["independent_velocities"])
+
+
+def _further(mechanics: NumericSystem, found: Assembly) -> list[list[float]]:
+    """More configurations for bodies of which only the sum may have a positive energy."""
+    if not mechanics.unsound:
+        return []
+    anywhere = [] if mechanics.geometric else [q for q, _ in mechanics.anywhere(FURTHER)]
+    return [*(list(place.q) for place in found.places[SAMPLES:]), *anywhere]
+
+
+def _no_configuration(mechanics: NumericSystem, found: Open | None, span: Span | None) -> Mistake:
+    """The mistake at the row that stays open widest."""
+    message = "no configuration was found that satisfies all geometric constraints"
+    remedy = "check signs and lengths, or give a start near the assembled mechanism under `configuration`"
+    if found is None:
+        return Mistake(message, remedy, span)
+    row = mechanics.geometric[found.row]
+    gap = f"`{row.name}` stays at {found.value:.3g}{_as_a_length(mechanics, row.expression, found.value)}"
+    return Mistake(f"{message}; {gap} in the nearest one", remedy, row.span or span)
+
+
+def _as_a_length(mechanics: NumericSystem, row: Expression, value: float) -> str:
+    """What is left of a row `square - length**2`, said of the length."""
+    match row:
+        case Binary(operator="-", right=Power(base=length, exponent=exponent)) if exponent == 2:
+            try:
+                due = evaluate(length, mechanics.defaults)
+            except (KeyError, ArithmeticError, ValueError):
+                return ""
+            square = value + due**2
+            return f", a length of {math.sqrt(square):.3g} in place of {due:.3g}," if square >= 0 else ""
+    return ""
+
+
+def _far_start(
+    mechanics: NumericSystem, found: Assembly, declared: Mapping[str, float], span: Span | None
+) -> Iterator[Notice]:
+    """That the declared start is far from closing: what it leads to may be another assembly than the one meant."""
+    if found.start is not None or not mechanics.geometric:
+        return
+    # the start may lie on a branch on which the inputs span less
+    moved = min((_moved(mechanics, place, declared) for place in (found.places[0], *found.others)), key=len)
+    if moved:
+        listed = ", ".join(f"{name} = {value:.3g} in place of {given:.3g}" for name, given, value in moved[:MOST_SHOWN])
+        more = ", ..." if len(moved) > MOST_SHOWN else ""
+        yield Notice(
+            f"the start does not satisfy the geometric constraints, what it leads to is far from it: {listed}{more}; a "
+            "start that nearly closes the loops says which assembly is meant",
+            span,
+        )
+
+
+def _moved(mechanics: NumericSystem, place: Place, declared: Mapping[str, float]) -> list[tuple[str, float, float]]:
+    """The coordinates whose declared start is far from a configuration, with both values."""
+    return [
+        (c.name, declared[c.name], value)
+        for c, value in zip(mechanics.coordinates, place.q, strict=True)
+        if c.name in declared and abs(value - declared[c.name]) > FAR * (1.0 if c.is_angle else _width(c))
+    ]
+
+
+def _width(coordinate: Coordinate) -> float:
+    return float(coordinate.range[1] - coordinate.range[0]) / 2
+
+
+def _other_branches(mechanics: NumericSystem, found: Assembly, span: Span | None) -> Iterator[Notice]:
+    """That the start is singular, and that there are branches on which kernels give a status."""
+    n, meant = len(mechanics.coordinates), found.ranks
+    if found.start is not None:
+        begin = "the start leads" if span is not None else "the middles of the ranges lead"
+        yield Notice(
+            f"{begin} to a singular configuration ({_shown(mechanics, found.start)}): ranks are those of others; a "
+            "regular one under `configuration` says which branch is meant",
+            span,
+        )
+    for place in found.others:
+        ranks = place.ranks
+        if ranks.constraints == meant.constraints:
+            spans = f"the inputs span {ranks.actuation} of {n - ranks.constraints} directions, here {meant.actuation}"
+        else:
+            spans = f"the constraints have rank {ranks.constraints}, here {meant.constraints}"
+        yield Notice(
+            f"another branch of configurations ({_shown(mechanics, place)}): {spans}; there the functions that "
+            "need this rank return a status",
+            span,
+        )
+
+
+def _shown(mechanics: NumericSystem, place: Place) -> str:
+    """The first coordinates of a configuration."""
+    pairs = zip(mechanics.coordinates, place.q, strict=True)
+    shown = [f"{c.name} = {value:.3g}" for c, value in pairs][:MOST_SHOWN]
+    return ", ".join(shown) + (", ..." if len(place.q) > MOST_SHOWN else "")
+
+
+def _held(mechanics: NumericSystem, found: Assembly, span: Span | None) -> Iterator[Notice]:
+    """Coordinates that no admissible motion changes: more often an axis that is not parallel than what was meant."""
+    places = [(mechanics.coordinates[i].name, found.places[0].q[i]) for i in found.held]
+    if places:
+        names = shown_names(name for name, _ in places)
+        listed = ", ".join(f"{name} = {value:.4g}" for name, value in places[:MOST_SHOWN])
+        listed += ", ..." if len(places) > MOST_SHOWN else ""
+        rotations = (frame.rotation for frame in mechanics.mechanism.frames)
+        parts = {x.name for r in rotations if isinstance(r, Quaternion) for x in r.parts if isinstance(x, Name)}
+        # an attitude has four parts, whatever it is held to
+        spare = sum(name not in parts for name, _ in places)
+        left_out = f", else leave the coordinate{'s' if spare > 1 else ''} out" if spare == len(places) else ""
+        yield Notice(
+            f"{names} cannot move: the constraints hold {listed}; if that is not meant, check axes, lengths and "
+            f"loops{left_out}",
+            span,
+        )
+
+
+def _check_independent(
+    mechanics: NumericSystem,
+    regular: list[tuple[list[float], Rows]],
+    chosen: tuple[str, ...],
+    delta: int,
+    span: Span | None,
+) -> Iterator[Mistake]:
+    if len(chosen) != delta:
+        yield Mistake(
+            f"`independent_velocities` has {counted(len(chosen), 'name')}, the system has δ = {delta}",
+            f"name {counted(delta, 'coordinate')} whose rates determine all others",
+            span,
+        )
+        return
+    n = len(mechanics.coordinates)
+    dependent = [index for index, c in enumerate(mechanics.coordinates) if c.name not in chosen]
+    if not any(rank([[row[i] for i in dependent] for row in b]) == n - delta for _, b in regular):
+        yield Mistake(
+            f"the rates of {', '.join(chosen)} do not determine the others anywhere",
+            "choose other `independent_velocities`",
+            span,
+        )

@@ -1,0 +1,91 @@
+"""What links and joints of a robot description are called in the model: as the user says, else by their own names.
+
+Characters that names cannot have become `_`: joint-1 is joint_1.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from symgen.diagnostics import Mistake, Notice, Span, printable
+from symgen.model.expressions.names import MAXIMUM_NAME, did_you_mean, name_mistake
+from symgen.model.file.reading import entries, member, text_of
+from symgen.model.file.scope import Scope
+from symgen.model.file.source import Node, ScalarNode
+from symgen.model.mechanism import WORLD
+from symgen.model.urdf.robot import ENDINGS, Robot
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """Coordinates of joints (before their endings) and frames of links, by their names in the robot description."""
+
+    coordinates: dict[str, str] = field(hash=False)
+    frames: dict[str, str] = field(hash=False)
+
+
+def read_names(scope: Scope, node: Node | None, robot: Robot, key_span: Span) -> Names:
+    """The names; those that are none, or that two things share, are mistakes that say how to choose others."""
+    moving = {name: joint.span for name, joint in robot.joints.items() if joint.kind != "fixed"}
+    links = {name: link.span for name, link in robot.links.items()}
+    coordinates = _chosen(scope, member(node, "coordinates"), moving, "moving joint")
+    frames = _chosen(scope, member(node, "frames"), links, "link")
+    taken: dict[str, str] = {}
+    for name, span in moving.items():
+        for ending in ENDINGS[robot.joints[name].kind]:
+            _enter(scope, taken, coordinates[name] + ending, span, ("coordinate", "coordinates", "joint", name))
+    for name, span in links.items():
+        if not (name == robot.root and frames[name] == WORLD):
+            _enter(scope, taken, frames[name], span, ("frame", "frames", "link", name))
+    pairs = (*coordinates.items(), *frames.items())
+    changed = [f"{own} is {name}" for own, name in pairs if name == _plain(own) != own]
+    if changed:
+        message = f"names of the URDF with characters that names of a model cannot have: {', '.join(changed)}"
+        scope.notices.append(Notice(printable(message), key_span))
+    return Names(coordinates, frames)
+
+
+def _chosen(scope: Scope, node: Node | None, known: dict[str, Span], what: str) -> dict[str, str]:
+    """The name of each thing in the model: its own, or that of an entry `name in the model: own name`."""
+    found = {name: _plain(name) for name in known}
+    named: set[str] = set()
+    for key, value in entries(node):
+        own = text_of(value)
+        if own is None or own not in known:
+            remedy = did_you_mean(own or "", known, f"name a {what} of the robot description")
+            scope.wrong(f"there is no {what} `{own}` in the robot description", remedy, value.span)
+            continue
+        if own in named:
+            scope.wrong(f"the {what} `{own}` is named twice", "keep one of the two", value.span)
+        named.add(own)
+        found[own] = key.value
+    return found
+
+
+def _enter(scope: Scope, taken: dict[str, str], name: str, span: Span, of: tuple[str, str, str, str]) -> None:
+    what, block, owner, own = of
+    mistake = name_mistake(ScalarNode(name, span, "", False), what)
+    if mistake is None and name == WORLD:
+        message = f"the link `{own}` is called as the frame at rest, and moves against the root"
+        mistake = Mistake(message, "", span)
+    if mistake is None and name in taken:
+        message = f"the {owner} `{own}` has the name of a {taken[name]}"
+        mistake = Mistake(message, "", span)
+    if mistake is not None:
+        better = _suggestion(own, taken)
+        remedy = f"name it in the model file: `urdf: {{file: ..., {block}: {{{better}: {own}}}}}`"
+        scope.mistakes.append(Mistake(mistake.message, remedy, span, own))
+    taken.setdefault(name, owner)
+
+
+def _suggestion(name: str, taken: Iterable[str]) -> str:
+    made = _plain(name)[: MAXIMUM_NAME - 8].strip("_")
+    made = made if made[:1].isalpha() else f"n_{made}"
+    good = made not in taken and name_mistake(ScalarNode(made, Span(1, 1, 2), "", False), "") is None
+    return made if good else f"{made}_1"
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_]", "_", name)

@@ -1,0 +1,116 @@
+"""Numbers of a robot description, exact as written, and the turns by roll, pitch and yaw.
+
+A turn nearer than 1e-8 rad to a multiple of a quarter turn stands for it (1.57079633 is pi/2), so that matrices of such
+turns are exact.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TypeAlias
+
+from symgen.diagnostics import Span
+from symgen.model.file.source import ScalarNode
+from symgen.model.kinematics.fixed_angles import QUARTER_TOLERANCE
+
+MAXIMUM_DIGITS = 40
+MAXIMUM_EXPONENT = 300
+FINEST = 400
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d{1,4}))?", re.ASCII)
+
+Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
+Matrix: TypeAlias = tuple[Vector, Vector, Vector]
+IDENTITY: Matrix = (
+    (Fraction(1), Fraction(0), Fraction(0)),
+    (Fraction(0), Fraction(1), Fraction(0)),
+    (Fraction(0), Fraction(0), Fraction(1)),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number of the file: its exact value, as it is written, and where."""
+
+    value: Fraction
+    text: str
+    span: Span
+
+    @property
+    def node(self) -> ScalarNode:
+        """The number as a value of the model language."""
+        return ScalarNode(self.text, self.span, self.text, False)
+
+
+def quantity(text: str, span: Span) -> Quantity | None:
+    """The number; None for what is none, or is beyond what expressions of the model language may hold."""
+    match = _NUMBER.fullmatch(text)
+    if match is None or len(match.group(1)) > MAXIMUM_DIGITS or abs(int(match.group(2) or 0)) > MAXIMUM_EXPONENT:
+        return None
+    return Quantity(Fraction(text), text.removeprefix("+"), span)
+
+
+def written(value: Fraction) -> str:
+    """A number computed here: exact where it is a short decimal, else to 15 digits."""
+    short = format(float(value), ".15g")
+    return short if short != "-0" else "0"
+
+
+def quarters(angle: Quantity) -> int | None:
+    """The number of quarter turns that an angle stands for; None for any other angle."""
+    turns = float(angle.value) / (math.pi / 2)
+    near = round(turns)
+    return near if abs(turns - near) * (math.pi / 2) < QUARTER_TOLERANCE else None
+
+
+def angle_text(angle: Quantity) -> str:
+    """The angle as an expression: quarter turns with pi."""
+    turns = quarters(angle)
+    return angle.text if turns is None else {0: "0", 1: "pi/2", -1: "-pi/2"}.get(turns, f"{turns}*pi/2")
+
+
+def turn(axis: int, angle: Quantity) -> Matrix:
+    """The matrix of a turn about x, y or z (0, 1, 2); exact for quarter turns."""
+    turns = quarters(angle)
+    if turns is None:
+        sine, cosine = Fraction(math.sin(float(angle.value))), Fraction(math.cos(float(angle.value)))
+    else:
+        sine, cosine = Fraction((0, 1, 0, -1)[turns % 4]), Fraction((1, 0, -1, 0)[turns % 4])
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    rows = [list(row) for row in IDENTITY]
+    rows[first][first], rows[second][second] = cosine, cosine
+    rows[first][second], rows[second][first] = -sine, sine
+    x, y, z = ((row[0], row[1], row[2]) for row in rows)
+    return x, y, z
+
+
+def product(left: Matrix, right: Matrix) -> Matrix:
+    """left right."""
+    x, y, z = (applied(transposed(right), row) for row in left)
+    return x, y, z
+
+
+def applied(matrix: Matrix, vector: Vector) -> Vector:
+    """matrix vector."""
+    x, y, z = (_short(sum((a * b for a, b in zip(row, vector, strict=True)), Fraction(0))) for row in matrix)
+    return x, y, z
+
+
+def transposed(matrix: Matrix) -> Matrix:
+    """The transpose."""
+    x, y, z = zip(*matrix, strict=True)
+    return x, y, z
+
+
+def added(left: Vector, right: Vector) -> Vector:
+    """left + right."""
+    return left[0] + right[0], left[1] + right[1], left[2] + right[2]
+
+
+def _short(value: Fraction) -> Fraction:
+    """The value, rounded at 2^-400 where its denominator has grown through many turns."""
+    if value.denominator.bit_length() <= FINEST:
+        return value
+    return Fraction(round(value * 2**FINEST), 2**FINEST)

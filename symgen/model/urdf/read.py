@@ -1,0 +1,153 @@
+"""`urdf: robot.urdf`: the file beside the model, read with suspicion, as blocks of the model language."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from symgen.diagnostics import Mistake, Notice, Span, printable
+from symgen.model.file.reading import items, key_span, member, text_of
+from symgen.model.file.scope import Scope
+from symgen.model.file.source import MappingNode, ScalarNode
+from symgen.model.urdf.blocks import ranged_names, with_robot
+from symgen.model.urdf.bodies import judge_links
+from symgen.model.urdf.checks import check_joints, find_root
+from symgen.model.urdf.elements import GEOMETRY, read_robot
+from symgen.model.urdf.names import read_names
+from symgen.model.urdf.numbers import Quantity, quarters
+from symgen.model.urdf.robot import Robot
+from symgen.model.urdf.xml import MAXIMUM_CHARACTERS, parse_xml
+
+ABOUT = {
+    "transmission": "inputs stand in the model file, as forces and torques of the joints",
+    "ros2_control": "inputs stand in the model file, as forces and torques of the joints",
+    "gazebo": "it is for a simulator",
+    "safety_controller": "it is for a controller",
+}
+# a quarter turn written with too few digits to be one
+NEAR_QUARTER = 1e-4
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """The tree with the robot in it; the text of its file and the name of that file in messages."""
+
+    tree: MappingNode
+    text: str
+    file: str
+
+
+def import_robot(scope: Scope, tree: MappingNode, folder: Path) -> Imported:
+    """The robot that `urdf` names, in the tree; what is wrong with it is recorded, and the tree then stays as it is."""
+    node = tree.get("urdf")
+    name = node if isinstance(node, ScalarNode) else member(node, "file")
+    span = key_span(tree, "urdf") or tree.span
+    if not isinstance(name, ScalarNode):
+        return Imported(tree, "", "")
+    file = str(folder / name.value)
+    text = _text(scope, name, folder)
+    if text is None:
+        return Imported(tree, "", file)
+    root = parse_xml(text, file)
+    if isinstance(root, Mistake):
+        scope.mistakes.append(root)
+        return Imported(tree, text, file)
+    unread = frozenset(text_of(item) or "" for item in items(member(node, "leave_out")))
+    robot, mistakes = read_robot(root, unread)
+    if not mistakes and not robot.links:
+        mistakes = (Mistake("the robot has no links", "give a URDF file with links and joints", root.span),)
+    if not mistakes:
+        robot, mistakes = find_root(robot)
+    scope.mistakes.extend(mistakes)
+    if mistakes:
+        return Imported(tree, text, file)
+    names = read_names(scope, node, robot, span)
+    own = ranged_names(tree)
+    scope.mistakes.extend(check_joints(robot, {joint for joint, name in names.coordinates.items() if name in own}))
+    if not scope.mistakes:
+        tree = with_robot(scope, tree, robot, names, span)
+        found = (*_notices(robot, span), *judge_links(robot))
+        # names in the file are any text
+        scope.notices.extend(Notice(printable(notice.message), notice.span) for notice in found)
+        efforts = _listed(robot, "effort")
+        if efforts:
+            scope.efforts = Notice(printable(f"effort limits of the URDF bound no input ({efforts})"), span)
+    return Imported(tree, text, file)
+
+
+def _text(scope: Scope, node: ScalarNode, folder: Path) -> str | None:
+    """The text of the file, which must lie in the folder of the model or below it."""
+    name = text_of(node) or ""
+    parts = PurePosixPath(name).parts
+    if not name or name.startswith("/") or ".." in parts or "\\" in name or ":" in name or not name.isprintable():
+        message = f"`{name[:60]}` is no plain path below the folder of the model file"
+        scope.wrong(message, "copy the robot description beside the model file, and write its name", node.span)
+        return None
+    path = folder / name
+    try:
+        if not path.resolve().is_relative_to(folder.resolve()):
+            message = f"`{name}` is a link that leads out of the folder of the model file"
+            scope.wrong(message, "copy the robot description beside the model file", node.span)
+            return None
+        if not path.is_file():
+            scope.wrong(f"there is no file `{name}`", "the path starts at the folder of the model file", node.span)
+            return None
+        with path.open("rb") as stream:
+            data = stream.read(4 * MAXIMUM_CHARACTERS + 1)
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        scope.wrong(f"`{name}` is not text in UTF-8 (line {line})", "save it as UTF-8", node.span)
+    except (OSError, ValueError):
+        scope.wrong(f"`{name}` cannot be read", "check the permissions of the file", node.span)
+    return None
+
+
+def _notices(robot: Robot, span: Span) -> list[Notice]:
+    """What of the robot description takes no part, by name."""
+    notices = []
+    geometry = [f"`{tag}`" for tag in GEOMETRY if tag in robot.left_out]
+    if geometry:
+        notices.append(Notice(f"{' and '.join(geometry)} of the URDF are geometry and take no part", span))
+    for tag, names in robot.left_out.items():
+        if tag not in GEOMETRY:
+            listed = ", ".join(dict.fromkeys(name for name in names if name)) or "no name"
+            why = f": {ABOUT[tag]}" if tag in ABOUT else ""
+            notices.append(Notice(f"`{tag}` of the URDF takes no part ({listed}){why}", span))
+    still = [name for name, joint in robot.joints.items() if _is_zero(joint.limits.get("velocity"))]
+    if still:
+        message = f"velocity limits of 0 in the URDF are taken for none ({', '.join(still)})"
+        notices.append(Notice(message, span))
+    for joint in robot.joints.values():
+        idle = _idle(joint.kind, joint.limits, joint.dynamics, joint.mimic is not None)
+        if idle:
+            notices.append(Notice(f"{idle} of the {joint.kind} joint `{joint.name}` says nothing", joint.span))
+        for angle in joint.origin.rpy:
+            turns = float(angle.value) / 1.5707963267948966
+            if quarters(angle) is None and abs(turns - round(turns)) < NEAR_QUARTER:
+                message = f"the angle {angle.text} is taken as written; with eight digits a quarter turn is exact"
+                notices.append(Notice(message, angle.span))
+    return notices
+
+
+def _idle(kind: str, limits: dict[str, Quantity], dynamics: dict[str, Quantity], mimics: bool) -> str:
+    """What a joint of this kind has no use for."""
+    found = []
+    if kind in ("fixed", "planar", "floating") and any(value.value for value in limits.values()):
+        found.append("`limit`")
+    if kind == "continuous" and any(key in limits for key in ("lower", "upper")):
+        found.append("the position in `limit`")
+    if kind == "fixed" and any(value.value for value in dynamics.values()):
+        found.append("`dynamics`")
+    if kind == "fixed" and mimics:
+        found.append("`mimic`")
+    return " and ".join(found)
+
+
+def _listed(robot: Robot, key: str) -> str:
+    bounds = ((name, joint.limits.get(key)) for name, joint in robot.joints.items() if joint.kind != "fixed")
+    return ", ".join(f"{name} {bound.text}" for name, bound in bounds if bound is not None and bound.value > 0)
+
+
+def _is_zero(value: Quantity | None) -> bool:
+    return value is not None and value.value == 0

@@ -1,0 +1,73 @@
+"""What `all` takes of the quantities of a system: beyond counted limits the longest are left out, and told.
+
+u, accelerations and multipliers are always made, and so is what is asked for by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+
+from symgen.methods.quantity import Quantity
+from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_trying
+
+MAIN = ("inverse_dynamics", "forward_dynamics", "multipliers")
+# Of all quantities together, as counted cost: what takes a minute to print, to compile and to verify.
+OPERATIONS = 100_000
+# Scalars that are made along one way to one quantity before the others are tried, and for all quantities together.
+FIRST_SCALARS, SCALARS = 150_000, 800_000
+# What is asked for and takes longer along all ways is tried once more with so many times the scalars.
+GROWTH = 8
+OF_ALL = "`all` leaves it out"
+REMEDY = "name it in `outputs` to have it all the same"
+
+
+class Everything:
+    """What is left of the work that `all` may take; `asked` are the quantities that are made whatever they take."""
+
+    def __init__(self, outputs: Sequence[str], forms: Mapping[str, str]) -> None:
+        self._asked = {*outputs, *forms, *MAIN}
+        self._left = SCALAR * SCALARS
+
+    def derived(
+        self, quantity: str, ways: Mapping[str, Callable[[], Quantity]], at_hand: int | None = None
+    ) -> dict[str, Quantity]:
+        """The quantity along each way that does not take many times what another takes.
+
+        None where it is not asked for and takes too long, or where a way of so many operations is `at_hand`.
+        """
+        if at_hand is not None:
+            return self._within(ways, worth_trying(at_hand))
+        first = SCALAR * FIRST_SCALARS
+        if quantity not in self._asked:
+            before = done()
+            found = self._within(ways, min(first, self._left))
+            self._left -= done() - before
+            return found
+        for most in (first, GROWTH * first) if len(ways) > 1 else ():
+            if found := self._within(ways, most):
+                return found
+        return {name: way() for name, way in ways.items()}
+
+    @staticmethod
+    def _within(ways: Mapping[str, Callable[[], Quantity]], most: float) -> dict[str, Quantity]:
+        found: dict[str, Quantity] = {}
+        for name, way in ways.items():
+            with suppress(TooLongError), at_most(most):
+                found[name] = way()
+        return found
+
+    def surplus(self, costs: Mapping[str, int]) -> list[str]:
+        """The longest of the quantities that are not asked for, without which the rest is short enough."""
+        total, without = sum(costs.values()), list[str]()
+        for name in sorted(costs, key=lambda name: -costs[name]):
+            if total > OPERATIONS and name not in self._asked:
+                without.append(name)
+                total -= costs[name]
+        return without
+
+
+def too_long(operations: int = 0) -> str:
+    """Why `all` leaves a quantity out; `operations` are those it takes, where it was derived."""
+    takes = f"{operations} operations, where all take at most {OPERATIONS} together" if operations else "long to derive"
+    return f"{OF_ALL}, as it takes {takes}; {REMEDY}"

@@ -1,0 +1,122 @@
+"""How redundant inputs share the work: the formulas behind the model's `allocation`."""
+
+from __future__ import annotations
+
+from symgen.model.model import Allocation
+from symgen.report.document import Block, InlineCode, displayed
+from symgen.report.mathematics.layout import Application, Fenced, Fraction, Layout, Letter, Root, Row, Scripts, Sum
+from symgen.report.prose import (
+    ONE,
+    ZERO,
+    B,
+    M,
+    Mt,
+    bold,
+    delta_diff,
+    equals,
+    juxtaposed,
+    listed,
+    minus_sum,
+    paragraph,
+    plus,
+    pseudoinverse,
+    small_m,
+    tau,
+    transposed,
+    u,
+)
+
+D, p, z = bold("D"), bold("p"), bold("z")
+c, k = Letter("c"), Letter("k")
+u_0, w_k, z_k, d_k = Scripts(u, ZERO), Scripts(Letter("w"), k), Scripts(Letter("z"), k), Scripts(Letter("d"), k)
+M_k = Scripts(M, Fenced(k))
+HALF_INVERSE = Scripts(D, None, Sum((("-", Row((ONE, Letter("/"), Letter("2")))),)))
+LOW, HIGH = Scripts(c, Letter("low", "upright")), Scripts(c, Letter("high", "upright"))
+
+
+def allocated_inputs(allocation: Allocation) -> list[Block]:
+    """From all inputs that produce the motion to the ones the model asks for."""
+    return [
+        *_nearest(allocation),
+        *(_direction(allocation) if allocation.directed else []),
+        *(_limits(allocation) if allocation.limits else []),
+    ]
+
+
+def _nearest(allocation: Allocation) -> list[Block]:
+    inverse = juxtaposed(HALF_INVERSE, pseudoinverse(Fenced(juxtaposed(Mt, HALF_INVERSE))))
+    if not allocation.weights:
+        inverse = juxtaposed(pseudoinverse(Mt))
+    right: Layout = juxtaposed(*inverse.factors, tau)
+    if allocation.preferred:
+        right = plus(p, juxtaposed(*inverse.factors, Fenced(minus_sum((tau,), (juxtaposed(M, p),)))))
+    blocks: list[Block] = [
+        paragraph("Among all inputs that produce the motion, the model's {} chooses.", InlineCode("allocation")),
+        displayed((equals(u_0, right),), "u_0"),
+    ]
+    norm = juxtaposed(transposed(u), D, u)
+    if allocation.preferred:
+        distance = Fenced(minus_sum((u,), (p,)))
+        norm = juxtaposed(transposed(distance), D, distance)
+        named = ", ".join(name for name, _ in allocation.preferred)
+        blocks.append(paragraph("Here {} holds the preferred values of {}, zero for the others.", p, named))
+    if allocation.weights:
+        named = ", ".join(name for name, _ in allocation.weights)
+        text = "It makes {} least, with the diagonal matrix {} of the weights: those of {} are parameters, others 1."
+        blocks.append(paragraph(text, norm, D, named))
+    return blocks
+
+
+def _direction(allocation: Allocation) -> list[Block]:
+    minor = Application(Letter("det", "upright"), Fenced(listed((M_k, transposed(B))), "["))
+    sign = Scripts(Fenced(Sum((("-", ONE),))), None, minus_sum((k,), (ONE,)))
+    squares = juxtaposed(Scripts(Letter("Σ"), k), w_k, Scripts(Letter("d"), k, Letter("2")))
+    share = "{} is the parameter {}." if allocation.preload else "{} would be zero without limits."
+    slots = (c, InlineCode(allocation.preload)) if allocation.preload else (c,)
+    return [
+        paragraph(
+            "With one input more than needed, {}, the inputs that move nothing are the multiples of one direction. It "
+            "consists of determinants, {} being {} without its column {}:",
+            equals(small_m, plus(delta_diff, ONE)),
+            M_k,
+            M,
+            k,
+        ),
+        displayed((equals(d_k, juxtaposed(sign, minor)), equals(z_k, Fraction(d_k, Root(squares)))), "z"),
+        paragraph(
+            "So {}, and {}: a share {} of it adds its square to the norm. The inputs are",
+            equals(juxtaposed(Mt, z), ZERO),
+            equals(juxtaposed(transposed(z), D, z), ONE),
+            c,
+        ),
+        displayed((equals(u, plus(u_0, juxtaposed(c, z))),), "u_c"),
+        paragraph(share, *slots),
+    ]
+
+
+def _limits(allocation: Allocation) -> list[Block]:
+    lower, upper, start = (Scripts(Letter(x), k) for x in ("l", "h", "u"))
+    start = Scripts(Letter("u"), listed((ZERO, k)))
+    ends = listed(tuple(Fraction(minus_sum((x,), (start,)), z_k) for x in (lower, upper)))
+
+    def choice(outer: str, inner: str) -> Layout:
+        inside = Application(Letter(inner, "upright"), Fenced(ends))
+        return Application(Scripts(Letter(outer, "upright"), k), inside)
+
+    named = ", ".join(limit.input for limit in allocation.limits)
+    return [
+        paragraph("Limits {} and {} are given for {}. They are kept between", lower, upper, named),
+        displayed((equals(LOW, choice("max", "min")), equals(HIGH, choice("min", "max"))), "c_low"),
+        paragraph(
+            "and of {}, {} and the preload, or zero, the middle one is taken. Where {} is above {} no inputs keep all "
+            "limits and produce the motion: {} then lies between them, where no limit gains without another's loss, "
+            "and {} is outside its limits. An input with {} takes no part.",
+            LOW,
+            HIGH,
+            LOW,
+            HIGH,
+            c,
+            u,
+            equals(z_k, ZERO),
+        ),
+    ]

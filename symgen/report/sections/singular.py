@@ -1,0 +1,61 @@
+"""The section on singular configurations: constraints, inputs, and the chosen velocities."""
+
+from __future__ import annotations
+
+from symgen.closedform.singular import SingularSet
+from symgen.report.context import Context
+from symgen.report.document import Block, Section, displayed
+from symgen.report.mathematics.layout import Relation, Row, size
+from symgen.report.mathematics.matrices import packed
+from symgen.report.prose import SYMBOLS, ZERO, Slot, paragraph, say
+
+OPENING = {
+    "constraint": "At constraint singularities the rank of {} drops and {} does not exist",
+    "input": "At input singularities the degree of actuation drops and {} is not continuous",
+    "parameter": "Where the chosen velocities depend on each other {} does not exist, a singularity of the "
+    "parametrization alone",
+}
+LARGEST = 1500
+
+
+def singular(context: Context) -> Section:
+    """Where ranks drop."""
+    blocks: list[Block] = []
+    for found in context.input.singular_sets:
+        blocks += _one(context, found)
+    if not blocks:
+        blocks.append(paragraph("Without constraints, inputs and chosen velocities no rank can drop."))
+    return Section(say("Singular configurations"), tuple(blocks))
+
+
+def _one(context: Context, found: SingularSet) -> list[Block]:
+    if found.decided and not found.vanishing:
+        return [paragraph(_nowhere(found.kind), *_slots(found))]
+    if not found.vanishing:
+        return [paragraph(OPENING[found.kind] + "; {}.", *_slots(found), found.explanation.rstrip("."))]
+    equations = tuple(Row((context.layout.expression(value), Relation("="), ZERO)) for value in found.vanishing)
+    if found.decided:
+        return [paragraph(OPENING[found.kind] + "; this happens where", *_slots(found)), displayed(equations)]
+    nodes = sum(size(line) for line in equations)
+    if nodes > LARGEST:
+        many = f"; these are the common zeros of {len(equations)} expressions with {nodes} symbols, not printed."
+        return [paragraph(OPENING[found.kind] + many, *_slots(found))]
+    opening = paragraph(
+        OPENING[found.kind] + "; this happens where all of these expressions vanish at once:", *_slots(found)
+    )
+    return [opening, displayed(tuple(packed(equations)))]
+
+
+def _slots(found: SingularSet) -> list[Slot]:
+    symbol = SYMBOLS[found.quantity]
+    if found.kind != "constraint":
+        return [symbol]
+    return [SYMBOLS["constraint_jacobian"], SYMBOLS["nullspace_projector"]]
+
+
+def _nowhere(kind: str) -> str:
+    return {
+        "constraint": "The rank of {} is the same in all configurations, so that {} exists everywhere.",
+        "input": "There are no input singularities: {} exists in all configurations.",
+        "parameter": "The chosen velocities are independent everywhere, and {} always exists.",
+    }[kind]

@@ -1,0 +1,75 @@
+"""Whatever rewrites scalars is held to be an identity while it works: wrong algebra ends generation, it is not emitted.
+
+Every scalar carries its value in a prime field (fingerprint), so that two scalars are compared by comparing two
+numbers.  Only where these differ is more to be done: fingerprints know neither that a root's square is what it is the
+root of, nor what turns by fixed angles do, and then exact evaluation decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from symgen.diagnostics import SymgenBug
+from symgen.symbolic.exact import ExactValues, Value
+from symgen.symbolic.scalar import Scalar
+
+# Points at which signs are right, half of them by chance.
+POINTS = 12
+
+
+class _Thoroughly:
+    """Whether exact evaluation looks at every identity, that of equal fingerprints too."""
+
+    on = False
+
+
+@contextmanager
+def every_identity_evaluated() -> Iterator[None]:
+    """While this lasts nothing is taken on the word of fingerprints, whose angles are read by the graph's own rules."""
+    before, _Thoroughly.on = _Thoroughly.on, True
+    try:
+        yield
+    finally:
+        _Thoroughly.on = before
+
+
+def same_values(
+    rule: str, before: Sequence[Scalar], after: Sequence[Scalar], squares_roots: bool = False
+) -> None:
+    """Raises SymgenBug, naming the rule, where a scalar is not the same function after it as before.
+
+    A rule that squares roots is not judged at points where the field does not have them.
+    """
+    if len(before) != len(after):
+        raise SymgenBug(f"{rule}: {len(after)} scalars in place of {len(before)}")
+    differ = [
+        (one, other)
+        for one, other in zip(before, after, strict=True)
+        if (one.value != other.value or _Thoroughly.on) and one is not other
+    ]
+    differ = [pair for pair in differ if (value := _value(pair[0], 0)) is None or value != _value(pair[1], 0)]
+    for seed in range(1, 1 + POINTS if differ else 1):
+        changed = [(one, other) for one, other in differ if _changed(one, other, seed)]
+        if squares_roots:
+            changed = [(one, other) for one, other in changed if not _point(other, seed).any_root_in([other])]
+        if wrong := len(changed):
+            raise SymgenBug(f"{rule}: changes the value of {wrong} of {len(before)} scalars")
+
+
+def _changed(one: Scalar, other: Scalar, seed: int) -> bool:
+    """Whether two scalars are known to differ at a point; where the first is not defined the second may be anything."""
+    before, after = _value(one, seed), _value(other, seed)
+    return before is not None and before != after and other not in _point(other, seed).unknown
+
+
+def _value(scalar: Scalar, seed: int) -> Value:
+    return _point(scalar, seed)([scalar])[0]
+
+
+def _point(scalar: Scalar, seed: int) -> ExactValues:
+    """The point of a seed; the values that are known there stay with the graph, as most scalars are met again."""
+    points = scalar.graph.points
+    if seed not in points:
+        points[seed] = ExactValues(seed, signs=seed > 0)
+    return points[seed]

@@ -1,0 +1,75 @@
+"""Shorter scalars for a system: multiplied out, cancelled, factored, with sums of parameters left whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from symgen.symbolic.angles import share_angles
+from symgen.symbolic.identity import same_values
+from symgen.symbolic.passes.forgetting import forgetting
+from symgen.symbolic.polynomial import Multiplier, refactored
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import topological
+
+
+class Factoring:
+    """Multiplies scalars out and factors them again; sums of parameters and the sums in `kept` stay whole."""
+
+    def __init__(self, graph: Graph, parameters: Sequence[Scalar]) -> None:
+        self.graph = graph
+        self._fixed: dict[Scalar, bool] = dict.fromkeys(parameters, True)
+        self._multipliers: dict[frozenset[Scalar], Multiplier] = {}
+
+    def fixed(self, node: Scalar) -> bool:
+        """Whether a scalar depends on parameters only."""
+        known = self._fixed.get(node)
+        if known is not None:
+            return known
+        # operands are most often known
+        inside = (node,) if node.args and self._fixed.keys() >= {*node.args} else topological([node], self._fixed)
+        for inner in inside:
+            self._fixed[inner] = inner.op == "const" or (bool(inner.args) and all(self._fixed[a] for a in inner.args))
+        return self._fixed[node]
+
+    def forget(self, mark: tuple[int, int], needed: Iterable[Scalar]) -> None:
+        """Lets go of what was made since the mark of the graph and is not needed, see `forgetting`."""
+        stays = forgetting(self.graph, mark, needed)
+        if stays is not None:
+            self._fixed = {node: fixed for node, fixed in self._fixed.items() if stays(node)}
+            self._multipliers.clear()
+
+    def factors(self, nodes: Iterable[Scalar]) -> dict[Scalar, int]:
+        """What depends on parameters only and multiplies what does not: in how many products, as they are met."""
+        found: dict[Scalar, int] = {}
+        for node in nodes:
+            if node.op == "mul" and not self.fixed(node):
+                for argument in node.args:
+                    if argument.constant is None and self.fixed(argument):
+                        found[argument] = found.get(argument, 0) + 1
+        return found
+
+    def shorten(self, outputs: Sequence[Scalar], kept: frozenset[Scalar] = frozenset()) -> tuple[Scalar, ...]:
+        """The scalars multiplied out, cancelled and factored where they are not too long."""
+        multiplier = self._multipliers.get(kept)
+        if multiplier is None:
+            multiplier = Multiplier(self.graph, lambda node: node in kept or self.fixed(node))
+            self._multipliers[kept] = multiplier
+        shared = share_angles(self.graph, outputs)
+        shorter = refactored(self.graph, shared, multiplier, self.fixed)
+        same_values("multiplying out and factoring", shared, shorter)
+        return tuple(shorter)
+
+    def cancelled(self, scalar: Scalar) -> Scalar:
+        """The scalar multiplied out and factored where that makes it shorter."""
+        (shorter,) = self.shorten((scalar,))
+        return shorter if shorter.size < scalar.size else scalar
+
+    def common_sums(self, components: Sequence[Scalar]) -> frozenset[Scalar]:
+        """The sums that are factors of two components or more: what a vector is a multiple of."""
+        seen: dict[Scalar, int] = {}
+        for component in components:
+            _, powers = self.graph.products.monomial(component)
+            for factor, power in powers.items():
+                if power > 0 and factor.op in ("add", "sub") and not self.fixed(factor):
+                    seen[factor] = seen.get(factor, 0) + 1
+        return frozenset(factor for factor, count in seen.items() if count > 1)

@@ -1,0 +1,44 @@
+"""Scalars that a rewriting pass leaves behind are let go.
+
+Passes that look for shorter ways make several times as many scalars as their results hold, and a graph keeps all of
+them: they are what most of the memory of a derivation goes to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TypeAlias
+
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import forget_orders
+
+Stays: TypeAlias = Callable[[Scalar], bool]
+# Fewer are kept: they are met again, and looking for those that are needed takes time, too.
+WORTH = 10_000
+# The mark of a graph that nothing is made on yet.
+START = (0, 0)
+
+
+def forgetting(graph: Graph, mark: tuple[int, int], needed: Iterable[Scalar]) -> Stays | None:
+    """Lets the graph go of what was made since the mark (`Graph.mark`), but for what `needed` scalars hold.
+
+    Tells which scalars stay, to those who remember scalars themselves; None where too little was made to look.  What is
+    forgotten is made again where it is met again, with another serial number.
+    """
+    first = mark[0]
+    if graph.mark()[0] - first < WORTH:
+        return None
+    live = set(needed)
+    stack = list(live)
+    while stack:
+        for argument in stack.pop().args:
+            if argument.serial >= first and argument not in live:
+                live.add(argument)
+                stack.append(argument)
+
+    def stays(node: Scalar) -> bool:
+        return node.serial < first or node in live or node.constant is not None
+
+    graph.forget(mark, stays)
+    forget_orders()
+    return stays

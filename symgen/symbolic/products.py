@@ -1,0 +1,134 @@
+"""Products compared by their factors: what cancels, what collects, and the addition theorem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING, TypeAlias
+
+from symgen.symbolic.fingerprint import PRIME
+
+if TYPE_CHECKING:
+    from symgen.symbolic.scalar import Graph, Scalar
+
+# Whole coefficients are integers: their arithmetic is many times faster than that of fractions.
+Monomial: TypeAlias = "tuple[int | Fraction, dict[Scalar, int]]"
+
+# Products of more factors than this are not taken apart.
+MOST_FACTORS = 12
+
+
+def _whole(value: Fraction) -> int | Fraction:
+    return value.numerator if value.denominator == 1 else value
+
+
+_COMPOSED = frozenset({"const", "neg", "mul", "div"})
+
+
+class Products:
+    """The products of one graph, taken apart once each."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._known: dict[Scalar, Monomial] = {}
+        self._turning: set[Scalar] = set()  # those with a sine or cosine among their factors
+
+    def monomial(self, a: Scalar) -> Monomial:
+        """`a` as coefficient times powers of factors, whatever the order in which they were multiplied."""
+        known = self._known.get(a)
+        if known is not None:
+            return known
+        if a.op not in _COMPOSED:
+            result: Monomial = (1, {a: 1})
+        elif (value := a.constant) is not None:
+            result = (_whole(value), {})
+        elif a.op == "neg":
+            coefficient, powers = self.monomial(a.args[0])
+            result = (-coefficient, powers)
+        else:
+            sign = 1 if a.op == "mul" else -1
+            (k1, left), (k2, right) = self.monomial(a.args[0]), self.monomial(a.args[1])
+            if len(left) + len(right) > MOST_FACTORS or (sign < 0 and k2 == 0):
+                result = (1, {a: 1})
+            else:
+                powers = dict(left)
+                for factor, count in right.items():
+                    powers[factor] = powers.get(factor, 0) + sign * count
+                result = (k1 * k2 if sign > 0 else _whole(Fraction(k1) / k2), {f: c for f, c in powers.items() if c})
+        self._known[a] = result
+        for factor in result[1]:
+            if factor.op == "sin" or factor.op == "cos":
+                self._turning.add(a)
+                break
+        return result
+
+    def forget(self, stays: Callable[[Scalar], bool]) -> None:
+        """Lets go of scalars, see `Graph.forget`; factors of a product that stays stay with it."""
+        self._known = {a: found for a, found in self._known.items() if stays(a) and all(map(stays, found[1]))}
+        self._turning = {a for a in self._turning if a in self._known}
+
+    def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
+        """a + sign * b where the two are products that differ in constants or in a pair of sines and cosines only."""
+        (k1, left), (k2, right) = self.monomial(a), self.monomial(b)
+        if left == right and k1:
+            return a * (Fraction(k1 + sign * k2) / k1)
+        if abs(k1) != abs(k2) or a not in self._turning or b not in self._turning:
+            return None
+        # factors of either side; what one of them alone is divided by stays
+        more = {f: left.get(f, 0) - right.get(f, 0) for f in {**left, **right}}
+        if any(count and min(left.get(f, 0), right.get(f, 0)) < 0 for f, count in more.items()):
+            return None
+        lost = [f for f, count in more.items() for _ in range(count)]
+        gained = [f for f, count in more.items() for _ in range(-count)]
+        if len(lost) != 2 or len(gained) != 2 or not all(f.op in ("sin", "cos") for f in (*lost, *gained)):
+            return None
+        angle = self._addition_theorem(lost, gained, sign if k1 == k2 else -sign)
+        if angle is None:
+            return None
+        rest = {f: common for f in more if (common := min(left.get(f, 0), right.get(f, 0)))}
+        found = k1 * (self._product(rest) * angle)
+        if found.value != (a.value + sign * b.value) % PRIME:
+            from symgen.symbolic.identity import same_values  # which needs graphs
+
+            asked = self._graph.raw("add" if sign > 0 else "sub", (a, b))
+            same_values("the addition theorem", [asked], [found])
+        return found
+
+    def quotient(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction = 1) -> Scalar:
+        """`a` over a number times powers of its factors, which are left out instead of divided by."""
+        coefficient, own = self.monomial(a)
+        if not coefficient:
+            return a
+        rest = {f: count - powers.get(f, 0) for f, count in own.items()}
+        return Fraction(coefficient) / number * self._product({f: count for f, count in rest.items() if count})
+
+    def _product(self, powers: dict[Scalar, int]) -> Scalar:
+        factors = sorted(powers.items(), key=lambda entry: entry[0].serial)
+        product = self._graph.product(factor for factor, count in factors for _ in range(count))
+        for factor, count in factors:
+            for _ in range(-count):
+                product = product / factor
+        return product
+
+    def _addition_theorem(self, lost: list[Scalar], gained: list[Scalar], sign: int) -> Scalar | None:
+        """t1 t2 + sign * t3 t4 with t sines and cosines of the same two angles, as one sine or cosine."""
+        graph = self._graph
+        p, q = sorted(lost, key=lambda f: f.args[0].serial)
+        v, w = sorted(gained, key=lambda f: f.args[0].serial)
+        x, y = p.args[0], q.args[0]
+        if (v.args[0], w.args[0]) != (x, y):
+            return None
+        if x is y:
+            # c c + s s; differences are cosines of 2x, an angle of their own
+            return graph.one if sign > 0 and p.op == q.op and v.op == w.op else None
+        match (p.op, q.op, v.op, w.op):
+            case ("cos", "cos", "sin", "sin"):
+                return graph.trig("cos", x - y if sign > 0 else x + y)
+            case ("sin", "sin", "cos", "cos"):
+                return graph.trig("cos", x - y) if sign > 0 else -graph.trig("cos", x + y)
+            case ("sin", "cos", "cos", "sin"):
+                return graph.trig("sin", x + y if sign > 0 else x - y)
+            case ("cos", "sin", "sin", "cos"):
+                return graph.trig("sin", x + y if sign > 0 else y - x)
+            case _:
+                return None

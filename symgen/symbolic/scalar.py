@@ -1,0 +1,489 @@
+"""Hash-consed real scalars: the graph every kernel is derived on.
+
+Each distinct operation exists once, so equal intermediates are shared where they arise and nothing is expanded to be
+shrunk again.  All rewriting happens in the constructors, each rule local and exact: constants fold, signs travel
+outwards, x - x and x*y/y cancel, sums are never flattened, and products of sines and cosines of the same angles
+combine by the addition theorem.  The graph knows no mechanics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+from math import isqrt
+from typing import TYPE_CHECKING, TypeAlias
+
+from symgen.runtime.effort import SCALAR, spend
+from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
+from symgen.symbolic.products import Products
+
+if TYPE_CHECKING:
+    from symgen.symbolic.exact import ExactValues
+
+Number: TypeAlias = "Scalar | int | Fraction"
+
+# pi to 70 digits: literals are rounded once, from this value, to the scalar type of a program.
+PI = Fraction(31415926535897932384626433832795028841971693993751058209749445923078164, 10**70)
+
+
+LONGEST_TEXT = 500
+
+
+class Scalar:
+    """One node; compared by identity because equal nodes are the same object within a graph."""
+
+    __slots__ = ("args", "constant", "graph", "is_one", "is_zero", "op", "payload", "serial", "size", "stands", "value")
+
+    def __init__(self, graph: Graph, serial: int, op: str, args: tuple[Scalar, ...], payload: object) -> None:
+        self.graph = graph
+        self.serial = serial
+        self.op = op
+        self.args = args
+        self.payload = payload
+        # the value of a constant node, else None
+        self.constant: Fraction | None = None
+        self.is_zero = self.is_one = False
+        if op == "const":
+            assert isinstance(payload, Fraction)
+            self.constant = payload
+            self.is_zero, self.is_one = payload == 0, payload == 1
+        # operations of the expression written out, its stand-ins as bits, and its value in the field of fingerprints
+        self.size: int
+        self.stands: int
+        if len(args) == 2:
+            first, second = args
+            self.size, self.stands = first.size + second.size + 1, first.stands | second.stands
+        elif args:
+            self.size = sum(argument.size for argument in args) + (op != "neg")
+            self.stands = 0
+            for argument in args:
+                self.stands |= argument.stands
+        else:
+            self.size = self.stands = 0
+        self.value = 0
+
+    def __add__(self, other: Number) -> Scalar:
+        return self.graph.add(self, other if other.__class__ is Scalar else self.graph.lift(other))
+
+    def __radd__(self, other: Number) -> Scalar:
+        return self.graph.add(self.graph.lift(other), self)
+
+    def __sub__(self, other: Number) -> Scalar:
+        return self.graph.sub(self, self.graph.lift(other))
+
+    def __rsub__(self, other: Number) -> Scalar:
+        return self.graph.sub(self.graph.lift(other), self)
+
+    def __mul__(self, other: Number) -> Scalar:
+        return self.graph.mul(self, other if other.__class__ is Scalar else self.graph.lift(other))
+
+    def __rmul__(self, other: Number) -> Scalar:
+        return self.graph.mul(self.graph.lift(other), self)
+
+    def __truediv__(self, other: Number) -> Scalar:
+        return self.graph.div(self, self.graph.lift(other))
+
+    def __rtruediv__(self, other: Number) -> Scalar:
+        return self.graph.div(self.graph.lift(other), self)
+
+    def __neg__(self) -> Scalar:
+        return self.graph.neg(self)
+
+    def __repr__(self) -> str:
+        if self.op in ("const", "symbol"):
+            return str(self.payload)
+        if self.size > LONGEST_TEXT:  # written out, what is shared would be written again and again
+            return f"<{self.op} of {self.size} operations>"
+        return f"{self.op}({', '.join(map(repr, self.args))})"
+
+
+class Graph:
+    """Creates and owns scalars; `serial` numbers give a deterministic order of operands."""
+
+    def __init__(self) -> None:
+        self._nodes: dict[tuple[object, ...], Scalar] = {}
+        # by numerator and denominator, whose hash costs a fraction of a Fraction's
+        self._constants: dict[tuple[int, int], Scalar] = {}
+        # every scalar at the place of its serial number, None where it is forgotten
+        self._serials: list[Scalar | None] = []
+        self.products = Products(self)
+        # by seeds: values of the scalars at points, as far as they have been needed
+        self.points: dict[int, ExactValues] = {}
+        self._by_value: dict[int, Scalar] = {}
+        self._stand_ins = 0
+        self._angles: dict[int, tuple[int, int]] = {}
+        # by arguments of sines and cosines: whether the sign is pulled out, and the angle that is left
+        self._turns: dict[Scalar, tuple[bool, Scalar]] = {}
+        self._pairs: dict[Scalar, tuple[int, int]] = {}
+        self.zero = self.const(0)
+        self.one = self.const(1)
+        self.const(2)
+
+    def __len__(self) -> int:
+        return len(self._nodes)
+
+    def _node(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
+        """The node, or a shorter one that is the same function."""
+        key = (op, args, payload)
+        node = self._nodes.get(key)
+        if node is None:
+            node = self._new(key, op, args, payload)
+            same = self._by_value.get(node.value)
+            # stand-ins that cancel in an equal function must not come in: they would outlast their replacement
+            foreign = ~node.stands
+            if same is not None and same.size <= node.size and not same.stands & foreign:
+                node = same
+            elif (
+                op != "neg"
+                and (opposite := self._by_value.get(-node.value % PRIME))
+                and opposite.size < node.size
+                and not opposite.stands & foreign
+            ):
+                node = self.neg(opposite)
+            else:
+                self._by_value[node.value] = node
+            self._nodes[key] = node
+        return node
+
+    def _new(self, key: tuple[object, ...], op: str, args: tuple[Scalar, ...], payload: object) -> Scalar:
+        spend(SCALAR)
+        node = self._nodes[key] = Scalar(self, len(self._serials), op, args, payload)
+        self._serials.append(node)
+        if op == "mul":
+            node.value = args[0].value * args[1].value % PRIME
+        elif op == "add":
+            node.value = (args[0].value + args[1].value) % PRIME
+        elif op == "const":
+            assert isinstance(payload, Fraction)
+            node.value = residue(payload)
+        elif op == "symbol":
+            node.value = opaque("symbol", payload)
+        elif op in ("sin", "cos"):
+            pair = self._pairs.get(args[0])
+            if pair is None:
+                pair = self._pairs[args[0]] = self._pair(args[0])
+            node.value = pair[op == "sin"]
+        elif len(args) == 2:
+            node.value = combine(op, (args[0].value, args[1].value), payload)
+        else:
+            node.value = combine(op, [a.value for a in args], payload)
+        return node
+
+    def _pair(self, angle: Scalar) -> tuple[int, int]:
+        form = {leaf.value: count for leaf, count in self.angle_form(angle).items()}
+        for leaf in form:
+            if leaf not in self._angles:
+                self._angles[leaf] = leaf_pair(leaf)
+        return angle_pair(form, self._angles)
+
+    def at(self, serial: int) -> Scalar:
+        """The scalar with a serial number."""
+        node = self._serials[serial]
+        assert node is not None, "a scalar that is in use was forgotten"
+        return node
+
+    def mark(self) -> tuple[int, int]:
+        """Where scalars and their keys stand that are made from now on."""
+        return len(self._serials), len(self._nodes)
+
+    def forget(self, mark: tuple[int, int], stays: Callable[[Scalar], bool]) -> None:
+        """Lets go of the scalars since the mark that do not stay; see `symgen.symbolic.passes.forgetting`."""
+        first, keys = mark
+        kept = []
+        # keys stand in the order in which they were made, and hold operands, too
+        while len(self._nodes) > keys:
+            key, node = self._nodes.popitem()
+            args = key[2] if key[0] == "raw" else key[1]
+            assert isinstance(args, tuple)
+            if stays(node) and all(map(stays, args)):
+                kept.append((key, node))
+        self._nodes.update(reversed(kept))
+        self._by_value = {value: node for value, node in self._by_value.items() if stays(node)}
+        self._turns = {angle: turn for angle, turn in self._turns.items() if stays(angle) and stays(turn[1])}
+        self._pairs = {angle: pair for angle, pair in self._pairs.items() if stays(angle)}
+        self.points.clear()
+        self.products.forget(stays)
+        for serial in range(first, len(self._serials)):
+            node_there = self._serials[serial]
+            if node_there is not None and not stays(node_there):
+                self._serials[serial] = None
+
+    def dissolve(self) -> None:
+        """Lets go of all scalars but those that somebody holds; nothing is made on this graph any more.
+
+        A graph and its scalars hold each other: nobody else would let go of what derivations leave behind.
+        """
+        for known in (self._nodes, self._constants, self._serials, self._by_value, self._turns, self._pairs):
+            known.clear()
+        self.points.clear()
+        self.products.forget(lambda _: False)
+
+    def lift(self, value: Number) -> Scalar:
+        """A scalar of this graph from a scalar, an integer or a rational number."""
+        return value if isinstance(value, Scalar) else self.const(value)
+
+    def const(self, value: int | Fraction) -> Scalar:
+        """An exact constant."""
+        key = value.numerator, value.denominator
+        node = self._constants.get(key)
+        if node is None:
+            node = self._constants[key] = self._node("const", (), Fraction(value))
+        return node
+
+    def symbol(self, name: str) -> Scalar:
+        """A named input."""
+        return self._node("symbol", (), name)
+
+    def stand_in(self, name: str) -> Scalar:
+        """A symbol that something else replaces later; nothing that is made without it ever holds it."""
+        node = self.symbol(name)
+        if not node.stands:
+            self._stand_ins += 1
+            node.stands = 1 << self._stand_ins
+        return node
+
+    def raw(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
+        """The operation as it stands, past the constructor rules."""
+        if op in ("add", "mul") and args[0].constant is None:
+            # the order of the constructors: numbers first, then by serial
+            args = args if args[1].constant is None and args[0].serial < args[1].serial else args[::-1]
+        usual = self._nodes.get((op, args, payload))
+        if usual is not None and usual.op == op and usual.args == args:
+            return usual
+        key = ("raw", op, args, payload)
+        node = self._nodes.get(key)
+        return self._new(key, op, args, payload) if node is None else node
+
+    def sum(self, terms: Iterable[Scalar]) -> Scalar:
+        """Left-to-right sum; 0 for no terms."""
+        total = self.zero
+        for term in terms:
+            total = self.add(total, term)
+        return total
+
+    def product(self, factors: Iterable[Scalar]) -> Scalar:
+        """Left-to-right product; 1 for no factors."""
+        total = self.one
+        for factor in factors:
+            total = self.mul(total, factor)
+        return total
+
+    def neg(self, a: Scalar) -> Scalar:
+        """-a."""
+        if a.op == "neg":
+            return a.args[0]
+        if (value := a.constant) is not None:
+            return self.const(-value)
+        if a.op == "sub":
+            return self._node("sub", (a.args[1], a.args[0]))
+        return self._node("neg", (a,))
+
+    def add(self, a: Scalar, b: Scalar) -> Scalar:
+        """a + b."""
+        if a.is_zero:
+            return b
+        if b.is_zero:
+            return a
+        if b.op == "neg":
+            return self.sub(a, b.args[0])
+        if a.op == "neg":
+            return self.sub(b, a.args[0])
+        if a.constant is not None and b.constant is not None:
+            return self.const(a.constant + b.constant)
+        if a is b:
+            return self.mul(self.const(2), a)
+        if a.op == "sub" and a.args[1] is b:
+            return a.args[0]
+        if b.op == "sub" and b.args[1] is a:
+            return b.args[0]
+        if (combined := self.products.combined(a, b, 1)) is not None:
+            return combined
+        if a.serial > b.serial:
+            a, b = b, a
+        return self._node("add", (a, b))
+
+    def sub(self, a: Scalar, b: Scalar) -> Scalar:
+        """a - b."""
+        if a is b:
+            return self.zero
+        if b.is_zero:
+            return a
+        if a.is_zero:
+            return self.neg(b)
+        if b.op == "neg":
+            return self.add(a, b.args[0])
+        if a.op == "neg":
+            return self.neg(self.add(a.args[0], b))
+        if a.constant is not None and b.constant is not None:
+            return self.const(a.constant - b.constant)
+        if a.op == "add" and b in a.args:
+            return a.args[1] if a.args[0] is b else a.args[0]
+        if a.op == "sub" and a.args[0] is b:
+            return self.neg(a.args[1])
+        if b.op == "add" and a in b.args:
+            return self.neg(b.args[1] if b.args[0] is a else b.args[0])
+        if b.op == "sub" and b.args[0] is a:
+            return b.args[1]
+        if (combined := self.products.combined(a, b, -1)) is not None:
+            return combined
+        return self._node("sub", (a, b))
+
+    def mul(self, a: Scalar, b: Scalar) -> Scalar:
+        """a * b."""
+        if a.is_zero or b.is_zero:
+            return self.zero
+        if a.is_one:
+            return b
+        if b.is_one:
+            return a
+        if a.op == "neg":
+            return self.neg(self.mul(a.args[0], b))
+        if b.op == "neg":
+            return self.neg(self.mul(a, b.args[0]))
+        if a.constant is None and b.constant is not None:
+            a, b = b, a
+        if (value := a.constant) is not None:
+            if b.constant is not None:
+                return self.const(value * b.constant)
+            if value < 0:
+                return self.neg(self.mul(self.const(-value), b))
+            if b.op == "mul" and (inner := b.args[0].constant) is not None:
+                return self.mul(self.const(value * inner), b.args[1])
+            return self._node("mul", (a, b))
+        for x, y in ((a, b), (b, a)):
+            if x.op == "div" and x.args[1] is y:
+                return x.args[0]
+            if x.op == "mul" and (factor := x.args[0].constant) is not None:
+                return self.mul(self.const(factor), self.mul(x.args[1], y))
+        if a.serial > b.serial:
+            a, b = b, a
+        return self._node("mul", (a, b))
+
+    def div(self, a: Scalar, b: Scalar) -> Scalar:
+        """a / b; a constant divisor becomes an exact factor."""
+        if a.is_zero:
+            return a
+        if (value := b.constant) is not None and value != 0:
+            return self.mul(self.const(1 / value), a)
+        if a is b:
+            return self.one
+        if a.op == "neg":
+            return self.neg(self.div(a.args[0], b))
+        if b.op == "neg":
+            return self.neg(self.div(a, b.args[0]))
+        if a.op == "mul" and b in a.args:
+            return a.args[1] if a.args[0] is b else a.args[0]
+        if b.op == "abs" and b.args[0] is a:
+            return self.function("copysign", (self.one, a))
+        if b.op == "mul" and a in b.args:
+            return self.div(self.one, b.args[1] if b.args[0] is a else b.args[0])
+        if b.op == "div":
+            return self.div(self.mul(a, b.args[1]), b.args[0])
+        return self._node("div", (a, b))
+
+    def power(self, base: Scalar, exponent: Fraction) -> Scalar:
+        """base ** exponent: products and square roots where they serve."""
+        if exponent < 0:
+            return self.div(self.one, self.power(base, -exponent))
+        if exponent.denominator == 1:
+            result, square, count = self.one, base, exponent.numerator
+            while count:
+                if count & 1:
+                    result = self.mul(result, square)
+                count >>= 1
+                if count:
+                    square = self.mul(square, square)
+            return result
+        if exponent.denominator == 2:
+            whole = exponent.numerator // 2
+            return self.mul(self.power(base, Fraction(whole)), self.function("sqrt", (base,)))
+        return self._node("pow", (base,), exponent)
+
+    def function(self, name: str, args: tuple[Scalar, ...]) -> Scalar:
+        """One of the functions of the expression language, or abs, copysign, ratio_or_zero, min, max, rounded."""
+        if name in ("sin", "cos"):
+            return self.trig(name, args[0])
+        if name == "rounded":
+            return self.rounded(args[0])
+        first = args[0]
+        if name == "sqrt":
+            if (value := first.constant) is not None and value >= 0:
+                top, bottom = isqrt(value.numerator), isqrt(value.denominator)
+                if top * top == value.numerator and bottom * bottom == value.denominator:
+                    return self.const(Fraction(top, bottom))
+            if first.op == "mul" and first.args[0] is first.args[1]:
+                return self.function("abs", (first.args[0],))
+        if name == "abs":
+            if first.op in ("neg", "abs"):
+                return self.function("abs", first.args)
+            if first.op == "sqrt" or (first.op == "mul" and first.args[0] is first.args[1]):
+                return first
+            if (value := first.constant) is not None:
+                return self.const(abs(value))
+        if name == "ratio_or_zero":
+            if first.is_zero or args[1].is_zero:
+                return self.zero
+            if args[1].constant is not None:
+                return self.div(first, args[1])
+        return self._node(name, args)
+
+    def rounded(self, a: Scalar) -> Scalar:
+        """The number that is computed for a, of which nothing else is known: what it lacks of a can be worked out."""
+        return a if a.constant is not None or a.op in ("symbol", "rounded") else self._node("rounded", (a,))
+
+    def trig(self, name: str, argument: Scalar) -> Scalar:
+        """Sine or cosine, keyed by the integer combination of leaves in its argument; its sign is pulled out."""
+        turn = self._turns.get(argument)
+        if turn is None:
+            turn = self._turns[argument] = self._turn(self.angle_form(argument))
+        negative, angle = turn
+        if angle.is_zero:
+            return self.zero if name == "sin" else self.one
+        value = self._node(name, (angle,))
+        return self.neg(value) if negative and name == "sin" else value
+
+    def _turn(self, form: dict[Scalar, int]) -> tuple[bool, Scalar]:
+        """Whether the first leaf counts negative, and the sum of the leaves in their order with all signs turned so."""
+        leaves = sorted(form, key=lambda leaf: leaf.serial)
+        negative = bool(leaves) and form[leaves[0]] < 0
+        total = self.zero
+        for leaf in leaves:
+            term = self.mul(self.const(abs(form[leaf])), leaf)
+            total = self.add(total, term) if (form[leaf] > 0) != negative else self.sub(total, term)
+        return negative, total
+
+    def angle_form(self, a: Scalar) -> dict[Scalar, int]:
+        """`a` as an integer combination of leaves (coordinates, or whatever is not a sum), without zeros.
+
+        Leaves stand in the order in which they are met; each sum is looked at once, however often it is used.
+        """
+        weights: dict[Scalar, tuple[tuple[Scalar, int], ...]] = {}
+        stack = [a]
+        while stack:
+            node = stack.pop()
+            if node not in weights:
+                weights[node] = terms = _terms(node)
+                stack += [term for term, _ in reversed(terms)]
+        counts = dict.fromkeys(weights, 0)
+        counts[a] = 1
+        for node in sorted(weights, key=_serial, reverse=True):  # what a sum is made of is older than the sum
+            for term, factor in weights[node]:
+                counts[term] += factor * counts[node]
+        return {node: count for node, count in counts.items() if count and not weights[node] and not node.is_zero}
+
+
+def _serial(node: Scalar) -> int:
+    return node.serial
+
+
+def _terms(node: Scalar) -> tuple[tuple[Scalar, int], ...]:
+    """What a node adds up, each with a whole factor; nothing for leaves."""
+    if node.op == "add":
+        return (node.args[0], 1), (node.args[1], 1)
+    if node.op == "sub":
+        return (node.args[0], 1), (node.args[1], -1)
+    if node.op == "neg":
+        return ((node.args[0], -1),)
+    if node.op == "mul" and (k := node.args[0].constant) is not None and k.denominator == 1:
+        return ((node.args[1], k.numerator),)
+    return ()

@@ -1,0 +1,37 @@
+"""Scalars brought to another graph, operation by operation.
+
+The constructors' rules have been applied where the scalars were made; applying them again beside other nodes would
+replace a form by an equal function that was derived before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import topological
+
+
+def transplanted(
+    graph: Graph, outputs: Iterable[Scalar], symbols: Mapping[str, Scalar] = MappingProxyType({})
+) -> list[Scalar]:
+    """The same scalars as nodes of `graph`; symbols keep their names, or take the place that `symbols` gives them."""
+    outputs = list(outputs)
+    image: dict[Scalar, Scalar] = {}
+    for node in topological(outputs):
+        args = tuple(map(image.__getitem__, node.args))
+        if node.op == "symbol":
+            name = str(node.payload)
+            if name in symbols:
+                image[node] = symbols[name]
+            else:
+                image[node] = graph.stand_in(name) if node.stands else graph.symbol(name)
+        elif node.constant is not None:
+            image[node] = graph.const(node.constant)
+        elif node.op in ("sin", "cos"):
+            # keyed by the angle, as the addition theorem expects them
+            image[node] = graph.trig(node.op, args[0])
+        else:
+            image[node] = graph.raw(node.op, args, node.payload)
+    return [image[output] for output in outputs]

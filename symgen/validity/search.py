@@ -1,0 +1,336 @@
+"""A search for regular states at which a scalar vanishes: many seeded starts, counted steps, decided in 40 digits.
+
+Starts are followed in double precision; only where one ends close to a zero do 40 digits go on from there.  Levenberg
+and Marquardt's method drives the constraint residuals and the scalar (each of its squares, if it is a sum of squares)
+to 0 together, over all coordinates and over the parameters within their ranges (Nocedal and Wright, Numerical
+Optimization, ch. 10).  Angles run through the whole circle whatever range they are sampled from.  A state counts only
+where the ranks of B and of [B; M^T] are beyond doubt, so a scalar that vanishes with a rank is not blamed.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Mapping, Sequence
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from functools import cached_property
+
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.system import System
+from symgen.model.configurations.sparse import solve_gram, transposed_product
+from symgen.records import dataclass
+from symgen.symbolic.matrix import flatten
+from symgen.symbolic.scalar import PI, Scalar
+from symgen.symbolic.translate import translate
+from symgen.symbolic.traverse import topological
+from symgen.validity.decimals import DIGITS, ONE, ZERO, DecimalEvaluator, UndefinedError
+from symgen.validity.floats import FloatGradients
+
+SEED = 20120731
+STARTS = 12
+STEPS = 40
+MOST_TERMS = 12  # of a sum of squares that are driven to 0 one by one
+VANISHED = Decimal("1e-12")  # of the scalar's usual size, and of the constraint residuals
+NEAR, FINISHED = 1e-8, 1e-14  # the same in double precision: where decimals go on, and where no step gains any more
+REGULAR = Decimal("1e-4")  # of the largest pivot of a matrix with rows that usually have length 1
+LENGTH_POINTS = 4
+Point = dict[str, Decimal]
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A regular state at which a scalar vanishes: coordinates and parameters."""
+
+    point: tuple[tuple[str, Decimal], ...]
+
+
+class ZeroSearch:
+    """Looks for zeros of scalars on V, away from drops of rank."""
+
+    def __init__(self, mechanics: System, generic: Genericity) -> None:
+        self._generic = generic
+        model = mechanics.model
+        self._box: dict[str, tuple[Decimal, Decimal]] = {}
+        self._angles: set[str] = set()
+        turn = 2 * PI
+        self._coordinates = frozenset(c.name for c in model.coordinates)
+        for c in model.coordinates:
+            lower, upper = (Fraction(0), turn) if c.is_angle else c.range
+            self._box[c.name] = (_decimal(lower), _decimal(upper))
+            if c.is_angle:
+                self._angles.add(c.name)
+        for p in model.parameters:
+            if p.range is not None:
+                self._box[p.name] = (_decimal(p.range[0]), _decimal(p.range[1]))
+        self._fixed = self._defaults(mechanics)
+        self._residuals = mechanics.constraint_residual
+        inputs = [entry for column in mechanics.inputs for entry in column]
+        self._rows = DecimalEvaluator([*flatten(mechanics.constraint_jacobian), *inputs])
+
+    def zero_of(self, scalar: Scalar) -> Found | None:
+        """A regular state at which the scalar vanishes, or None if no start led to one.
+
+        Of loops that share no coordinate with the scalar, nor with others that do, none is closed before there is a
+        zero without them.
+        """
+        own = self._connected(scalar)
+        if len(own) < len(self._residuals) and self._zero_of(scalar, own) is None:
+            return None
+        return self._zero_of(scalar, self._residuals)
+
+    def _connected(self, scalar: Scalar) -> list[Scalar]:
+        """The residuals that hold coordinates of the scalar, or of another one that does."""
+        held = [symbols([residual]) & self._coordinates for residual in self._residuals]
+        reached, left = symbols([scalar]) & self._coordinates, [*range(len(held))]
+        while near := [k for k in left if held[k] & reached]:
+            reached = reached.union(*(held[k] for k in near))
+            left = [k for k in left if k not in near]
+        return [residual for k, residual in enumerate(self._residuals) if k not in left]
+
+    def _zero_of(self, scalar: Scalar, residuals: Sequence[Scalar]) -> Found | None:
+        with localcontext() as context:
+            context.prec = DIGITS
+            terms = squares(scalar)
+            if len(terms) > MOST_TERMS:
+                terms = [scalar]
+            reached = symbols([scalar, *residuals])
+            names = [name for name in self._box if name in reached]
+            evaluator = DecimalEvaluator([*residuals, *terms])
+            floats = FloatGradients([*residuals, *terms], names)
+            source = random.Random(SEED)
+            sizes: list[float] = []
+            for start in range(STARTS):
+                point = self._start(source, inner=start < STARTS // 2)
+                near = self._approach(floats, point, names, sizes, len(residuals))
+                found = None if near is None else self._descend(evaluator, *near, names, len(residuals))
+                if found is not None and self._regular(found):
+                    shown = [*self._angles, *names]
+                    return Found(tuple((name, found[name]) for name in self._box if name in shown))
+            return None
+
+    def _start(self, source: random.Random, inner: bool) -> Point:
+        """Anywhere in the box; parameters at their defaults in the first half of the starts."""
+        point = dict(self._fixed)
+        for name, (lower, upper) in self._box.items():
+            share = Decimal(source.randrange(10**9)) / 10**9
+            if not (inner and name in self._fixed):
+                point[name] = lower + (upper - lower) * share
+        return point
+
+    def _approach(
+        self, evaluate: FloatGradients, point: Point, names: Sequence[str], sizes: list[float], rows: int
+    ) -> tuple[Point, Decimal] | None:
+        """Where the way from a start ends close to a zero, and the scalar's usual size."""
+        at = {name: float(value) for name, value in point.items()}
+        state = evaluate(at)
+        if state is None:
+            return None
+        values, slopes = state
+        sizes.append(max(map(abs, values[rows:])))
+        usual = sorted(sizes)[len(sizes) // 2] or 1.0
+        weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
+        limits = [(float(lower), float(upper)) for lower, upper in (self._box[name] for name in names)]
+        damping, size = 1e-3, max(abs(v) * w for v, w in zip(values, weights, strict=True))
+        for _ in range(STEPS):
+            if size <= FINISHED:
+                break
+            scaled = [
+                {k: w * slope * (limits[k][1] - limits[k][0]) for k, slope in row.items()}
+                for w, row in zip(weights, slopes, strict=True)
+            ]
+            scale = sum(x * x for row in scaled for x in row.values()) / len(scaled)
+            right = [w * v for w, v in zip(weights, values, strict=True)]
+            y = solve_gram(scaled, right, damping * scale + 1e-30)
+            fresh = None
+            if y is not None:
+                trial = dict(at)
+                for k, share in transposed_product(scaled, y).items():
+                    lower, upper = limits[k]
+                    moved = at[names[k]] - (upper - lower) * share
+                    trial[names[k]] = moved if names[k] in self._angles else min(max(moved, lower), upper)
+                fresh = evaluate(trial)
+                if fresh is None:
+                    return None
+            fresh_size = math.inf if fresh is None else max(abs(v) * w for v, w in zip(fresh[0], weights, strict=True))
+            if fresh is not None and fresh_size < size:
+                at, (values, slopes), size, damping = trial, fresh, fresh_size, damping / 10
+            elif size <= NEAR:
+                break
+            else:
+                damping = damping * 10
+                if damping > 1000:
+                    return None
+        return ({name: Decimal(value) for name, value in at.items()}, Decimal(usual)) if size <= NEAR else None
+
+    def _descend(
+        self, evaluator: DecimalEvaluator, point: Point, usual: Decimal, names: Sequence[str], rows: int
+    ) -> Point | None:
+        """The zero beside a point, if there is one."""
+        damping = Decimal("1e-12")
+        try:
+            values, slopes = evaluator.gradients(point, names)
+        except UndefinedError:
+            return None
+        weights = [ONE] * rows + [ONE / usual] * (len(values) - rows)
+        widths = [self._box[name][1] - self._box[name][0] for name in names]
+        size = _size(values, weights)
+        for _ in range(STEPS):
+            if size <= VANISHED:
+                return point
+            trial = self._step(point, names, values, slopes, weights, widths, damping)
+            try:
+                fresh, fresh_slopes = evaluator.gradients(trial, names)
+            except UndefinedError:
+                return None
+            fresh_size = _size(fresh, weights)
+            if fresh_size < size:
+                point, values, slopes, size, damping = trial, fresh, fresh_slopes, fresh_size, damping / 10
+            else:
+                damping = damping * 10
+                if damping > 1000:
+                    return None
+        return point if size <= VANISHED else None
+
+    def _step(
+        self,
+        point: Point,
+        names: Sequence[str],
+        values: Sequence[Decimal],
+        slopes: Sequence[Sequence[Decimal]],
+        weights: Sequence[Decimal],
+        widths: Sequence[Decimal],
+        damping: Decimal,
+    ) -> Point:
+        j = [
+            [w * s * width for s, width in zip(row, widths, strict=True)]
+            for w, row in zip(weights, slopes, strict=True)
+        ]
+        right = [w * v for w, v in zip(weights, values, strict=True)]
+        scale = sum((x * x for row in j for x in row), ZERO) / len(j)
+        normal = [[sum((x * y for x, y in zip(p, q, strict=True)), ZERO) for q in j] for p in j]
+        for i, row in enumerate(normal):
+            row[i] += damping * scale + Decimal("1e-30")
+        y = _solve(normal, right)
+        trial = dict(point)
+        for k, name in enumerate(names):
+            moved = point[name] - widths[k] * sum((j[i][k] * y[i] for i in range(len(j))), ZERO)
+            if name not in self._angles:
+                lower, upper = self._box[name]
+                moved = min(max(moved, lower), upper)
+            trial[name] = moved
+        return trial
+
+    def _regular(self, point: Point) -> bool:
+        """Whether B and [B; M^T] have their generic ranks beyond doubt."""
+        generic = self._generic
+        try:
+            values = self._rows.values(point)
+        except UndefinedError:
+            return False
+        rows = [
+            [x / length for x in row] if length else row
+            for row, length in zip(self._matrix(values), self._lengths, strict=True)
+        ]
+        return (
+            _smallest_pivot(rows[: generic.r], generic.rank) > REGULAR
+            and _smallest_pivot(rows, generic.rank + generic.alpha) > REGULAR
+        )
+
+    def _matrix(self, values: Sequence[Decimal]) -> list[Sequence[Decimal]]:
+        n = self._generic.n
+        return [values[i * n : (i + 1) * n] for i in range(self._generic.r + self._generic.m)]
+
+    @cached_property
+    def _lengths(self) -> list[Decimal]:
+        """The largest length of each row of [B; M^T] at some points: a row that all but vanishes is a drop of rank."""
+        source = random.Random(SEED)
+        lengths = [ZERO] * (self._generic.r + self._generic.m)
+        for _ in range(LENGTH_POINTS):
+            try:
+                values = self._rows.values(self._start(source, inner=True))
+            except UndefinedError:
+                continue
+            found = (sum((x * x for x in row), ZERO).sqrt() for row in self._matrix(values))
+            lengths = [max(pair) for pair in zip(lengths, found, strict=True)]
+        return lengths
+
+    @staticmethod
+    def _defaults(mechanics: System) -> Point:
+        graph = mechanics.graph
+        with localcontext() as context:
+            context.prec = DIGITS
+            values: Point = {}
+            for parameter in mechanics.model.parameters:
+                names = {name: graph.symbol(name) for name in values}
+                values[parameter.name] = DecimalEvaluator([translate(graph, parameter.value, names)]).values(values)[0]
+        return values
+
+
+def symbols(scalars: Sequence[Scalar]) -> frozenset[str]:
+    """The names of the symbols that scalars hold."""
+    return frozenset(str(node.payload) for node in topological(scalars) if node.op == "symbol")
+
+
+def squares(scalar: Scalar) -> list[Scalar]:
+    """What is squared in a sum of squares; the scalar itself if it is none."""
+    match scalar.op:
+        case "add":
+            left, right = (squares(argument) for argument in scalar.args)
+            own = any(parts == [argument] for parts, argument in zip((left, right), scalar.args, strict=True))
+            return [scalar] if own else [*left, *right]
+        case "mul" if scalar.args[0] is scalar.args[1]:
+            return [scalar.args[0]]
+        case _:
+            return [scalar]
+
+
+def _decimal(value: Fraction) -> Decimal:
+    return Decimal(value.numerator) / Decimal(value.denominator)
+
+
+def _size(values: Sequence[Decimal], weights: Sequence[Decimal]) -> Decimal:
+    return max(abs(v) * w for v, w in zip(values, weights, strict=True))
+
+
+def _solve(a: list[list[Decimal]], b: Sequence[Decimal]) -> list[Decimal]:
+    """A y = b for a symmetric positive definite A."""
+    rows = [[*row, value] for row, value in zip(a, b, strict=True)]
+    size = len(rows)
+    for k in range(size):
+        for i in range(k + 1, size):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
+    y = [ZERO] * size
+    for k in reversed(range(size)):
+        y[k] = (rows[k][size] - sum((rows[k][i] * y[i] for i in range(k + 1, size)), ZERO)) / rows[k][k]
+    return y
+
+
+def _smallest_pivot(rows: Sequence[Sequence[Decimal]], rank: int) -> Decimal:
+    """The pivot number `rank` of elimination with complete pivoting; rows of large mechanisms hold few coordinates."""
+    work = [{j: x for j, x in enumerate(row) if x} for row in rows]
+    # of each row its largest entry, the first of equal ones
+    largest = [_largest(row) for row in work]
+    size = ONE
+    for k in range(rank):
+        size, i, j = max(((largest[i][0], -i, largest[i][1]) for i in range(k, len(work))), default=(ZERO, 0, 0))
+        if not size:
+            return ZERO
+        i, j = -i, -j
+        work[k], work[i], largest[k], largest[i] = work[i], work[k], largest[i], largest[k]
+        for other in range(k + 1, len(work)):
+            row = work[other]
+            if j not in row:
+                continue
+            factor = row[j] / work[k][j]
+            for column, y in work[k].items():
+                row[column] = row.get(column, ZERO) - factor * y
+            del row[j]
+            largest[other] = _largest(row)
+    return size
+
+
+def _largest(row: Mapping[int, Decimal]) -> tuple[Decimal, int]:
+    """The size of the largest entry of a row, and its column with a minus sign."""
+    return max(((abs(x), -j) for j, x in row.items()), default=(ZERO, 0))

@@ -1,0 +1,133 @@
+"""Where input equations can be solved: the guards of their determinants.
+
+Inputs count by their lengths at a configuration, and rows of B by theirs: a determinant is at most the product of the
+lengths of what it is made of (Hadamard's bound; Horn and Johnson, Matrix Analysis, 7.8), and a short row is no loss of
+rank.  That an input has a length left is a guard of its own, because what bounds a moment about a turned lever is many
+times the moment: of several inputs together that is more than float32 can tell from a drop of the rank.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import reduce
+
+from symgen.ir.kernel import Status
+from symgen.linear_algebra.exterior import ActuationForms
+from symgen.linear_algebra.guards import Guard, magnitude
+from symgen.linear_algebra.null_spaces import InputEquations, MinorSpace, NullSpace
+from symgen.linear_algebra.pivoted import elementary_symmetric
+from symgen.linear_algebra.reflected_inputs import ReflectedInputs
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.system import System
+from symgen.symbolic.matrix import Vector, dot
+from symgen.symbolic.scalar import Graph, Scalar
+
+
+def solvable(
+    mechanics: System,
+    generic: Genericity,
+    space: NullSpace,
+    forms: InputEquations,
+    columns: Sequence[Vector],
+    status: Status,
+) -> tuple[Guard, ...]:
+    """The guards with `status` of the determinants of `columns`; a drop of the rank of B is named first."""
+    graph, denominator = mechanics.graph, forms.denominator()
+    if denominator.constant is not None:
+        return ()
+    if isinstance(forms, ActuationForms) and mechanics.factoring.fixed(denominator):
+        return (Guard(status, denominator, 1 if forms.single else 2, space.guards),)
+    lengths = [dot(graph, column, column) for column in columns]
+    bounds = magnitude(graph, lengths)
+    sizes = [bound if _near(mechanics, x) else own for x, own, bound in zip(columns, lengths, bounds, strict=True)]
+    if isinstance(forms, ReflectedInputs):
+        directions = _by_pivots(graph, forms, sizes, status, space.guards)
+    else:
+        assert isinstance(forms, ActuationForms)
+        directions = _by_minors(mechanics, generic, space, forms, sizes, status)
+    short = _short(graph, sizes, bounds, forms.degree)
+    return (*(Guard(status, measure, 2, space.guards, scale) for measure, scale in short), directions)
+
+
+def _near(mechanics: System, vector: Vector) -> bool:
+    """Whether a bound that needs no sine or cosine is near the length: an entry is fixed, and none a sum that moves."""
+    fixed = mechanics.factoring.fixed
+    moving = [entry for entry in vector if not fixed(entry)]
+    if not any(fixed(entry) and not entry.is_zero for entry in vector):
+        return not moving
+    while moving:
+        node = moving.pop()
+        if node.op in ("mul", "neg", "copysign"):
+            moving += [part for part in node.args[: 1 if node.op == "copysign" else 2] if not fixed(part)]
+        elif node.op not in ("sin", "cos"):
+            return False
+    return True
+
+
+def _short(
+    graph: Graph, sizes: Sequence[Scalar], bounds: Sequence[Scalar], degree: int
+) -> list[tuple[Scalar, Scalar]]:
+    """What is small where fewer than `degree` of the squared lengths stand out of the rounding of their terms.
+
+    Beside the sum of products of one length less, a sum of products is about the least of the lengths that count.
+    """
+    pairs = list(zip(sizes, bounds, strict=True))
+    moving = list(dict.fromkeys(pair for pair in pairs if pair[0] is not pair[1]))
+    if not moving or (len(moving) == 1 and degree == len(pairs)):
+        return moving
+    if degree == len(pairs):
+        return [(_least(graph, [graph.function("ratio_or_zero", pair) for pair in moving]), graph.one)]
+    shares = [graph.one if a is b else graph.function("ratio_or_zero", (a, b)) for a, b in pairs]
+    return [(elementary_symmetric(graph, shares, degree), elementary_symmetric(graph, shares, degree - 1))]
+
+
+def _least(graph: Graph, values: Sequence[Scalar]) -> Scalar:
+    return reduce(lambda a, b: graph.function("min", (a, b)), values)
+
+
+def _by_pivots(
+    graph: Graph, forms: ReflectedInputs, lengths: Sequence[Scalar], status: Status, before: tuple[Guard, ...]
+) -> Guard:
+    """What the inputs before leave of each input, or, of components of all inputs, the product of pivots."""
+    if forms.by_columns:
+        shares = [graph.function("ratio_or_zero", pair) for pair in zip(forms.pivots, lengths, strict=True)]
+        return Guard(status, _least(graph, shares), 2, before, graph.one)
+    # in units of their mean size products stay in the range of a float32
+    usual = graph.sum(lengths) * Fraction(1, len(lengths))
+    own = elementary_symmetric(graph, [x / usual for x in lengths], forms.degree)
+    pivots = [pivot / usual for pivot in forms.pivots]
+    # no direction is lost where none is short, nor where inputs are short by their units only, and pivots with them
+    volume = graph.function("ratio_or_zero", (graph.product(pivots), own))
+    return Guard(status, graph.function("max", (volume, _least(graph, pivots))), 2, before, graph.one)
+
+
+def _by_minors(
+    mechanics: System,
+    generic: Genericity,
+    space: NullSpace,
+    forms: ActuationForms,
+    lengths: Sequence[Scalar],
+    status: Status,
+) -> Guard:
+    """The sum of squared determinants, beside what it would be if all inputs and rows were orthogonal."""
+    graph, denominator = mechanics.graph, forms.denominator()
+    scale = graph.sum(
+        graph.product(lengths[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
+    )
+    directions = forms.degree
+    measure = denominator * denominator if forms.single else denominator
+    if isinstance(space, MinorSpace):
+        directions += generic.rank
+        if generic.rank < len(space.rows):
+            measure, scale = forms.at_one_length(space.lengths), scale * graph.product(space.lengths)
+        else:
+            rows = [_size(mechanics, row) for row in mechanics.constraint_jacobian]
+            scale = scale * elementary_symmetric(graph, rows, generic.rank)
+    return Guard(status, measure, 2, space.guards, scale, directions)
+
+
+def _size(mechanics: System, row: Vector) -> Scalar:
+    """|b|^2, or a bound near it."""
+    square = dot(mechanics.graph, row, row)
+    return magnitude(mechanics.graph, [square])[0] if _near(mechanics, row) else square

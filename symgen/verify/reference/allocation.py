@@ -1,0 +1,81 @@
+"""Redundant inputs by definition: weighted least norm, a share of the internal force, limits by their intervals.
+
+The direction of the internal force comes from m determinants of [M without a column, B'], the least norm from the
+Moore-Penrose inverse of M~ W^(-1/2), the limits from the end points of the intervals that each one leaves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from flint import arb, arb_mat
+
+from symgen.model.model import Allocation
+from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.linear import column, columns_of, determinant, pseudoinverse, solve
+
+
+def allocated(e: Evaluation, allocation: Allocation) -> Any:
+    """u (m x 1): of all inputs with N M u = N tau those that the allocation asks for."""
+    model = e.system.model
+    names = [item.name for item in model.inputs]
+    value = dict(zip((parameter.name for parameter in model.parameters), e.parameters, strict=True))
+    weights = _by_input(names, allocation.weights, value, arb(1))
+    preferred = column(_by_input(names, allocation.preferred, value, arb(0)))
+    least = preferred + _weighted_inverse(e, weights) * (e.projector * (e.load - e.at.control * preferred))
+    if not allocation.directed:
+        return least
+    direction = internal_force(e, weights)
+    share = arb(0) if allocation.preload is None else value[allocation.preload]
+    starts, ends = [], []
+    for limit in allocation.limits:
+        k = names.index(limit.input)
+        u, z = least[k, 0], direction[k, 0]
+        if not z.contains(0):
+            first, second = (value[limit.lower] - u) / z, (value[limit.upper] - u) / z
+            starts.append(first.min(second))
+            ends.append(first.max(second))
+    if starts:
+        share = _middle(_fold(starts, "max"), _fold(ends, "min"), share)
+    return least + direction * share
+
+
+def internal_force(e: Evaluation, weights: Sequence[Any]) -> Any:
+    """z (m x 1): z_k = (-1)^(k-1) det[M without column k, B'] over the root of sum_k w_k z_k^2, for m = delta + 1."""
+    m, transposed = e.system.m, e.at.constraints.transpose().tolist()
+    entries = []
+    for k in range(m):
+        kept = columns_of(e.at.control, [j for j in range(m) if j != k]).tolist()
+        square = arb_mat(e.system.n, e.system.n, [x for a, b in zip(kept, transposed, strict=True) for x in (*a, *b)])
+        entries.append((-1) ** k * determinant(square))
+    size = sum((w * z * z for w, z in zip(weights, entries, strict=True)), arb(0)).sqrt()
+    return column([z / size for z in entries])
+
+
+def _by_input(names: Sequence[str], given: Sequence[tuple[str, str]], value: dict[str, Any], absent: Any) -> list[Any]:
+    chosen = {name: value[parameter] for name, parameter in given}
+    return [chosen.get(name, absent) for name in names]
+
+
+def _weighted_inverse(e: Evaluation, weights: Sequence[Any]) -> Any:
+    """W^(-1/2) (M~ W^(-1/2))+, m x n."""
+    m, n = e.system.m, e.system.n
+    roots = [w.rsqrt() for w in weights]
+    scaling = arb_mat(m, m, [roots[i] if i == j else arb(0) for i in range(m) for j in range(m)])
+    scaled = e.projected_control * scaling
+    if e.ranks.actuation == n - e.ranks.constraints:  # range(N M) = ker B: (X X' + P) is regular
+        return scaling * solve(scaled * scaled.transpose() + e.projector_off, scaled).transpose()
+    return scaling * pseudoinverse(scaled, e.ranks.actuation)
+
+
+def _fold(values: Sequence[Any], choose: str) -> Any:
+    found = values[0]
+    for value in values[1:]:
+        found = getattr(found, choose)(value)
+    return found
+
+
+def _middle(a: Any, b: Any, c: Any) -> Any:
+    """The middle one of three."""
+    return a.min(b).max(a.max(b).min(c))

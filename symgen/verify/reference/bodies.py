@@ -1,0 +1,112 @@
+"""Bodies in the reference: Jacobians of centres and turning rates, and what a motion along them asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb_mat
+
+from symgen.model.expressions.expression import Expression
+from symgen.model.mechanism import Mechanism
+from symgen.verify.reference.frames import Frames
+from symgen.verify.reference.parts import Part, piece, placed
+from symgen.verify.reference.tape import Register
+from symgen.verify.reference.taylor import CONSTANT
+from symgen.verify.reference.translation import Translation
+
+BLOCK = 6  # rows of the Jacobian of a body
+WEIGHTS = 10  # its mass and the entries of its inertia
+
+
+@dataclass(frozen=True)
+class BodyJacobian:
+    """Velocities of centres in world axes and turning rates in body axes by the rates, 6 rows a body.
+
+    Bodies of machines side by side do not feel the coordinates of the others: a matrix for each part.
+    """
+
+    parts: Sequence[Part]
+    pieces: Sequence[Any]
+    n: int
+
+    def mass(self, weights: Sequence[Any]) -> Any:
+        """G (n x n) of all bodies, by their masses and inertias."""
+        found = []
+        for part, rows in zip(self.parts, self.pieces, strict=True):
+            own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
+            found.append((part.coordinates, part.coordinates, rows.transpose() * _weighted(rows, own)))
+        return placed(self.n, self.n, found)
+
+    def mass_times(self, vector: Any, weights: Sequence[Any]) -> Any:
+        """G times a column (n x 1)."""
+        found = []
+        for part, rows in zip(self.parts, self.pieces, strict=True):
+            own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
+            moved = rows * piece(vector, part.coordinates, (0,))
+            found.append((part.coordinates, (0,), rows.transpose() * _weighted(moved, own)))
+        return placed(self.n, 1, found)
+
+    def force(self, wrenches: Sequence[Any]) -> Any:
+        """What forces on the centres and torques in body axes load the coordinates with (n x 1)."""
+        found = []
+        for part, rows in zip(self.parts, self.pieces, strict=True):
+            own = [x for k in part.bodies for x in wrenches[BLOCK * k : BLOCK * (k + 1)]]
+            found.append((part.coordinates, (0,), rows.transpose() * arb_mat(len(own), 1, own)))
+        return placed(self.n, 1, found)
+
+
+class BodyReplay:
+    """Registers of the Jacobian and the weights of every body, from frames to first order in the coordinates."""
+
+    def __init__(self, mechanism: Mechanism, frames: Frames, plain: Translation, n: int) -> None:
+        self._zero = plain.algebra.tape.zero
+        self._n = n
+        self._rows: list[list[dict[int, Register]]] = []
+        self.weights: list[Register] = []
+        for body in mechanism.bodies:
+            centre = [{j: place[(j,), ()] for j in range(n) if ((j,), ()) in place} for place in frames.center(body)]
+            turning = [{j: rate[(), (j,)] for j in range(n) if ((), (j,)) in rate} for rate in frames.turning(body)]
+            self._rows.append([*centre, *turning])
+            self.weights += constants(plain, [body.mass, *(entry for row in body.inertia.rows for entry in row)])
+
+    def moved(self) -> list[set[int]]:
+        """The coordinates that move each body."""
+        return [{j for row in rows for j, x in row.items() if x != self._zero} for rows in self._rows]
+
+    def needed(self, parts: Sequence[Part]) -> list[Register]:
+        """The Jacobians of the bodies of each part by its coordinates, row by row."""
+        zero = self._zero
+        return [
+            row.get(j, zero) for part in parts for k in part.bodies for row in self._rows[k] for j in part.coordinates
+        ]
+
+    def at(self, parts: Sequence[Part], values: Sequence[Any]) -> BodyJacobian:
+        """The Jacobian from the values of what is needed."""
+        pieces, start = [], 0
+        for part in parts:
+            rows, columns = BLOCK * len(part.bodies), len(part.coordinates)
+            pieces.append(arb_mat(rows, columns, values[start : start + rows * columns]))
+            start += rows * columns
+        return BodyJacobian(parts, pieces, self._n)
+
+
+def constants(plain: Translation, expressions: Sequence[Expression]) -> list[Register]:
+    """The values of expressions of parameters."""
+    zero = plain.algebra.tape.zero
+    return [plain.polynomial(expression).get(CONSTANT, zero) for expression in expressions]
+
+
+def _weighted(rows: Any, weights: Sequence[Any]) -> Any:
+    """Velocities of centres times masses and turning rates times inertias, for each column of `rows`."""
+    columns = rows.ncols()
+    table = rows.tolist()
+    found: list[Any] = []
+    for k in range(rows.nrows() // BLOCK):
+        mass, *inertia = weights[WEIGHTS * k : WEIGHTS * (k + 1)]
+        block = table[BLOCK * k : BLOCK * (k + 1)]
+        found += [mass * x for row in block[:3] for x in row]
+        turned = arb_mat(3, 3, inertia) * arb_mat(3, columns, [x for row in block[3:] for x in row])
+        found += turned.entries()
+    return arb_mat(rows.nrows(), columns, found)

@@ -1,0 +1,270 @@
+"""One state of the reference: every intermediate that the quantities are made of, once.
+
+Equation numbers are those of the paper as corrected in the README.  Notation: N = I - B+B projects onto ker B,
+P = I - N, v = N qd, Z = N (N G N + P)^-1 N = F (F'GF)^-1 F' for every basis F of ker B.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cached_property, wraps
+from typing import Any, TypeAlias
+
+from flint import arb_mat, ctx
+
+from symgen.verify.reference.blocks import pseudoinverse_of_parts, right_pseudoinverse_of_parts
+from symgen.verify.reference.linear import (
+    column,
+    columns_of,
+    identity,
+    rows_of,
+    solve,
+)
+from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.parts import piece, placed
+from symgen.verify.reference.system import Configuration, System
+from symgen.verify.reference.tape import precision
+from symgen.verify.reference.translation import literal_values
+
+MORE_BITS = (2, 4, 8)  # times the working precision
+Derivative: TypeAlias = Callable[["Evaluation", Any], Any]
+
+
+def _once_a_velocity(derivative: Derivative) -> Derivative:
+    """A derivative along a velocity, computed once for each; an evaluation keeps the few velocities it has."""
+
+    @wraps(derivative)
+    def known(evaluation: Evaluation, velocity: Any) -> Any:
+        key = derivative.__name__, id(velocity)
+        if key not in evaluation.derivatives:
+            evaluation.derivatives[key] = velocity, derivative(evaluation, velocity)
+        return evaluation.derivatives[key][1]
+
+    return known
+
+
+@dataclass
+class Evaluation:
+    """One state; every intermediate is computed once, when it is needed."""
+
+    system: System
+    ranks: Ranks
+    q: Sequence[Any]
+    qd: Sequence[Any]
+    qdd: Sequence[Any]
+    u: Sequence[Any]
+    parameters: Sequence[Any]
+    literals: Sequence[Any]
+    own_literals: bool = False  # whether they are the values of the model's, which more bits make known better
+    derivatives: dict[tuple[str, int], tuple[Any, Any]] = field(default_factory=dict)
+
+    @cached_property
+    def at(self) -> Configuration:
+        """What depends on q alone."""
+        return self.system.configuration(self.q, self.parameters, self.literals)
+
+    @cached_property
+    def points(self) -> tuple[Any, Any]:
+        """Places of the points and their velocities per rate."""
+        return self.system.points(self.q, self.parameters, self.literals)
+
+    @cached_property
+    def gradients(self) -> tuple[Any, ...]:
+        """dG/dq, dB/dq and dM/dq."""
+        return self.system.gradients.at(self.q, self.parameters, self.literals)
+
+    def _along(self, what: str, velocity: Any) -> tuple[Any, ...]:
+        return self.system.gradients.along(what, self.gradients, velocity)
+
+    @_once_a_velocity
+    def motion(self, velocity: Any) -> tuple[Any, Any]:
+        """C v (n x 1) and B_dot v (r x 1) along a velocity v, without the matrices."""
+        motion = self.system.motion
+        if motion is None:
+            return self.coriolis(velocity) * velocity, self.constraints_dot(velocity) * velocity
+        return motion.along(self.q, velocity.entries(), self.parameters, self.literals, self.at.jacobian)
+
+    @cached_property
+    def inverse(self) -> Any:
+        """B+ (n x r).
+
+        Sums over subsets of rows in units far apart lose more digits than the working precision has: then they are
+        worked out with more bits.
+        """
+        rank = self.ranks.constraints
+        try:
+            return right_pseudoinverse_of_parts(self.at.constraints, rank, self.system.parts)
+        except ZeroDivisionError:
+            if rank == self.system.r:
+                raise
+        bits = ctx.prec
+        for more in MORE_BITS:
+            with precision(more * bits):
+                literals = literal_values(self.system.literals) if self.own_literals else self.literals
+                constraints, _ = self.system.matrices(self.q, self.parameters, literals)
+                with suppress(ZeroDivisionError):
+                    return right_pseudoinverse_of_parts(constraints, rank, self.system.parts)
+        raise ZeroDivisionError("the constraints may be of lower rank")
+
+    @cached_property
+    def projector_off(self) -> Any:
+        """P = B+B."""
+        inverse, constraints = self.inverse, self.at.constraints
+        return placed(
+            self.system.n,
+            self.system.n,
+            (
+                (
+                    part.coordinates,
+                    part.coordinates,
+                    piece(inverse, part.coordinates, part.rows) * piece(constraints, part.rows, part.coordinates),
+                )
+                for part in self.system.parts
+            ),
+        )
+
+    @cached_property
+    def projector(self) -> Any:
+        """N_B (21)."""
+        return identity(self.system.n) - self.projector_off
+
+    @cached_property
+    def rate(self) -> Any:
+        """qd as given."""
+        return column(self.qd)
+
+    @cached_property
+    def projected_rate(self) -> Any:
+        """N qd."""
+        return self.projector * self.rate
+
+    @_once_a_velocity
+    def coriolis(self, velocity: Any) -> Any:
+        """Christoffel C (3) along a velocity."""
+        return arb_mat(self.system.n, self.system.n, self._along("coriolis", velocity))
+
+    def mass_dot(self, velocity: Any) -> Any:
+        """d/dt G along a velocity."""
+        return arb_mat(self.system.n, self.system.n, self._along("mass", velocity))
+
+    @_once_a_velocity
+    def constraints_dot(self, velocity: Any) -> Any:
+        """d/dt B along a velocity."""
+        return arb_mat(self.system.r, self.system.n, self._along("constraints", velocity))
+
+    def control_dot(self, velocity: Any) -> Any:
+        """d/dt M along a velocity."""
+        return arb_mat(self.system.n, self.system.m, self._along("control", velocity))
+
+    @_once_a_velocity
+    def projector_dot(self, velocity: Any) -> Any:
+        """d/dt N_B along a velocity (Remark 9): -X - X', X = B+ Bdot N."""
+        x = self.inverse * (self.constraints_dot(velocity) * self.projector)
+        return -x - x.transpose()
+
+    def applied(self, velocity: Any) -> Any:
+        """Q_a at a velocity."""
+        return self.system.applied(self.q, velocity.entries(), self.parameters, self.literals)
+
+    @cached_property
+    def rate_coriolis(self) -> Any:
+        """C along qd as given."""
+        return self.coriolis(self.rate)
+
+    @cached_property
+    def bias(self) -> Any:
+        """C qd + Q - Q_a."""
+        return self.motion(self.rate)[0] + self.at.potential_gradient - self.applied(self.rate)
+
+    @cached_property
+    def load(self) -> Any:
+        """tau = G qdd + C qd + Q - Q_a."""
+        return self.at.mass_times(column(self.qdd)) + self.bias
+
+    @cached_property
+    def weighted(self) -> Any:
+        """Z (symmetric): N_BG = Z G."""
+        found = []
+        for part in self.system.heavy:
+            mass, projector, off = (
+                piece(matrix, part.coordinates, part.coordinates)
+                for matrix in (self.at.mass, self.projector, self.projector_off)
+            )
+            inverse = projector * solve(projector * mass * projector + off, projector)
+            found.append((part.coordinates, part.coordinates, inverse))
+        return placed(self.system.n, self.system.n, found)
+
+    @cached_property
+    def projected_control(self) -> Any:
+        """N_B M (21)."""
+        found = []
+        for part in self.system.parts:
+            projector = piece(self.projector, part.coordinates, part.coordinates)
+            control = piece(self.at.control, part.coordinates, part.inputs)
+            found.append((part.coordinates, part.inputs, projector * control))
+        return placed(self.system.n, self.system.m, found)
+
+    @cached_property
+    def control_inverse(self) -> Any:
+        """M~+ (27), (28), at the generic degree of actuation."""
+        full = self.ranks.actuation == self.system.n - self.ranks.constraints < self.system.m
+        if full:  # range(N M) = ker B: (M~ M~' + P) is regular
+            found = []
+            for part in self.system.parts:
+                control = piece(self.projected_control, part.coordinates, part.inputs)
+                off = piece(self.projector_off, part.coordinates, part.coordinates)
+                inverse = solve(control * control.transpose() + off, control).transpose()
+                found.append((part.inputs, part.coordinates, inverse))
+            return placed(self.system.m, self.system.n, found)
+        return pseudoinverse_of_parts(self.projected_control, self.ranks.actuation, self.system.parts)
+
+    @cached_property
+    def accelerations(self) -> Any:
+        """qdd of the KKT system: a - Z (G a - f), a = -B+ Bdot qd, f = M u - C qd - Q + Q_a."""
+        particular = -(self.inverse * self.motion(self.rate)[1])
+        return particular - self.weighted * (self.at.mass * particular - self.force)
+
+    @cached_property
+    def force(self) -> Any:
+        """M u - C qd - Q + Q_a."""
+        return self.at.control * column(self.u) - self.bias
+
+    @cached_property
+    def independent(self) -> list[int]:
+        """Positions of the independent velocities."""
+        names = [coordinate.name for coordinate in self.system.model.coordinates]
+        return [names.index(name) for name in self.system.model.independent_velocities]
+
+    @cached_property
+    def complement(self) -> Any:
+        """F (8): the basis of ker B with the identity in the rows of the independent velocities."""
+        basis = columns_of(self.projector, self.independent)
+        return solve(rows_of(basis, self.independent).transpose(), basis.transpose()).transpose()
+
+    @cached_property
+    def complement_dot(self) -> Any:
+        """d/dt F along qd as given, from d/dt (B F) = 0 and the constant rows."""
+        x = self.inverse * (self.constraints_dot(self.rate) * self.complement)
+        return self.complement * rows_of(x, self.independent) - x
+
+    @cached_property
+    def quasi(self) -> Any:
+        """W = (M~+)' (Remark 10), for m = delta."""
+        return self.control_inverse.transpose()
+
+    @cached_property
+    def quasi_velocity(self) -> Any:
+        """v = W nu, nu = M' qd."""
+        return self.quasi * (self.at.control.transpose() * self.rate)
+
+    def quasi_dot(self, velocity: Any) -> Any:
+        """d/dt W along a velocity: W = N M S^-1, S = M' N M."""
+        control, projector = self.at.control, self.projector
+        control_dot, projector_dot = self.control_dot(velocity), self.projector_dot(velocity)
+        mixed = control_dot.transpose() * self.projected_control
+        gram = control.transpose() * self.projected_control
+        gram_dot = mixed + mixed.transpose() + control.transpose() * (projector_dot * control)
+        top = projector_dot * control + projector * control_dot - self.quasi * gram_dot
+        return solve(gram, top.transpose()).transpose()

@@ -1,0 +1,166 @@
+"""The quantities of docs/quantities.md at one state, each from its definition.
+
+Equation numbers are those of the paper as corrected in the README; notation as in `reference_evaluation`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from symgen.verify.reference.allocation import allocated
+from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.linear import column, right_pseudoinverse
+from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.measures import actuation_measure, constraint_measure
+from symgen.verify.reference.system import System
+
+
+def _inverse_dynamics(e: Evaluation) -> Any:
+    """u (27), or as the model's allocation says."""
+    allocation = e.system.model.allocation
+    if allocation is not None:
+        return allocated(e, allocation)
+    return e.control_inverse * (e.projector * e.load)
+
+
+def _inverse_dynamics_residual(e: Evaluation) -> Any:
+    return e.projector * (e.load - e.at.control * (e.control_inverse * (e.projector * e.load)))
+
+
+def _weighted_pseudoinverse(e: Evaluation) -> Any:
+    return e.inverse - e.weighted * (e.at.mass * e.inverse)
+
+
+def _projected_coriolis_matrix(e: Evaluation) -> Any:
+    velocity = e.projected_rate
+    inner = e.coriolis(velocity) * e.projector + e.at.mass * e.projector_dot(velocity)
+    return e.projector * inner
+
+
+def _minimal_coriolis_matrix(e: Evaluation) -> Any:
+    return e.complement.transpose() * (e.rate_coriolis * e.complement + e.at.mass * e.complement_dot)
+
+
+def _admissible_acceleration(e: Evaluation) -> Any:
+    velocity = e.projected_rate
+    if e.ranks.constraints == e.system.r:  # B+' v = 0, and N_dot v = -B+ B_dot v by Remark 9
+        return e.projector * column(e.qdd) - e.inverse * e.motion(velocity)[1]
+    return e.projector * column(e.qdd) + e.projector_dot(velocity) * velocity
+
+
+def _projected_configuration(e: Evaluation) -> Any:
+    q = column(e.q)
+    if e.system.r_geometric == 0:
+        return q
+    for _ in range(2):
+        residual, jacobian = e.system.geometry(q.entries(), e.parameters, e.literals)
+        q = q - right_pseudoinverse(jacobian, e.ranks.geometric) * residual
+    return q
+
+
+def _actuator_bias(e: Evaluation) -> Any:
+    velocity = e.quasi_velocity
+    nu = e.at.control.transpose() * e.rate
+    inner = e.at.mass * (e.quasi_dot(velocity) * nu) + e.coriolis(velocity) * velocity
+    return e.quasi.transpose() * (inner + e.at.potential_gradient - e.applied(velocity))
+
+
+def _multipliers(e: Evaluation) -> Any:
+    return e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
+
+
+def _energy(e: Evaluation) -> Any:
+    return column(e.system.energies(e.q, e.qd, e.parameters, e.literals))
+
+
+def _singularity(e: Evaluation) -> Any:
+    return column([constraint_measure(e), actuation_measure(e)])
+
+
+Definition = Callable[[Evaluation], Any]
+QUANTITIES: dict[str, Definition] = {
+    "mass_matrix": lambda e: e.at.mass,
+    "coriolis_matrix": lambda e: e.rate_coriolis,
+    "coriolis_force": lambda e: e.motion(e.rate)[0],
+    "potential_force": lambda e: e.at.potential_gradient,
+    "applied_force": lambda e: e.applied(e.rate),
+    "constraint_residual": lambda e: e.at.residual,
+    "constraint_jacobian": lambda e: e.at.constraints,
+    "constraint_jacobian_dot": lambda e: e.constraints_dot(e.rate),
+    "constraint_pseudoinverse": lambda e: e.inverse,
+    "nullspace_projector": lambda e: e.projector,
+    "nullspace_projector_dot": lambda e: e.projector_dot(e.rate),
+    "weighted_pseudoinverse": _weighted_pseudoinverse,
+    "weighted_nullspace_projector": lambda e: e.weighted * e.at.mass,
+    "control_matrix": lambda e: e.at.control,
+    "projected_control_matrix": lambda e: e.projected_control,
+    "projected_control_pseudoinverse": lambda e: e.control_inverse,
+    "orthogonal_complement": lambda e: e.complement,
+    "projected_mass_matrix": lambda e: e.projector * e.at.mass * e.projector,
+    "projected_coriolis_matrix": _projected_coriolis_matrix,
+    "projected_potential_force": lambda e: e.projector * e.at.potential_gradient,
+    "projected_applied_force": lambda e: e.projector * e.applied(e.projected_rate),
+    "minimal_mass_matrix": lambda e: e.complement.transpose() * e.at.mass * e.complement,
+    "minimal_coriolis_matrix": _minimal_coriolis_matrix,
+    "minimal_potential_force": lambda e: e.complement.transpose() * e.at.potential_gradient,
+    "minimal_applied_force": lambda e: e.complement.transpose() * e.applied(e.rate),
+    "minimal_control_matrix": lambda e: e.complement.transpose() * e.at.control,
+    "admissible_velocity": lambda e: e.projected_rate,
+    "admissible_acceleration": _admissible_acceleration,
+    "projected_configuration": _projected_configuration,
+    "inverse_dynamics": _inverse_dynamics,
+    "inverse_dynamics_residual": _inverse_dynamics_residual,
+    "actuator_velocity": lambda e: e.at.control.transpose() * e.rate,
+    "actuator_mass_matrix": lambda e: e.quasi.transpose() * e.at.mass * e.quasi,
+    "actuator_bias": _actuator_bias,
+    "forward_dynamics": lambda e: e.accelerations,
+    "multipliers": _multipliers,
+    "energy": _energy,
+    "singularity": _singularity,
+    "point_position": lambda e: e.points[0],
+    "point_jacobian": lambda e: e.points[1],
+}
+
+# The others do with what a velocity adds to forces and accelerations.
+NEED_GRADIENTS = {
+    "coriolis_matrix",
+    "constraint_jacobian_dot",
+    "nullspace_projector_dot",
+    "projected_coriolis_matrix",
+    "minimal_coriolis_matrix",
+    "actuator_bias",
+}
+
+NEEDS_CONSTRAINTS = {
+    "constraint_jacobian",
+    "constraint_jacobian_dot",
+    "constraint_pseudoinverse",
+    "weighted_pseudoinverse",
+    "multipliers",
+}
+NEEDS_INPUTS = {
+    "control_matrix",
+    "projected_control_matrix",
+    "projected_control_pseudoinverse",
+    "inverse_dynamics",
+    "minimal_control_matrix",
+}
+
+
+def offered(name: str, system: System, ranks: Ranks) -> bool:
+    """Whether the model has this quantity, its result not being empty."""
+    delta = system.n - ranks.constraints
+    if name.startswith("point_"):
+        return bool(system.model.mechanism.points)
+    if name == "constraint_residual":
+        return system.r_geometric > 0
+    if name in NEEDS_CONSTRAINTS and system.r == 0:
+        return False
+    if name in NEEDS_INPUTS and system.m == 0:
+        return False
+    if (name.startswith("minimal_") or name == "orthogonal_complement") and not system.model.independent_velocities:
+        return False
+    if name.startswith("actuator_"):
+        return system.m == delta == ranks.actuation
+    return True

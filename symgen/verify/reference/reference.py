@@ -1,0 +1,138 @@
+"""The independent reference: every quantity at one state, to at least 50 digits.
+
+It starts from T, U, the constraint expressions, the inputs and the applied forces as parsed, differentiates by
+truncated Taylor arithmetic, and solves at known ranks in ball arithmetic, whose radii bound its own error.  It shares
+nothing with the derivation of kernels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+from flint import ctx
+
+from symgen.model.model import Model
+from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.linear import square
+from symgen.verify.reference.manifold import Ranks, generic_ranks
+from symgen.verify.reference.measures import measures_of_parts
+from symgen.verify.reference.quantities import QUANTITIES, offered
+from symgen.verify.reference.system import System
+from symgen.verify.reference.tape import ball, precision
+from symgen.verify.reference.translation import literal_values
+
+Exact: TypeAlias = int | float | Fraction | Any
+BITS = 256
+DIGITS = 50
+MOST_BITS = 4096
+
+
+class ReferenceValueError(Exception):
+    """The reference has no value here: a rank drops, or a function is evaluated outside its domain."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """One input of all kernels, as exact numbers (int, float, Fraction) or balls."""
+
+    q: tuple[Exact, ...]
+    qd: tuple[Exact, ...]
+    qdd: tuple[Exact, ...]
+    u: tuple[Exact, ...]
+    parameters: tuple[Exact, ...]
+
+
+class Reference:
+    """The reference of one model; `ranks` are found at random points of V when they are not given.
+
+    Raises ReferenceValueError when no point of the constraint manifold is found.
+    """
+
+    def __init__(self, model: Model, ranks: Ranks | None = None) -> None:
+        self.model = model
+        self.system = System(model)
+        known = ranks or generic_ranks(self.system)
+        if known is None:
+            raise ReferenceValueError(
+                f"{model.name}: no configuration that satisfies the geometric constraints was found; "
+                "give a start under `configuration`, and the ranges of the coordinates"
+            )
+        self.ranks = known
+        self._literals: dict[int, list[Any]] = {}
+
+    def quantities(self) -> tuple[str, ...]:
+        """The names this model has (not those whose result would be empty)."""
+        return tuple(name for name in QUANTITIES if offered(name, self.system, self.ranks))
+
+    def literals(self) -> list[Any]:
+        """The literals of the model at the working precision."""
+        if ctx.prec not in self._literals:
+            self._literals[ctx.prec] = literal_values(self.system.literals)
+        return self._literals[ctx.prec]
+
+    def evaluate(self, state: State, quantities: Sequence[str]) -> dict[str, tuple[Any, ...]]:
+        """Row-major entries of each quantity, as balls that hold at least 50 digits of the quantity's norm.
+
+        Raises ReferenceValueError where a quantity does not exist (a rank drops).
+        """
+        return {name: tuple(matrix.entries()) for name, matrix in self.precise(state, quantities).items()}
+
+    def precise(self, state: State, quantities: Sequence[str]) -> dict[str, Any]:
+        """Like `evaluate`, as matrices of balls (vectors are columns)."""
+        bits = BITS
+        while bits <= MOST_BITS:
+            matrices = self.matrices(state, quantities, bits)
+            with precision(bits):
+                if all(_accurate(matrix) for matrix in matrices.values()):
+                    return matrices
+            bits *= 2
+        raise ReferenceValueError(f"{self.model.name}: {MOST_BITS} bits do not give {DIGITS} digits at this state")
+
+    def matrices(
+        self, state: State, quantities: Sequence[str], bits: int = BITS, literals: Sequence[Any] | None = None
+    ) -> dict[str, Any]:
+        """Each quantity as a matrix of balls (vectors are columns) at a working precision, whatever the radii become.
+
+        `literals` replace the values of the model's literals.
+        """
+        with precision(bits), self._ranks_may_drop():
+            evaluation = self.evaluation(state, literals)
+            return {name: QUANTITIES[name](evaluation) for name in quantities}
+
+    def measured(self, state: State, quantities: Sequence[str], bits: int) -> tuple[dict[str, Any], list[Any]]:
+        """Like `matrices`, and both measures of each part of the system, as balls."""
+        with precision(bits), self._ranks_may_drop():
+            evaluation = self.evaluation(state)
+            return {name: QUANTITIES[name](evaluation) for name in quantities}, measures_of_parts(evaluation)
+
+    @contextmanager
+    def _ranks_may_drop(self) -> Iterator[None]:
+        try:
+            yield
+        except ZeroDivisionError as fault:
+            raise ReferenceValueError(f"{self.model.name}: a rank drops at this state") from fault
+
+    def evaluation(self, state: State, literals: Sequence[Any] | None = None) -> Evaluation:
+        """The state with every intermediate at hand, at the working precision of the caller."""
+        return Evaluation(
+            self.system,
+            self.ranks,
+            q=[ball(x) for x in state.q],
+            qd=[ball(x) for x in state.qd],
+            qdd=[ball(x) for x in state.qdd],
+            u=[ball(x) for x in state.u],
+            parameters=[ball(x) for x in state.parameters],
+            literals=self.literals() if literals is None else literals,
+            own_literals=literals is None,
+        )
+
+
+def _accurate(matrix: Any) -> bool:
+    """Whether the radii leave 50 digits of the norm, or 60 digits absolutely for a result that vanishes."""
+    size = square(matrix)
+    error = float(size.rad())
+    return error <= 10.0**-DIGITS * float(size) or float(size) + error <= 10.0 ** -(2 * DIGITS + 20)

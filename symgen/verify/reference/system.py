@@ -1,0 +1,353 @@
+"""From the parsed model to numbers: what the energies, constraints, inputs and forces say about one state.
+
+Replays of one tape: the configuration (G, B, M, g and the gradient of U), the constraint residual alone (for Newton's
+method), what a velocity adds (`reference_motion`), the energies, points and the applied forces.  Inputs of a replay
+are the coordinates, the rates, the parameters and the literals of the model, in this order.  Bodies enter G by the
+Jacobians of their centres and turning rates, so that nothing here grows faster than with the square of a chain's
+length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from flint import arb_mat
+
+from symgen.model.expressions.expression import Expression
+from symgen.model.mechanism import component
+from symgen.model.model import Model
+from symgen.verify.reference.bodies import BodyJacobian, BodyReplay
+from symgen.verify.reference.frames import Frames
+from symgen.verify.reference.gradients import Gradients
+from symgen.verify.reference.motion import DriftAlongRate
+from symgen.verify.reference.parts import parts, touched
+from symgen.verify.reference.tape import Register, Replay, Tape, ball, replay_of
+from symgen.verify.reference.taylor import CONSTANT, Polynomial, Taylor
+from symgen.verify.reference.translation import Translation, literals_of, translation, uses_components
+
+
+def default_parameters(model: Model) -> list[Any]:
+    """Default values of the parameters, as balls of the working precision."""
+    return parameters_from(model, {})
+
+
+def parameters_from(model: Model, chosen: Mapping[str, Any]) -> list[Any]:
+    """Parameter values: the `chosen` ones, and the others from their expressions of earlier parameters."""
+    return ParameterValues(model, list(chosen))(chosen)
+
+
+class ParameterValues:
+    """The values of all parameters when those named are chosen."""
+
+    def __init__(self, model: Model, names: Collection[str]) -> None:
+        self.model = model
+        self.names = tuple(parameter.name for parameter in model.parameters if parameter.name in names)
+        tape = Tape()
+        known: dict[str, Polynomial] = {}
+        translation = Translation(Taylor(tape, 0, 0), known, {}, {})
+        for parameter in model.parameters:
+            if parameter.name in names:
+                known[parameter.name] = {CONSTANT: tape.input(self.names.index(parameter.name))}
+            else:
+                known[parameter.name] = translation.polynomial(parameter.value)
+        registers = [known[parameter.name].get(CONSTANT, tape.zero) for parameter in model.parameters]
+        self._replay = replay_of(tape, registers)
+
+    def __call__(self, chosen: Mapping[str, Any]) -> list[Any]:
+        """Balls, the `chosen` values among them."""
+        return list(self._replay.run([ball(chosen[name]) for name in self.names]))
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """Everything that depends on q and parameters alone; G only where it is asked for, which no search does."""
+
+    written_mass: Any  # n x n, of the energy that is written out
+    constraints: Any  # r x n
+    residual: Any  # r_g x 1
+    control: Any  # n x m
+    potential_gradient: Any  # n x 1
+    jacobian: BodyJacobian
+    weights: Any  # 10 a body x 1: its mass and the entries of its inertia
+
+    @cached_property
+    def mass(self) -> Any:
+        """G (n x n)."""
+        if not self.weights.nrows():
+            return self.written_mass
+        return self.written_mass + self.jacobian.mass(self.weights.entries())
+
+    def mass_times(self, vector: Any) -> Any:
+        """G times a column, through the bodies: G itself of a long chain takes many times as much."""
+        if not self.weights.nrows():
+            return self.written_mass * vector
+        return self.written_mass * vector + self.jacobian.mass_times(vector, self.weights.entries())
+
+
+class System:
+    """The model as replays."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.literals = literals_of(model)
+        n, m, r = model.n, model.m, model.r
+        self.n, self.m, self.r = n, m, r
+        self.r_geometric = sum(row.kind == "geometric" for row in model.constraints)
+        self._tape = Tape()
+        self._shared: dict[tuple[int, int], Translation] = {}
+        places = self._translation(1, 0)
+        self._frames = Frames(model.mechanism, places.algebra, places.polynomial)
+        self._bodies = BodyReplay(model.mechanism, self._frames, self._translation(0, 0), n)
+        energy = self._quadratic_energy()
+        potential = self._potential_energy(1)
+        rows = [self._constraint_row(index) for index in range(r)]
+        zero = self._tape.zero
+        blocks = [
+            [self._rate_coefficient(energy, i, j) for i in range(n) for j in range(n)],
+            [entry for row, _ in rows for entry in row],
+            [residual for _, residual in rows[: self.r_geometric]],
+            self._control(),
+            [potential.get(((k,), ()), zero) for k in range(n)],
+            self._bodies.weights,
+        ]
+        self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (len(blocks[5]), 1))
+        self._set_parts(blocks)
+        blocks.append(self._bodies.needed(self.heavy))
+        self._configuration = replay_of(self._tape, [x for block in blocks for x in block])
+        self.geometry_replay = replay_of(self._tape, [*blocks[2], *blocks[1][: self.r_geometric * n]])
+        self.matrices_replay = replay_of(self._tape, [*blocks[1], *blocks[3]])
+
+    def configuration(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> Configuration:
+        """Evaluate at q."""
+        values = self._configuration.run([*q, *([None] * self.n), *parameters, *literals])
+        matrices = []
+        start = 0
+        for rows, columns in self._shapes:
+            end = start + rows * columns
+            matrices.append(arb_mat(rows, columns, values[start:end]))
+            start = end
+        mass, constraints, residual, control, gradient, weights = matrices
+        bodies = self._bodies.at(self.heavy, values[start:])
+        return Configuration(mass, constraints, residual, control, gradient, bodies, weights)
+
+    def _set_parts(self, blocks: Sequence[Sequence[Register]]) -> None:
+        """What nothing couples: by geometric rows (`loops`), by rows and inputs (`parts`), by masses too (`heavy`)."""
+        n, zero = self.n, self._tape.zero
+        mass, constraints, residual, control, *_ = blocks
+        rows = touched(constraints, n, zero)
+        inputs = [[k for k in range(n) if control[k * self.m + j] != zero] for j in range(self.m)]
+        pairs = [(i, j) for i, these in enumerate(touched(mass, n, zero)) for j in these]
+        bodies = self._bodies.moved()
+        found = parts(n, rows[: self.r_geometric])
+        self.loops = tuple(part for part in found if part.rows)
+        self._loop_replay = replay_of(
+            self._tape,
+            [
+                x
+                for loop in self.loops
+                for x in (
+                    *(residual[i] for i in loop.rows),
+                    *(constraints[i * n + j] for i in loop.rows for j in loop.coordinates),
+                )
+            ],
+        )
+        self.parts = parts(n, rows, inputs)
+        self.heavy = parts(n, rows, inputs, bodies, pairs)
+
+    def matrices(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
+        """B (r x n) and M (n x m) at q."""
+        values = self.matrices_replay.run([*q, *([None] * self.n), *parameters, *literals])
+        size = self.r * self.n
+        return arb_mat(self.r, self.n, values[:size]), arb_mat(self.n, self.m, values[size:])
+
+    @cached_property
+    def gradients(self) -> Gradients:
+        """The derivatives of G, B and M, for the quantities that contain a rate of a matrix."""
+        return Gradients(self.model, self.literals)
+
+    @cached_property
+    def motion(self) -> DriftAlongRate | None:
+        """What a velocity adds; None where that takes the gradients: T is written with velocities of points."""
+        if uses_components(self.model, self.model.kinetic_energy):
+            return None
+        return DriftAlongRate(self.model, self.literals, self._tape)
+
+    def geometry(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
+        """g (r_g x 1) and dg/dq (r_g x n) at q."""
+        values = self.geometry_replay.run([*q, *([None] * self.n), *parameters, *literals])
+        r = self.r_geometric
+        return arb_mat(r, 1, values[:r]), arb_mat(r, self.n, values[r:])
+
+    def loop_geometry(
+        self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
+    ) -> list[tuple[Any, Any]]:
+        """g and dg/dq of each loop, by its own coordinates."""
+        values = self._loop_replay.run([*q, *([None] * self.n), *parameters, *literals])
+        found, start = [], 0
+        for loop in self.loops:
+            rows, columns = len(loop.rows), len(loop.coordinates)
+            middle, end = start + rows, start + rows * (1 + columns)
+            found.append((arb_mat(rows, 1, values[start:middle]), arb_mat(rows, columns, values[middle:end])))
+            start = end
+        return found
+
+    def energies(
+        self, q: Sequence[Any], qd: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
+    ) -> tuple[Any, ...]:
+        """T and U."""
+        return self._energies.run([*q, *qd, *parameters, *literals])
+
+    def applied(self, q: Sequence[Any], qd: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> Any:
+        """Q_a (n x 1)."""
+        if not self.model.has_applied_forces:
+            return arb_mat(self.n, 1)
+        return arb_mat(self.n, 1, self._applied.run([*q, *qd, *parameters, *literals]))
+
+    def points(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
+        """Places (k x 3) and velocities per rate (3k x n) of the k points, in world axes."""
+        values = self._points.run([*q, *([None] * self.n), *parameters, *literals])
+        k = len(self.model.mechanism.points)
+        return arb_mat(k, 3, values[: 3 * k]), arb_mat(3 * k, self.n, values[3 * k :])
+
+    def operations(self, gradients: bool) -> int:
+        """Number of recorded operations, for estimates of cost; with those of the gradients where they are needed."""
+        needed = gradients or self.motion is None
+        return len(self._tape.records) + (self.gradients.operations if needed else 0)
+
+    @cached_property
+    def _energies(self) -> Replay:
+        plain = self._translation(0, 0)
+        total = self._written_energy(plain)
+        if self.model.mechanism.bodies:
+            total = plain.algebra.add(total, self._frames.kinetic_energy(plain.algebra, self._settled_rate))
+        return self._plain([total, self._potential_energy(0)])
+
+    @cached_property
+    def _points(self) -> Replay:
+        names = [point.name for point in self.model.mechanism.points]
+        places = [x for name in names for x in self._frames.place(name)]
+        rates = [x for name in names for x in self._frames.velocity(name)]
+        return self._plain([*places, *(_share(rate, j) for rate in rates for j in range(self.n))])
+
+    @cached_property
+    def _applied(self) -> Replay:
+        """Q_a: what is given by coordinates, and each force times the coefficients of the rate it works on."""
+        plain = self._translation(0, 0)
+        forces = {force.coordinate: force.expression for force in self.model.applied_forces}
+        total = [plain.polynomial(forces[c.name]) if c.name in forces else {} for c in self.model.coordinates]
+        for force in self.model.forces:
+            magnitude = plain.polynomial(force.magnitude)
+            shares = self._coefficients(force.velocity)
+            total = [
+                plain.algebra.add(x, plain.algebra.multiply(magnitude, share))
+                for x, share in zip(total, shares, strict=True)
+            ]
+        return self._plain(total)
+
+    def _written_energy(self, given: Translation) -> Polynomial:
+        """T as written out plus that of the rotors."""
+        algebra = given.algebra
+        total = given.polynomial(self.model.kinetic_energy)
+        half: Polynomial = {CONSTANT: self._tape.constant(Fraction(1, 2))}
+        for rotor in self.model.mechanism.rotor_inertias:
+            rate = given.names[next(c.rate for c in self.model.coordinates if c.name == rotor.coordinate)]
+            inertia = algebra.multiply(half, given.polynomial(rotor.inertia))
+            total = algebra.add(total, algebra.multiply(inertia, algebra.multiply(rate, rate)))
+        return total
+
+    def _quadratic_energy(self) -> Polynomial:
+        return self._written_energy(self._translation(0, 2))
+
+    def _potential_energy(self, coordinates: int) -> Polynomial:
+        """U as written out plus that of the bodies."""
+        given = self._translation(coordinates, 0)
+        weight = _truncated(self._frames.potential_energy(), coordinates)
+        return given.algebra.add(given.polynomial(self.model.potential_energy), weight)
+
+    def _control(self) -> list[Register]:
+        """M, row by row."""
+        plain, zero = self._translation(0, 0), self._tape.zero
+        columns = [dict(control.acts_on) for control in self.model.inputs]
+        worked_on = [self._coefficients(control.velocity) for control in self.model.inputs]
+        entries = [
+            worked[k] if worked else plain.polynomial(column[c.name]) if c.name in column else {}
+            for k, c in enumerate(self.model.coordinates)
+            for column, worked in zip(columns, worked_on, strict=True)
+        ]
+        return [entry.get(CONSTANT, zero) for entry in entries]
+
+    def _coefficients(self, velocity: Expression | None) -> list[Polynomial]:
+        """The coefficients of a rate by the rates of the coordinates."""
+        if velocity is None:
+            return []
+        linear = self._translation(0, 1).polynomial(velocity)
+        return [_share(linear, j) for j in range(self.n)]
+
+    def _component(self, name: str, coordinates: int, rates: int) -> Polynomial:
+        """A component of a point or frame, to these degrees."""
+        found = self._frames.component(name)
+        if not component(name).is_rate:
+            return _truncated(found, coordinates)
+        return found if rates else self._settled_rate(found)
+
+    def _settled_rate(self, rate: Polynomial) -> Polynomial:
+        """A rate with the rates of the coordinates at their values."""
+        total = self._tape.zero
+        for (_, moving), register in rate.items():
+            value = self._tape.input(self.n + moving[0])
+            total = self._tape.binary("add", total, self._tape.binary("mul", register, value))
+        return {CONSTANT: total}
+
+    def _plain(self, polynomials: Sequence[Polynomial]) -> Replay:
+        return replay_of(self._tape, [p.get(CONSTANT, self._tape.zero) for p in polynomials])
+
+    def _rate_coefficient(self, energy: Polynomial, i: int, j: int) -> Register:
+        """Register of d2T/dqd_i dqd_j."""
+        register = energy.get(((), (min(i, j), max(i, j))), self._tape.zero)
+        return self._tape.scaled(Fraction(2), register) if i == j else register
+
+    def _constraint_row(self, index: int) -> tuple[list[Register], Register]:
+        """Row of B, and the residual of a geometric row."""
+        row = self.model.constraints[index]
+        zero, n = self._tape.zero, self.n
+        if row.kind == "nonholonomic":
+            linear = self._translation(0, 1).polynomial(row.expression)
+            return [linear.get(((), (j,)), zero) for j in range(n)], zero
+        g = self._translation(1, 0).polynomial(row.expression)
+        return [g.get(((j,), ()), zero) for j in range(n)], g.get(CONSTANT, zero)
+
+    def _translation(self, coordinates: int, rates: int) -> Translation:
+        """The shared translation for polynomials of these degrees; degree 0 in both takes the rates at their value."""
+        key = (coordinates, rates)
+        if key not in self._shared:
+            tape, n = self._tape, self.n
+
+            def moving(j: int) -> tuple[Polynomial, Polynomial]:
+                place: Polynomial = {CONSTANT: tape.input(j)}
+                if coordinates:
+                    place[(j,), ()] = tape.one
+                rate: Polynomial = {((), (j,)): tape.one} if rates else {CONSTANT: tape.input(n + j)}
+                return place, {} if coordinates and not rates else rate
+
+            self._shared[key] = translation(
+                self.model,
+                self.literals,
+                Taylor(tape, coordinates, rates),
+                moving,
+                lambda name: self._component(name, coordinates, rates),
+            )
+        return self._shared[key]
+
+
+def _share(rate: Polynomial, j: int) -> Polynomial:
+    """The coefficient of the j-th rate."""
+    return {(place, ()): register for (place, rates), register in rate.items() if rates == (j,)}
+
+
+def _truncated(place: Polynomial, degree: int) -> Polynomial:
+    """The polynomial up to a degree in the coordinates."""
+    return {monomial: register for monomial, register in place.items() if len(monomial[0]) <= degree}

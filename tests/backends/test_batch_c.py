@@ -1,0 +1,163 @@
+"""Batch kernels: the bits and the statuses of the kernel for one state, for any count, stride, compiler and flags."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import handmade
+import numpy as np
+import pytest
+import shipped
+
+from symgen.backends.c.batch import BLOCK, emit_c_batch
+from symgen.backends.c.plain import emit_c
+from symgen.backends.defaults import default_values
+from symgen.backends.locals import array_arguments
+from symgen.backends.quantities import BATCHED
+from symgen.ir.kernel import Kernel, Program, Scalar, Status
+
+pytestmark = pytest.mark.toolchain
+NATIVE = ["-O3", "-march=native", "-fno-math-errno"]
+STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror"]
+MODELS = ("front_car", "rapkm_2rrr_rr")
+
+
+class Library:
+    """C of a model with its batch kernels, compiled and called through arrays."""
+
+    def __init__(self, folder: Path, model: Any, program: Program, command: list[str]) -> None:
+        files = emit_c(model, program) | emit_c_batch(model, program)
+        for path, text in files.items():
+            (folder / Path(path).name).write_text(text)
+        sources = [str(folder / Path(path).name) for path in files if path.endswith(".c")]
+        flags = ["-std=c99", "-ffp-contract=off", "-shared", "-fPIC", "-o", str(folder / "lib.so")]
+        subprocess.run([*command, *STRICT, *flags, *sources, "-lm"], check=True)
+        self._library = ctypes.CDLL(str(folder / "lib.so"))
+        self._suffix = "" if program.scalar == "float64" else "_f"
+        self.prefix, self.dtype = model.name, np.dtype(program.scalar)
+        self.parameters = np.array([float(v) for v in default_values(model).values()] or [0.0], dtype=self.dtype)
+
+    def one(self, kernel: Kernel, rows: dict[str, Any], k: int) -> tuple[int, Any]:
+        """Status and entries of state k by the kernel for one state; NaN where there is no result."""
+        function = self._library[f"{self.prefix}_{kernel.name}{self._suffix}"]
+        arrays = [np.ascontiguousarray(rows[a.name][:, k]) for a in array_arguments(kernel)]
+        result = np.full(len(kernel.outputs), np.nan, dtype=self.dtype)
+        status = function(*map(pointer, [*arrays, self.parameters, result]))
+        return status, result
+
+    def batch(
+        self, kernel: Kernel, rows: dict[str, Any], count: int, result: Any = None, with_status: bool = True
+    ) -> tuple[int, Any, Any]:
+        """The number of refused states, the statuses and the results (size, stride) of `count` states."""
+        function = self._library[f"{self.prefix}_{kernel.name}_batch{self._suffix}"]
+        function.restype = ctypes.c_size_t
+        arrays = [rows[a.name] for a in array_arguments(kernel)]
+        stride = arrays[0].shape[1]
+        result = np.full((len(kernel.outputs), stride), 7.0, dtype=self.dtype) if result is None else result
+        statuses = np.full(stride, 99, dtype=np.uint8)
+        status = pointer(statuses) if with_status else None
+        sizes = ctypes.c_size_t(count), ctypes.c_size_t(stride)
+        refused = function(*sizes, *map(pointer, [*arrays, self.parameters, result]), status)
+        return refused, statuses, result
+
+
+def pointer(array: Any) -> Any:
+    return ctypes.c_void_p(array.ctypes.data)
+
+
+def rows_of(kernel: Kernel, dtype: Any, stride: int) -> dict[str, Any]:
+    """Random components, (length, stride) each; every seventh state is a hard one."""
+    source = np.random.default_rng(11)
+    rows = {a.name: source.normal(size=(a.length, stride)).astype(dtype) for a in kernel.arguments}
+    for k, value in zip(range(3, stride, 7), [0.0, np.nan, np.inf, 1e30, -101.0, 1e5, 1e-30] * stride, strict=False):
+        name = [*rows][k % len(rows)] if value != 0.0 else "q"
+        rows[name][k % len(rows[name]) if value != 0.0 else slice(None), k] = value
+    return rows
+
+
+def batched(program: Program) -> Program:
+    """The kernels that have a batch kernel, for the sake of the compiler's time."""
+    return replace(program, kernels=tuple(kernel for kernel in program.kernels if kernel.name in BATCHED))
+
+
+@pytest.mark.parametrize("scalar", shipped.SCALARS)
+@pytest.mark.parametrize("name", ["toy", "toy with libm", *MODELS])
+def test_same_bits_and_statuses(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar) -> None:
+    if name in MODELS:
+        model, program = shipped.model(name), batched(shipped.programs(name)[scalar])
+    else:
+        model, program = handmade.model(), batched(handmade.program(scalar, own_sincos=name == "toy"))
+    library = Library(tmp_path, model, program, [tool("gcc"), *NATIVE])
+    for kernel in program.kernels:
+        count = 3 * BLOCK + 5
+        rows = rows_of(kernel, library.dtype, count + 2)
+        refused, statuses, results = library.batch(kernel, rows, count)
+        wanted = [library.one(kernel, rows, k) for k in range(count)]
+        assert statuses[:count].tolist() == [status for status, _ in wanted]
+        assert refused == np.count_nonzero(statuses[:count])
+        assert 0 < refused < count / 2
+        for k, (status, entries) in enumerate(wanted):
+            assert np.isnan(results[:, k]).all() if status else results[:, k].tobytes() == entries.tobytes(), k
+        assert (results[:, count:] == 7.0).all(), "states beyond the count are written"
+        assert (statuses[count:] == 99).all()
+
+
+@pytest.mark.parametrize("count", [0, 1, BLOCK - 1, BLOCK, BLOCK + 1])
+def test_any_count_in_place_and_without_statuses(tool: Callable[[str], str], tmp_path: Path, count: int) -> None:
+    program = handmade.program()
+    library = Library(tmp_path, handmade.model(), program, [tool("gcc"), "-O1"])
+    kernel = next(k for k in program.kernels if k.name in BATCHED)
+    rows = rows_of(kernel, library.dtype, BLOCK + 3)
+    refused, _, expected = library.batch(kernel, rows, count)
+    for place in rows:
+        copies = {name: array.copy() for name, array in rows.items()}
+        again, _, result = library.batch(kernel, copies, count, copies[place], with_status=False)
+        assert again == refused
+        assert result[:, :count].tobytes() == expected[:, :count].tobytes(), place
+
+
+def test_nested_checks_tell_their_statuses(tool: Callable[[str], str], tmp_path: Path) -> None:
+    program = handmade.program()
+    library = Library(tmp_path, handmade.model(), program, [tool("gcc"), "-O3"])
+    kernel = next(k for k in program.kernels if k.name in BATCHED)
+    states = [(1.0, 0.3), (1e-5, 0.3), (0.05, 1.41), (1.0, 101.0), (1.0, np.nan), (np.nan, 0.3), (np.inf, 0.3)]
+    rows = {"q": np.array(states).T.copy(), "qd": np.zeros((2, 7)), "qdd": np.zeros((2, 7))}
+    refused, statuses, _ = library.batch(kernel, rows, len(states))
+    names = [Status(status).name for status in statuses]
+    assert names == ["OK", "ACTUATION_RANK", "CONSTRAINT_RANK", *["ANGLE_RANGE"] * 2, "ACTUATION_RANK", "NOT_FINITE"]
+    assert refused == 6
+
+
+@pytest.mark.parametrize("scalar", shipped.SCALARS)
+@pytest.mark.parametrize("flags", [["-O2"], ["-O3"], ["-O3", "-march=native"]], ids=" ".join)
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_loop_over_states_is_vector_code(
+    tool: Callable[[str], str], tmp_path: Path, compiler: str, flags: list[str], scalar: Scalar
+) -> None:
+    """The compilers' own reports name the loop; `-fno-math-errno` is for square roots (README)."""
+    kernels = shipped.programs("front_car")[scalar].kernels
+    kept = tuple(kernel for kernel in kernels if kernel.name == "inverse_dynamics")
+    program = replace(shipped.programs("front_car")[scalar], kernels=kept)
+    files = emit_c_batch(shipped.model("front_car"), program)
+    header = emit_c(shipped.model("front_car"), program)
+    for path, text in (files | header).items():
+        (tmp_path / Path(path).name).write_text(text)
+    source = next(tmp_path / Path(path).name for path in files if path.endswith(".c"))
+    told = ["-fopt-info-vec-optimized"] if compiler == "gcc" else ["-Rpass=loop-vectorize"]
+    common = ["-std=c99", "-ffp-contract=off", "-fno-math-errno", "-c", "-o", str(tmp_path / "out.o")]
+    command = [tool(compiler), *flags, *told, *common, str(source)]
+    report = subprocess.run(command, capture_output=True, text=True, check=True).stderr
+    lines = source.read_text().splitlines()
+    loops = [k for k, line in enumerate(lines, 1) if "k < LANES" in line and "= from[0][k]" in lines[k]]
+    assert len(loops) == 1
+    assert f":{loops[0]}:" in report, f"line {loops[0]} of {source.name} is not vectorised"
+
+
+def test_no_batch_without_a_quantity_for_it() -> None:
+    program = Program("float64", None, (handmade.mass_matrix(),))
+    assert emit_c_batch(handmade.model(), program) == {}

@@ -1,0 +1,94 @@
+"""C, Python and the interpreter perform the same operations: outputs agree bit for bit, statuses too."""
+
+from __future__ import annotations
+
+import ctypes
+import random
+import subprocess
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shipped
+from generated_python import load_generated
+
+from symgen.backends.defaults import default_values
+from symgen.backends.literals import round_to
+from symgen.backends.locals import array_arguments
+from symgen.ir.interpret import Interpreter
+from symgen.ir.kernel import Scalar, Status
+
+C_NUMBER = {"float64": ctypes.c_double, "float32": ctypes.c_float}
+STATES = 3
+
+
+def states(name: str, scalar: Scalar) -> list[dict[str, list[float]]]:
+    """Random states within the ranges, one at the origin, one beyond the range of angles, one not a number."""
+    model, source = shipped.model(name), random.Random(5)
+
+    def draw(kind: str) -> list[float]:
+        ranges = {"q": "range", "qd": "rate_range", "qdd": "acceleration_range"}
+        limits = [(-10, 10)] * model.m if kind == "u" else [getattr(c, ranges[kind]) for c in model.coordinates]
+        return [float(np.dtype(scalar).type(source.uniform(float(a), float(b)))) for a, b in limits]
+
+    drawn = [{kind: draw(kind) for kind in ("q", "qd", "qdd", "u")} for _ in range(STATES)]
+    for value in (0.0, 1e30, float("nan")):
+        drawn.append({kind: [float(np.dtype(scalar).type(value))] * len(numbers) for kind, numbers in drawn[0].items()})
+    return drawn
+
+
+@cache
+def expected(name: str, quantity: str, scalar: Scalar) -> list[tuple[Status, list[float]]]:
+    (kernel,) = (kernel for kernel in shipped.programs(name)[scalar].kernels if kernel.name == quantity)
+    interpreter = Interpreter(shipped.programs(name)[scalar].sincos, scalar)
+    parameters = [round_to(scalar, value) for value in default_values(shipped.model(name)).values()]
+    return [interpreter.run(kernel, state, parameters) for state in states(name, scalar)]
+
+
+def same(found: list[float], wanted: list[float]) -> bool:
+    return np.asarray(found).tobytes() == np.asarray(wanted).tobytes()
+
+
+@pytest.mark.toolchain
+@pytest.mark.parametrize("scalar", shipped.SCALARS)
+@pytest.mark.parametrize("name", shipped.SWEPT)
+def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar) -> None:
+    shipped.write_sources(name, tmp_path)
+    suffix = "" if scalar == "float64" else "_f"
+    library = tmp_path / "lib.so"
+    flags = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC", "-o", str(library)]
+    subprocess.run([tool("gcc"), *flags, str(tmp_path / f"c/{name}{suffix}.c"), "-lm"], check=True)
+    loaded = ctypes.CDLL(str(library))
+    count = max(1, len(shipped.model(name).parameters))
+    parameters = type("Parameters", (ctypes.Structure,), {"_fields_": [("all", C_NUMBER[scalar] * count)]})
+    default = getattr(loaded, f"{name}_default_params{suffix}")
+    default.restype = parameters
+    p = default()
+    for kernel in shipped.programs(name)[scalar].kernels:
+        function = getattr(loaded, f"{name}_{kernel.name}{suffix}")
+        for state, (status, wanted) in zip(states(name, scalar), expected(name, kernel.name, scalar), strict=True):
+            arrays = [(C_NUMBER[scalar] * a.length)(*state[a.name]) for a in array_arguments(kernel)]
+            output = (C_NUMBER[scalar] * len(kernel.outputs))(*[7.0] * len(kernel.outputs))
+            assert function(*arrays, ctypes.byref(p), output) == status, (kernel.name, state)
+            wanted = wanted if status is Status.OK else [7.0] * len(kernel.outputs)
+            assert same(list(output), wanted), (kernel.name, state)
+
+
+@pytest.mark.parametrize("name", shipped.SWEPT)
+def test_python(tmp_path: Path, name: str) -> None:
+    shipped.write_sources(name, tmp_path)
+    module = load_generated(tmp_path / f"python/{name}.py")
+    drawn = states(name, "float64")
+    for kernel in shipped.programs(name)["float64"].kernels:
+        batch = getattr(module, kernel.name)(*(np.array([s[a.name] for s in drawn]) for a in array_arguments(kernel)))
+        assert batch.shape == (len(drawn), *kernel.shape)
+        for state, row, (status, wanted) in zip(drawn, batch, expected(name, kernel.name, "float64"), strict=True):
+            if status is Status.OK:
+                assert same(row.ravel(), wanted), (kernel.name, state)
+                continue
+            assert np.isnan(row).all(), (kernel.name, state)
+            with pytest.raises(module.StateError) as caught:
+                getattr(module, kernel.name)(*(state[a.name] for a in array_arguments(kernel)))
+            assert caught.value.status == status, (kernel.name, state)

@@ -1,0 +1,182 @@
+"""Every pass over scalars and kernels, on random sums and on shipped models, exactly; a wrong pass is named."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from shipped import ALL, model
+
+from symgen.diagnostics import SymgenBug
+from symgen.ir.given_trig import given_trig
+from symgen.ir.kernel import Kernel, Program
+from symgen.ir.library_trig import with_library_trig
+from symgen.ir.lifted import Lifted, same_kernel
+from symgen.ir.order import relaxed
+from symgen.ir.prepare import prepare
+from symgen.ir.split import split, without_first
+from symgen.lowering.schedule import schedule
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.angles import share_angles
+from symgen.symbolic.content import divided, usual_number
+from symgen.symbolic.identity import every_identity_evaluated, same_values
+from symgen.symbolic.passes import grouping
+from symgen.symbolic.passes.early_factors import early_factors, with_early_factor
+from symgen.symbolic.passes.factoring import Factoring
+from symgen.symbolic.passes.late_factors import with_late_factors
+from symgen.symbolic.passes.opposites import with_one_difference
+from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
+from symgen.symbolic.passes.sum_factors import with_common_factors
+from symgen.symbolic.polynomial import Multiplier, refactored
+from symgen.symbolic.scalar import Graph, Scalar
+
+SEEDS = range(60)
+PARAMETERS, STATES = "abcd", "pqrs"
+Pass = Callable[[Graph, Factoring, Sequence[Scalar]], Sequence[Scalar]]
+
+
+def _sums(graph: Graph, draw: random.Random) -> list[Scalar]:
+    """Sums of products that share parts, with both signs, divided here and there; as they stand or by constructors."""
+    parameters, states = ([graph.symbol(name) for name in names] for names in (PARAMETERS, STATES))
+    numbers = [graph.const(value) for value in (2, Fraction(1, 2), Fraction(3, 10))]
+    angles = [*states[:2], states[0] + states[1], states[0] - states[1]]
+    turned = [graph.trig(op, angle) for angle in angles for op in ("sin", "cos")]
+    parts = draw.sample([*parameters, *states, *turned], 6)
+    root = graph.function("sqrt", (graph.const(3),))
+    outputs: list[Scalar] = []
+    for _ in range(6):
+        terms = [_product(graph, draw, [*parts, *outputs[-2:]], numbers, root) for _ in range(draw.randrange(2, 5))]
+        again = [draw.choice([*terms, *parts]) for _ in range(draw.randrange(2))]
+        total = terms[0]
+        for term in [*terms[1:], *again]:
+            total = _made(graph, draw, draw.choice(("add", "sub")), (total, term))
+        if draw.random() < 0.3:
+            total = graph.function("abs", (total,)) if draw.random() < 0.5 else total * 2
+        outputs.append(total)
+    return outputs
+
+
+def _product(graph: Graph, draw: random.Random, parts: list[Scalar], numbers: list[Scalar], root: Scalar) -> Scalar:
+    """Some factors and perhaps a number, a reciprocal, a root of a number."""
+    total = draw.choice(parts)
+    for _ in range(draw.randrange(1, 4)):
+        total = _made(graph, draw, "mul", (total, draw.choice(parts)))
+    if draw.random() < 0.3:
+        below = graph.raw("div", (graph.one, draw.choice(parts)))
+        total = graph.raw("mul", (total, below))
+    if draw.random() < 0.3:
+        total = graph.raw("mul", (draw.choice(numbers), graph.raw("mul", (graph.symbol("a"), root))))
+    return draw.choice(numbers) * total if draw.random() < 0.3 else total
+
+
+def _made(graph: Graph, draw: random.Random, op: str, args: tuple[Scalar, Scalar]) -> Scalar:
+    """By the constructors, or as it stands."""
+    if draw.random() < 0.4:
+        return graph.mul(*args) if op == "mul" else graph.add(*args) if op == "add" else graph.sub(*args)
+    return graph.raw(op, args)
+
+
+def _early(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
+    for factor in early_factors(factoring, outputs):
+        outputs = with_early_factor(graph, factoring, outputs, factor)
+    return outputs
+
+
+def _late(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
+    found = with_late_factors(graph, factoring, outputs, with_shared_products)
+    return with_late_factors(graph, factoring, found)
+
+
+def _divided(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
+    number = usual_number(outputs[:1])
+    return [divided(graph, output, number) * number for output in outputs]
+
+
+def _out(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
+    return refactored(graph, outputs, Multiplier(graph, lambda _: False), lambda _: False)
+
+
+PASSES: dict[str, Pass] = {
+    **{step.__name__: step for step in (*grouping._SIGNS_AND_NUMBERS, *grouping._STEPS, *grouping._LAST_STEPS)},
+    **{step.__name__: step for step in (grouping._with_common_factors, grouping._with_quotients)},
+    "with_parameters_taken_out": grouping._with_parameters_taken_out,
+    "with_common_factors": lambda graph, _, outputs: with_common_factors(graph, outputs),
+    "with_one_difference": lambda graph, _, outputs: with_one_difference(graph, outputs),
+    "with_shared_sums": lambda graph, _, outputs: with_shared_sums(graph, outputs),
+    "early factors": _early,
+    "late factors": _late,
+    "dividing by a number": _divided,
+    "multiplying out": _out,
+    "sharing angles": lambda graph, _, outputs: share_angles(graph, outputs),
+    "shortening": lambda _, factoring, outputs: factoring.shorten(outputs),
+    "all of them": lambda graph, factoring, outputs: grouping.grouped(graph, factoring, outputs),
+}
+
+
+@pytest.mark.parametrize("name", PASSES)
+def test_a_pass_keeps_every_value(name: str) -> None:
+    changed = 0
+    for seed in SEEDS:
+        graph = Graph()
+        outputs = _sums(graph, random.Random(seed))
+        found = PASSES[name](graph, Factoring(graph, [graph.symbol(x) for x in PARAMETERS]), outputs)
+        with every_identity_evaluated():
+            same_values(name, outputs, found)
+        changed += any(one is not other for one, other in zip(outputs, found, strict=True))
+    assert changed, "no draw gives this pass anything to do"
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_shipped_models_are_derived_and_written_by_identities(name: str) -> None:
+    """Every check of generation with exact evaluation in place of fingerprints, and what it leaves unchecked."""
+    with every_identity_evaluated():
+        derivations = derive_quantities(model(name), model(name).outputs)
+        program = schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"]
+        names = [kernel.name for kernel in program.kernels]
+        prepare(program, names)
+        with_library_trig(program)
+        for kernel in program.kernels:
+            given_trig(kernel)
+            _cut(kernel)
+            same_kernel("order", Lifted(kernel), Lifted(relaxed(kernel)))
+
+
+def _cut(kernel: Kernel) -> None:
+    flat = without_first(kernel)
+    parts = split(flat)
+    first = replace(flat.blocks[0], statements=parts.fixed, checks=())
+    whole = replace(flat, blocks=(first, *parts.blocks))
+    same_kernel("cutting in two", Lifted(kernel), Lifted(whole), whole=False)
+
+
+def test_a_wrong_pass_ends_generation_and_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def wrong(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
+        return [graph.raw("neg", (output,)) for output in outputs]
+
+    monkeypatch.setattr(grouping, "_SIGNS_AND_NUMBERS", (wrong,))
+    with pytest.raises(SymgenBug, match="wrong: changes the value of"):
+        derive_quantities(model("scara"), ("inverse_dynamics",))
+
+
+def _program() -> Program:
+    derivations = derive_quantities(model("slider_crank"), ("inverse_dynamics",))
+    return schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"]
+
+
+def test_wrong_statements_and_lost_checks_are_noticed() -> None:
+    (kernel,) = _program().kernels
+    *others, last = kernel.blocks
+    tested = next(block for block in kernel.blocks if block.checks and block is not kernel.blocks[0])
+    wrong = replace(last.statements[-1], operation="div" if last.statements[-1].operation != "div" else "mul")
+    damaged = replace(kernel, blocks=(*others, replace(last, statements=(*last.statements[:-1], wrong))))
+    with pytest.raises(SymgenBug, match="damage: changes the value"):
+        same_kernel("damage", Lifted(kernel), Lifted(damaged))
+    blocks = tuple(replace(block, checks=()) if block is tested else block for block in kernel.blocks)
+    with pytest.raises(SymgenBug, match="loss: changes the checks"):
+        same_kernel("loss", Lifted(kernel), Lifted(replace(kernel, blocks=blocks)))
+    unsorted = replace(last, statements=last.statements[::-1])
+    with pytest.raises(SymgenBug, match="nothing has assigned"):
+        same_kernel("order", Lifted(kernel), Lifted(replace(kernel, blocks=(*others, unsorted))))

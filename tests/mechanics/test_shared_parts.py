@@ -1,0 +1,125 @@
+"""Parts that several sums and products share, differences the other way round, factors that parameters hide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+
+import pytest
+from shipped import model
+
+from symgen.linear_algebra.guards import magnitude
+from symgen.quantities.select import derive_quantities
+from symgen.symbolic.content import divided
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.passes.factoring import Factoring
+from symgen.symbolic.passes.late_factors import with_late_factors
+from symgen.symbolic.passes.opposites import with_one_difference
+from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
+from symgen.symbolic.passes.sum_factors import with_common_factors
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import cost, reached
+
+VALUES = {name: 0.3 + 0.7 * k for k, name in enumerate("abcdefpq")}
+Step = Callable[[Graph, Sequence[Scalar]], list[Scalar]]
+
+
+def symbols(graph: Graph, names: str) -> list[Scalar]:
+    return [graph.symbol(name) for name in names]
+
+
+def sum_of(graph: Graph, signed: Sequence[tuple[int, Scalar]]) -> Scalar:
+    (_, total), *rest = signed
+    for sign, term in rest:
+        total = graph.raw("add" if sign > 0 else "sub", (total, term))
+    return total
+
+
+def taken(step: Step, graph: Graph, outputs: Sequence[Scalar], operations: int) -> list[Scalar]:
+    """The outputs after a step, checked to keep their values and to take so many operations."""
+    found = step(graph, outputs)
+    assert list(Evaluator(found)(VALUES)) == pytest.approx(list(Evaluator(outputs)(VALUES)), rel=1e-14)
+    assert cost(found).weight == operations
+    return found
+
+
+def test_pairs_of_terms_are_added_once_whatever_their_sign() -> None:
+    graph = Graph()
+    a, b, c, d, e, f = symbols(graph, "abcdef")
+    sums = [sum_of(graph, [(1, x), (s, a), (-s, b)]) for x, s in ((c, 1), (d, -1), (e, 1))]
+    taken(with_shared_sums, graph, [*sums, graph.raw("mul", (f, sums[0]))], 5)
+
+
+def test_pairs_of_factors_are_multiplied_once() -> None:
+    graph = Graph()
+    a, b, c, d, e, _ = symbols(graph, "abcdef")
+    products = [graph.raw("mul", (a, graph.raw("mul", (x, b)))) for x in (c, d, e)]
+    taken(with_shared_products, graph, products, 4)
+
+
+def test_angles_stay_as_they_are() -> None:
+    graph = Graph()
+    a, b, c, d, _, _ = symbols(graph, "abcdef")
+    angles = [sum_of(graph, [(1, x), (1, a), (-1, b)]) for x in (c, d)]
+    sines = [graph.function("sin", (angle,)) for angle in angles]
+    for step in (with_shared_sums, with_one_difference):
+        assert step(graph, sines) == sines
+
+
+def test_differences_the_other_way_round_are_one() -> None:
+    graph = Graph()
+    a, b, c, d, _, _ = symbols(graph, "abcdef")
+    one, other = graph.raw("sub", (a, b)), graph.raw("sub", (b, a))
+    outputs = [graph.raw("mul", (c, one)), graph.raw("add", (d, graph.raw("mul", (c, other))))]
+    found = taken(with_one_difference, graph, outputs, 4 - 1)
+    assert all(node.op != "neg" for node in reached(found))
+
+
+def test_parameters_are_taken_out_of_sums_that_share_them() -> None:
+    graph = Graph()
+    a, b, c, d, _, _, p, q = symbols(graph, "abcdefpq")
+    product = graph.raw("mul", (p, q))
+    sums = [sum_of(graph, [(1, x), (1, product), (-1, graph.raw("mul", (p, y)))]) for x, y in ((a, b), (c, d))]
+    fixed = {p, q, product}
+
+    def step(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+        return with_common_factors(graph, outputs, fixed.__contains__)
+
+    assert cost(with_common_factors(graph, sums)).weight == 7
+    taken(step, graph, sums, 6)
+
+
+def test_a_late_factor_meets_what_several_products_share() -> None:
+    graph = Graph()
+    a, b, c, d, e, f, p, q = symbols(graph, "abcdefpq")
+    share = graph.raw("div", (q, f))
+    outputs = [
+        graph.raw("sub", (base, graph.raw("mul", (graph.raw("mul", (p, x)), share)))) for base, x in ((a, b), (c, d))
+    ]
+    factoring = Factoring(graph, (p, q))
+
+    def late(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
+        return with_late_factors(graph, factoring, outputs, with_shared_products)
+
+    assert with_late_factors(graph, factoring, outputs) == outputs
+    taken(late, graph, [*outputs, graph.raw("mul", (e, share))], 6 + 3 + 2 + 1)
+
+
+def test_a_number_is_divided_into_the_term_that_holds_it() -> None:
+    graph = Graph()
+    a, b, *_ = symbols(graph, "ab")
+    assert divided(graph, 2 * a - b, Fraction(2)) is a - b * Fraction(1, 2)
+    assert divided(graph, a - b, Fraction(2)) is (a - b) * Fraction(1, 2)
+
+
+def test_the_bound_of_a_square_core_is_that_of_its_determinant() -> None:
+    derivations = derive_quantities(model("delta"), ("inverse_dynamics",))
+    (guard,) = derivations.quantities[0].guards
+    assert guard.scale is not None
+    graph = derivations.mechanics.graph
+    assert cost([guard.scale]).weight <= 22
+    (whole,) = magnitude(graph, [guard.denominator])
+    names = [node.payload for node in reached([whole, guard.scale]) if node.op == "symbol"]
+    values = {str(name): 0.2 + 0.3 * k for k, name in enumerate(sorted(map(str, names)))}
+    found, given = Evaluator([guard.scale, whole])(values)
+    assert found == pytest.approx(given, rel=1e-13)

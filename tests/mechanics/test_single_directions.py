@@ -1,0 +1,167 @@
+"""A status says that one direction is lost: many that are a little poor are not taken for one, one among them is."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+from pathlib import Path
+
+import pytest
+
+from symgen.cli.main import main
+from symgen.ir.kernel import UNIT_ROUNDOFF, Status
+from symgen.linear_algebra.constrained_inverse import diagonal_sizes
+from symgen.linear_algebra.guards import Guard, magnitude, multiplied
+from symgen.linear_algebra.null_spaces import HouseholderSpace, MinorSpace
+from symgen.linear_algebra.pivoted import reflected
+from symgen.mechanics.genericity import genericity
+from symgen.mechanics.system import System
+from symgen.methods.derivation import Derivation
+from symgen.model.load import load_text
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.matrix import Matrix
+from symgen.symbolic.scalar import Graph
+
+SINGLE = UNIT_ROUNDOFF["float32"]
+SIZE = 8
+
+# seven joints about oblique axes: bounds of inertias are thousands of times the inertias
+ARM = """
+model: carving_arm
+gravity: [0, 0, -9.81]
+joints:
+  one: {type: revolute, coordinate: a, axis: [0, 1, 1], child: first}
+  two: {type: revolute, coordinate: b, parent: first, at: [0.1, 0, 0.4], axis: [1, 1, 0], child: second}
+  three: {type: revolute, coordinate: c, parent: second, at: [0, 0.1, 0.4], axis: [1, 0, 2], child: third}
+  four: {type: revolute, coordinate: d, parent: third, at: [0.1, 0, 0.4], axis: [2, 1, 0], child: fourth}
+  five: {type: revolute, coordinate: e, parent: fourth, at: [0, 0.1, 0.3], axis: [0, 1, -1], child: fifth}
+  six: {type: revolute, coordinate: f, parent: fifth, at: [0.1, 0, 0.3], axis: [1, -1, 1], child: sixth}
+  seven: {type: revolute, coordinate: h, parent: sixth, at: [0, 0.1, 0.2], axis: [1, 0, 1], child: seventh}
+bodies:
+  first: {mass: 3, com: [0.05, 0, 0.2], inertia: {xx: 0.05, yy: 0.04, zz: 0.02}}
+  second: {mass: 3, com: [0.05, 0, 0.2], inertia: {xx: 0.05, yy: 0.04, zz: 0.02}}
+  third: {mass: 2, com: [0.05, 0, 0.2], inertia: {xx: 0.04, yy: 0.03, zz: 0.02}}
+  fourth: {mass: 2, com: [0, 0.05, 0.2], inertia: {xx: 0.03, yy: 0.03, zz: 0.01}}
+  fifth: {mass: 1, com: [0.05, 0, 0.1], inertia: {xx: 0.02, yy: 0.02, zz: 0.01}}
+  sixth: {mass: 1, com: [0.05, 0, 0.1], inertia: {xx: 0.01, yy: 0.01, zz: 0.005}}
+  seventh: {mass: m_tool, com: [0, 0, 0.1], inertia: {xx: 0.005, yy: 0.005, zz: 0.002}}
+parameters: {m_tool: 0.5}
+points: {tip: {frame: seventh, at: [0, 0, 0.2]}}
+constraints: {nonholonomic: {blade: tip.vx + 0.3*tip.vz}}
+outputs: [weighted_nullspace_projector]
+"""
+
+# five inputs on a planar chain whose columns turn with it, each a little short of the others' directions
+REACHES = """
+model: reaching_chain
+coordinates: {a: {unit: rad}, b: {unit: rad}, c: {unit: rad}, d: {unit: rad}, e: {unit: rad}}
+kinetic_energy: (a_dot**2 + b_dot**2 + c_dot**2 + d_dot**2 + e_dot**2)/2
+inputs:
+  u_1: {acts_on: {a: sin(a), b: sin(a) + sin(a + b), c: sin(a) + sin(a + b) + sin(a + b + c)}}
+  u_2: {acts_on: {a: cos(a), b: cos(a) + cos(a + b), c: cos(a) + cos(a + b) + cos(a + b + c)}}
+  u_3: {acts_on: {b: sin(b), c: sin(b) + sin(b + c), d: sin(b) + sin(b + c) + sin(b + c + d)}}
+  u_4: {acts_on: {c: cos(c), d: cos(c) + cos(c + d), e: cos(c) + cos(c + d) + cos(c + d + e)}}
+  u_5: {acts_on: {d: sin(d), e: sin(d) + sin(d + e)}}
+outputs: [inverse_dynamics]
+"""
+
+
+def passes(guard: Guard, point: dict[str, float], size: int = SIZE) -> bool:
+    """The test of a kernel, in exact numbers."""
+    graph = guard.denominator.graph
+    scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
+    denominator, most = Evaluator([guard.denominator, scale])(point)
+    return abs(denominator) > float(guard.threshold(size, SINGLE)) * most
+
+
+def leaning(graph: Graph, shares: list[float]) -> tuple[Matrix, dict[str, float]]:
+    """Rows of length 1, of which each keeps a share beside the rows before, as symbols with their values."""
+    values: dict[str, float] = {}
+    rows = []
+    for i, share in enumerate(shares):
+        entries = dict.fromkeys(range(SIZE), 0.0) | {i: share}
+        if i:
+            entries[i - 1] = math.sqrt(1 - share**2)
+        values |= {f"x_{i}_{j}": entry for j, entry in entries.items()}
+        rows.append(tuple(graph.symbol(f"x_{i}_{j}") for j in entries))
+    return tuple(rows), values
+
+
+def test_many_poor_rows_are_no_lost_row() -> None:
+    graph = Graph()
+    for lost in (False, True):
+        rows, values = leaning(graph, [1.0, *[0.01] * 6, 1e-8 if lost else 0.01])
+        guards = HouseholderSpace(graph, rows, SIZE).guards
+        assert len(guards) == len(rows)
+        assert all(passes(guard, values) for guard in guards) is not lost
+
+
+def test_rows_that_were_chosen_count_by_what_is_left_of_them() -> None:
+    graph = Graph()
+    for lost in (False, True):
+        rows, values = leaning(graph, [1.0, 0.02, 0.02, 1e-8 if lost else 0.02])
+        guards = reflected(graph, (*rows, rows[0]), SIZE, 4).guards
+        assert all(passes(guard, values) for guard in guards) is not lost
+
+
+def test_minors_tell_a_lost_row_from_poor_ones() -> None:
+    graph = Graph()
+    for shares, regular in (([1.0, 0.1, 0.1, 0.1, 0.01], True), ([1.0, 0.5, 0.5, 0.5, 1e-8], False)):
+        rows, values = leaning(graph, shares)
+        (guard,) = MinorSpace(graph, rows, SIZE, len(rows)).guards
+        assert passes(guard, values) is regular
+
+
+@pytest.mark.parametrize(
+    ("squares", "regular"),
+    [([0.03] * 12, True), ([0.03, 0.03, 1e-8, 0.03], True), ([1e-12], False), ([1e-8, 1e-7, 0.5], False)],
+)
+def test_losses_of_steps_multiply_where_they_are_no_ordinary_ones(squares: list[float], regular: bool) -> None:
+    graph = Graph()
+    symbols = [graph.symbol(f"s_{k}") for k in range(len(squares))]
+    (guard,) = multiplied(Status.MASS_RANK, symbols, [graph.symbol(f"l_{k}") for k in range(len(squares))])
+    lengths = {f"l_{k}": 2.0 for k in range(len(squares))}
+    values = {f"s_{k}": 2 * x for k, x in enumerate(squares)}
+    assert passes(guard, lengths | values) is regular
+
+
+def test_inertias_are_measured_by_themselves() -> None:
+    mechanics = System(load_text(ARM, "arm.yaml"))
+    entries = [row[i] for i, row in enumerate(mechanics.mass_matrix)]
+    sizes = diagonal_sizes(mechanics.graph, mechanics.mass_matrix)
+    bounds = magnitude(mechanics.graph, entries)
+    source = random.Random(4)
+    point = {c.name: source.uniform(-3, 3) for c in mechanics.model.coordinates} | {"m_tool": 0.5}
+    own, measured, largest = (Evaluator(values)(point) for values in (entries, sizes, bounds))
+    assert min(x / most for x, most in zip(own, largest, strict=True)) < 1e-3
+    assert own == pytest.approx(measured, rel=1e-2)
+    # a coordinate that moves nothing has no inertia, whatever it is measured by
+    nothing = mechanics.graph.symbol("m_tool") * mechanics.graph.function("sin", (mechanics.graph.symbol("a"),))
+    (size,) = diagonal_sizes(mechanics.graph, ((nothing * nothing,),))
+    tiny = Evaluator([nothing * nothing / size])({"m_tool": 1.0, "a": 1e-12})
+    assert tiny[0] < 8 * float(SINGLE)
+
+
+def test_single_precision_is_kept_where_bounds_are_far_above_inertias(tmp_path: Path) -> None:
+    file = tmp_path / "arm.yaml"
+    file.write_text(ARM)
+    given = ("--only", "c", "--states", "8", "--scalar", "float32", "--quiet", "--out", str(tmp_path))
+    assert main([str(file), *given]) == 0
+    derivation = json.loads((tmp_path / "carving_arm" / "derivation.json").read_text())
+    assert "left_out" not in derivation
+    assert "weighted_nullspace_projector" in derivation["kernels"]
+
+
+def test_inputs_that_are_a_little_poor_together_are_kept() -> None:
+    mechanics = System(load_text(REACHES, "reaches.yaml"))
+    generic = genericity(mechanics)
+    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
+    guards = Derivation(mechanics, generic, space).actuation_guards
+    source = random.Random(1)
+    points = [{c.name: source.uniform(-3, 3) for c in mechanics.model.coordinates} for _ in range(40)]
+    assert all(passes(guard, point, mechanics.n) for guard in guards for point in points)
+    folded = points[0] | {"d": 0.0, "e": 0.0}  # u_5 has no effect
+    assert not all(passes(guard, folded, mechanics.n) for guard in guards)
+    short = points[0] | {"d": 1e-9, "e": 1e-9}
+    assert not all(passes(guard, short, mechanics.n) for guard in guards)

@@ -1,0 +1,71 @@
+"""Every form of u is the same function: equal to the 50-digit reference within the tolerance at regular states."""
+
+from __future__ import annotations
+
+import pytest
+from random_systems import SIZES, random_system
+from shipped import NAMES, model
+
+from symgen.ir.interpret import Interpreter
+from symgen.ir.kernel import Program, Scalar, Status
+from symgen.lowering.schedule import schedule
+from symgen.methods.selection import forms_of
+from symgen.model.load import load_text
+from symgen.model.model import Model
+from symgen.verify.reference.reference import Reference
+from symgen.verify.states import rounded, sample_states
+from symgen.verify.tolerance import FACTOR, expectations
+
+STATES = 8
+# They form B B^T, M~^T M~ or B S^-1 B^T, whose condition is the square of B's (theory 3.3).
+SQUARING = {"printed", "weighted", "kkt"}
+SQUARED = 100
+DRIVEN = [name for name in NAMES if model(name).inputs]
+
+
+def programs_of(given: Model) -> dict[str, dict[Scalar, Program]]:
+    return {
+        form: schedule(mechanics, [quantity], ("float64", "float32"))
+        for form, (mechanics, quantity) in forms_of(given).items()
+    }
+
+
+def worst_errors(given: Model, forms: dict[str, dict[Scalar, Program]], scalar: Scalar) -> dict[str, float]:
+    """The largest error of each form in units of the tolerance."""
+    reference = Reference(given)
+    worst = dict.fromkeys(forms, 0.0)
+    for number, sample in enumerate(sample_states(reference, ("inverse_dynamics",), STATES)):
+        state = rounded(sample, scalar).state
+        expected = expectations(reference, state, ("inverse_dynamics",), scalar, f"forms {number}")
+        parts = {part: getattr(state, part) for part in ("q", "qd", "qdd", "u")}
+        for form, by_scalar in forms.items():
+            program = by_scalar[scalar]
+            parameters = tuple(map(float, state.parameters))
+            status, u = Interpreter(program.sincos, scalar).run(program.kernels[0], parts, parameters)
+            # a basis from chosen coordinates may fail at a regular state
+            assert status == Status.OK or form == "nullspace", f"{form}: {status.name}"
+            if status == Status.OK:
+                units = expected["inverse_dynamics"].in_units(expected["inverse_dynamics"].distance(u))
+                worst[form] = max(worst[form], units)
+    return worst
+
+
+def assert_within(worst: dict[str, float]) -> None:
+    allowed = {form: FACTOR * (SQUARED if form in SQUARING else 1) for form in worst}
+    assert {form: units for form, units in worst.items() if units > allowed[form]} == {}
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+@pytest.mark.parametrize("name", DRIVEN)
+def test_forms_of_the_shipped_models_agree_with_the_reference(name: str, scalar: Scalar) -> None:
+    worst = worst_errors(model(name), programs_of(model(name)), scalar)
+    assert {"minor", "nullspace", "range", "printed", "weighted", "kkt"} <= worst.keys()
+    assert_within(worst)
+
+
+@pytest.mark.parametrize("seed", range(len(SIZES)))
+def test_forms_of_random_systems_agree_with_the_reference(seed: int) -> None:
+    given = load_text(random_system(seed), f"random_{seed}.yaml")
+    worst = worst_errors(given, programs_of(given), "float64")
+    assert len(worst) >= 5
+    assert_within(worst)
