@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from symgen.laboratory.zoo.allocation import directed, members, preloads
+from symgen.laboratory.zoo.fields import Balls, precision
 from symgen.laboratory.zoo.kkt import Numbers, inverse_dynamics, split
+from symgen.laboratory.zoo.linear import determinant, transposed
 
 # one mass, driven by three forces along it
 AT = Numbers([[2.0]], [], [[1.0, 2.0, -1.0]], [0.5], [], [])
@@ -47,3 +51,17 @@ def test_limits_move_the_internal_force_as_little_as_they_must() -> None:
     # no share of 6 keeps both at or below 2: from the least excess of one to that of the other all are as good
     assert shared({"a": (0, 2), "b": (0, 2)}, 0.0) == [3, 3]
     assert shared({"a": (0, 2), "b": (0, 2)}, 9 * root) == [4, 2]
+
+
+def test_determinants_of_columns_that_depend_are_nothing_in_balls() -> None:
+    """An input that works against constraints alone: its column follows from those of rows, none of them the last."""
+    with precision():
+        root = Balls().number(Fraction(2)) ** 0.5
+        first, second, third = [root, 1 / root, root / 3], [root / 7, root, 1 / root], [1 / root, root / 5, root]
+        columns = [first, [3 * a - b / root for a, b in zip(first, second, strict=True)], second]
+        assert abs(determinant(transposed(columns, 3))) < 1e-60
+        regular = determinant(transposed([second, third, first], 3))
+        cyclic = determinant(transposed([first, second, third], 3))
+        assert abs(regular - cyclic) < 1e-60 < abs(regular)
+        swapped = determinant(transposed([second, first, third], 3))
+        assert abs(regular + swapped) < 1e-60

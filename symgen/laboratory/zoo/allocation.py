@@ -8,6 +8,9 @@ from typing import Any
 from symgen.laboratory.zoo.kkt import Numbers, internal_force
 from symgen.laboratory.zoo.linear import Vector
 
+# Of an internal force of norm 1, what rounding in balls leaves of an input that takes no part in it.
+NO_PART = 1e-30
+
 
 def members(block: Mapping[str, Any], value: Callable[[str], float]) -> dict[str, float]:
     """Weights, preloads and limits as members of the parameters, in the order of the documentation."""
@@ -46,7 +49,7 @@ def directed(
     spans = []
     for name in limits:
         k = inputs.index(name)
-        if float(along[k]) == 0:
+        if abs(float(along[k])) < NO_PART:
             continue
         ends = [(values[f"limit_{name}_{end}"] - u[k]) / along[k] for end in ("lower", "upper")]
         spans.append(sorted(ends, key=float))

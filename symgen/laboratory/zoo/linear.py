@@ -98,15 +98,19 @@ def solve(a: Sequence[Sequence[Any]], b: Sequence[Any]) -> Vector:
 
 
 def determinant(a: Sequence[Sequence[Any]]) -> Any:
-    """The determinant, by elimination."""
+    """The determinant, by elimination; what is left in balls of columns that depend on others comes last."""
     rows = [list(row) for row in a]
     n, value = len(rows), 1
     for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(float(rows[i][k])))
-        if float(rows[best][k]) == 0:
+        best = max(((i, j) for i in range(k, n) for j in range(k, n)), key=lambda at: abs(float(rows[at[0]][at[1]])))
+        if float(rows[best[0]][best[1]]) == 0:
             return 0
-        if best != k:
-            rows[k], rows[best] = rows[best], rows[k]
+        if best[0] != k:
+            rows[k], rows[best[0]] = rows[best[0]], rows[k]
+            value = -value
+        if best[1] != k:
+            for row in rows:
+                row[k], row[best[1]] = row[best[1]], row[k]
             value = -value
         value = value * rows[k][k]
         for i in range(k + 1, n):
