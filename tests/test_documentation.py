@@ -16,6 +16,12 @@ def test_marked_blocks_and_generated_pages_are_current() -> None:
     assert result.returncode == 0, result.stdout + result.stderr
 
 
+def test_the_architecture_is_that_of_the_code() -> None:
+    command = [sys.executable, "tools/architecture_page.py", "--check"]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
 PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
 
 

@@ -1,0 +1,1 @@
+"""Exact closed forms of a model, and published formulas decided."""

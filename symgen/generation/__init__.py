@@ -1,0 +1,1 @@
+"""The steps of a run: draft, verification's consequences, results."""

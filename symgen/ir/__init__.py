@@ -1,0 +1,1 @@
+"""Straight-line programs over real scalars, their variants, and the interpreter that gives them their meaning."""

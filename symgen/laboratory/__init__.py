@@ -1,0 +1,1 @@
+"""What measures the product; nothing of the product depends on it."""

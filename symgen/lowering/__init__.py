@@ -1,0 +1,1 @@
+"""From scalars of a graph to straight-line kernels."""

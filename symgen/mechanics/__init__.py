@@ -1,0 +1,1 @@
+"""The mechanical system on the scalar graph: kinematics, forces, inertias, constraints, structure."""

@@ -1,0 +1,1 @@
+"""The only writer of files: a folder changes as a whole or not at all."""

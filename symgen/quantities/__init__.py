@@ -1,0 +1,1 @@
+"""Which quantities a system has, and the method that each takes."""

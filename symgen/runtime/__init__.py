@@ -1,0 +1,1 @@
+"""A run's processes, signals, progress and memory."""

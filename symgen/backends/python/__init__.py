@@ -1,0 +1,1 @@
+"""A NumPy module, vectorised over leading axes."""

@@ -1,0 +1,1 @@
+"""Reading the blocks of a model file: one module a block."""

@@ -1,0 +1,1 @@
+"""Configurations that satisfy the constraints, and the system in numbers there."""

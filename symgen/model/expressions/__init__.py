@@ -1,0 +1,1 @@
+"""The expressions a user writes: grammar, tree, units."""

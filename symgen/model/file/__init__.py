@@ -1,0 +1,1 @@
+"""The model file: text with places, schema, names in scope."""

@@ -1,0 +1,1 @@
+"""Frames, points and joints in any arithmetic."""

@@ -1,0 +1,1 @@
+"""Robot descriptions as blocks of the model language."""

@@ -1,0 +1,1 @@
+"""Mathematics as it is set on a page, and its printers."""

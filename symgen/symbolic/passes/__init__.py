@@ -1,0 +1,1 @@
+"""Rewriting passes: each takes scalars to equal ones that cost less."""

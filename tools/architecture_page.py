@@ -1,0 +1,165 @@
+"""docs/architecture.md: the packages, what each is for and may import, and a picture of it, drawn from the code.
+
+    python tools/architecture_page.py [--check]
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE, PICTURE = ROOT / "docs/architecture.md", ROOT / "docs/architecture.svg"
+# Single modules that stand for themselves.
+LEFT_OUT = {"", "__main__", "records", "diagnostics", "naming", "reserved"}
+WIDTH, HEIGHT, ROW, GAP, MARGIN = 128, 40, 84, 20, 24
+
+
+def imports() -> dict[str, set[str]]:
+    """Which packages, or modules of the top, each of them imports; imports for type checkers alone do not count."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for path in sorted((ROOT / "symgen").rglob("*.py")):
+        own = _package(".".join(path.relative_to(ROOT).with_suffix("").parts))
+        for node in _nodes(ast.parse(path.read_text(encoding="utf-8"))):
+            names = [node.module or ""] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names]
+            if names == ["symgen"]:
+                names = [f"symgen.{alias.name}" for alias in node.names]
+            found[own] |= {_package(name) for name in names if name.startswith("symgen.")} - {own}
+    return {name: {other for other in others if other in found} for name, others in found.items()}
+
+
+def _package(module: str) -> str:
+    """The package below symgen, or the module of the top; nothing for symgen itself."""
+    name = module.split(".")[1] if "." in module else ""
+    return "" if name == "__init__" else name
+
+
+def _nodes(tree: ast.AST) -> list[ast.Import | ast.ImportFrom]:
+    found: list[ast.Import | ast.ImportFrom] = []
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+            continue
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            found.append(node)
+        found += _nodes(node)
+    return found
+
+
+def levels(needs: dict[str, set[str]]) -> dict[str, int]:
+    """How high each package stands: one above the highest that it imports."""
+    found: dict[str, int] = {}
+
+    def level(name: str) -> int:
+        if name not in found:
+            found[name] = 1 + max((level(other) for other in needs[name]), default=-1)
+        return found[name]
+
+    for name in sorted(needs):
+        level(name)
+    return found
+
+
+def direct(needs: dict[str, set[str]]) -> dict[str, set[str]]:
+    """The imports that do not follow from others."""
+
+    def below(name: str) -> set[str]:
+        return needs[name] | {far for other in needs[name] for far in below(other)}
+
+    return {
+        name: {other for other in others if not any(other in below(third) for third in others - {other})}
+        for name, others in needs.items()
+    }
+
+
+def picture(needs: dict[str, set[str]]) -> str:
+    """Packages in rows, what they import below them; attributes stand at each part, which every viewer knows."""
+    height, lines_of = levels(needs), direct(needs)
+    rows = [sorted(name for name in needs if height[name] == row) for row in range(max(height.values()) + 1)]
+    across = max(map(len, rows)) * (WIDTH + GAP) - GAP + 2 * MARGIN
+    down = len(rows) * ROW - (ROW - HEIGHT) + 2 * MARGIN
+    place: dict[str, tuple[float, float]] = {}
+    for row, names in reversed(list(enumerate(rows))):
+        # below the middle of those that import it
+        above = {name: [place[other][0] for other in place if name in lines_of[other]] for name in names}
+        names.sort(key=lambda name, above=above: (sum(above[name]) / len(above[name]) if above[name] else across, name))
+        left = (across - len(names) * (WIDTH + GAP) + GAP) / 2
+        for index, name in enumerate(names):
+            place[name] = left + index * (WIDTH + GAP), down - MARGIN - HEIGHT - row * ROW
+    lines, boxes = [], []
+    for name, others in sorted(lines_of.items()):
+        x, y = place[name]
+        for other in sorted(others):
+            u, v = place[other]
+            a, b, c, d = x + WIDTH / 2, y + HEIGHT, u + WIDTH / 2, v
+            curve = f"M{a:g} {b:g}C{a:g} {b + 26:g} {c:g} {d - 26:g} {c:g} {d:g}"
+            lines.append(f'<path d="{curve}" fill="none" stroke="#9fb0c2" stroke-width="1.2"/>')
+        files = len(list((ROOT / "symgen" / name).rglob("*.py"))) or 1
+        count = f"{files} file{'s' if files > 1 else ''}"
+        middle = f'x="{x + WIDTH / 2:g}" text-anchor="middle" font-family="sans-serif"'
+        boxes.append(
+            f'<rect x="{x:g}" y="{y:g}" width="{WIDTH}" height="{HEIGHT}" rx="5" fill="#eef3f8" stroke="#7b8ea3"/>'
+            f'<text {middle} y="{y + 17:g}" font-size="13" fill="#1d2733">{name}</text>'
+            f'<text {middle} y="{y + 32:g}" font-size="10" fill="#5b6b7b">{count}</text>'
+        )
+    size = f'viewBox="0 0 {across:g} {down:g}" width="{across:g}" height="{down:g}"'
+    ground = '<rect width="100%" height="100%" fill="white"/>'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>\n' + "\n".join((ground, *lines, *boxes)) + "\n</svg>\n"
+
+
+def page(needs: dict[str, set[str]]) -> str:
+    """The table of packages, the highest first."""
+    height = levels(needs)
+    rows = []
+    for name in sorted(needs, key=lambda name: (-height[name], name)):
+        path = ROOT / "symgen" / name / "__init__.py"
+        text = (path if path.exists() else ROOT / f"symgen/{name}.py").read_text(encoding="utf-8")
+        meaning = (ast.get_docstring(ast.parse(text)) or "").split("\n\n")[0].replace("\n", " ")
+        below = ", ".join(sorted(direct(needs)[name])) or "nothing"
+        rows.append(f"| `{name}` | {meaning} | {below} |\n")
+    return TOP + "".join(rows) + BOTTOM
+
+
+TOP = """# Architecture
+
+Written by `tools/architecture_page.py` from the code.
+
+A model file becomes a *model* (frozen data, every name known, every mistake told with its place); the model a *system*
+on a graph of scalars; each *quantity* takes the *method* that is valid and counts least; its scalars become a
+straight-line *kernel*, which C, Python and an interpreter print or run with the same bits. Verification and report read
+what was made, and never steer it: what verification rejects is taken up by `generation`, which tries the next method.
+`symgen/pipeline.py` is that way on one page.
+
+An import points downwards only (`lint-imports`, part of `make test`). The reference in `symgen/verify/reference` shares
+nothing with the derivation but the parsed model; the zoo knows the command line only.
+
+![Packages, and what they import](architecture.svg)
+
+*Lines that follow from others are left out; `diagnostics`, `records`, `naming` and `reserved` stand below all.*
+
+| package | what it is for | imports, beside what these import |
+|---|---|---|
+"""
+BOTTOM = """
+How to add a quantity, a joint, a method or a pass is in [CONTRIBUTING.md](../CONTRIBUTING.md); what is computed in
+[theory.md](theory.md).
+"""
+
+
+def main(check: bool) -> int:
+    """Writes page and picture, or says whether they are current."""
+    needs = {name: others - LEFT_OUT for name, others in imports().items() if name not in LEFT_OUT}
+    made = {PAGE: page(needs), PICTURE: picture(needs)}
+    stale = [path for path, text in made.items() if not path.exists() or path.read_text(encoding="utf-8") != text]
+    if check:
+        for path in stale:
+            print(f"{path.relative_to(ROOT)}: run `python tools/architecture_page.py`")
+        return int(bool(stale))
+    for path, text in made.items():
+        path.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main("--check" in sys.argv[1:]))
