@@ -3,9 +3,9 @@
 |y - y*| <= 16 (d + eps |y*|), where d is the largest |y*(x + dx) - y*| over 8 random dx with |dx_i| = eps |x_i| in
 all inputs, run-time parameters and literals of the model.  So d holds the condition of the quantity at this state.
 
-Literals that the scalar type holds are no more rounded than small integers are, such as the ones in the direction of a
-slide along [1, 1, 0]: it stays parallel to the axis of its joint.  Moved they would make an over-constrained linkage
-count as ill-conditioned where nothing that is rounded makes it so.
+Verification is stricter: literals that the scalar type holds do not move, such as the ones in the direction of a slide
+along [1, 1, 0], which stays parallel to the axis of its joint.  Moved they would make an over-constrained linkage count
+as ill-conditioned where nothing that is rounded makes it so.  Sweeps towards singular sets take the rule as it stands.
 """
 
 from __future__ import annotations
@@ -52,9 +52,17 @@ class Expectation:
 
 
 def expectations(
-    reference: Reference, state: State, quantities: Sequence[str], scalar: Scalar, seed: str
+    reference: Reference,
+    state: State,
+    quantities: Sequence[str],
+    scalar: Scalar,
+    seed: str,
+    all_literals: bool = False,
 ) -> dict[str, Expectation]:
-    """Reference values and error units of the quantities at a state rounded to the scalar type."""
+    """Reference values and error units of the quantities at a state rounded to the scalar type.
+
+    With `all_literals` those move too that the type holds.
+    """
     exact = reference.precise(state, quantities)
     worst = dict.fromkeys(quantities, 0.0)
     generator = random.Random(seed)
@@ -62,7 +70,7 @@ def expectations(
         state = State(*(tuple(map(ball, part)) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
     for signs in _signs(reference, state, generator):
         with precision(PERTURBED_BITS):
-            moved, literals = perturbed(reference, state, scalar, signs)
+            moved, literals = perturbed(reference, state, scalar, signs, all_literals)
         results = reference.matrices(moved, quantities, PERTURBED_BITS, literals)
         with precision(DISTANCE_BITS):
             for name, matrix in results.items():
@@ -72,11 +80,13 @@ def expectations(
     return {name: Expectation(exact[name], sizes[name], worst[name] + eps * sizes[name]) for name in quantities}
 
 
-def perturbed(reference: Reference, state: State, scalar: Scalar, signs: Sequence[int]) -> tuple[State, list[Any]]:
+def perturbed(
+    reference: Reference, state: State, scalar: Scalar, signs: Sequence[int], all_literals: bool = False
+) -> tuple[State, list[Any]]:
     """The state and the literals with every number x moved by +-eps |x| (rounded to the working precision).
 
     `signs` are 1 for outwards and 0 for inwards, one a number: q, q_dot, q_ddot, u, parameters, literals.  Literals
-    that the scalar type holds stay as they are.
+    that the scalar type holds stay as they are unless `all_literals` move.
     """
     eps = ball(UNIT_ROUNDOFF[scalar])
     factors = (arb(1) - eps, arb(1) + eps)
@@ -86,7 +96,10 @@ def perturbed(reference: Reference, state: State, scalar: Scalar, signs: Sequenc
         return tuple((ball(x) * factors[next(sign)]).mid() for x in values)
 
     parts = [move(part) for part in _parts(state)]
-    held = [not isinstance(literal, Pi) and _is_held(literal.value, scalar) for literal in reference.system.literals]
+    held = [
+        not (all_literals or isinstance(literal, Pi)) and _is_held(literal.value, scalar)
+        for literal in reference.system.literals
+    ]
     exact = reference.literals()
     literals = [x if stays else moved for stays, x, moved in zip(held, exact, move(exact), strict=True)]
     return State(*parts), literals

@@ -185,12 +185,12 @@ def _expected(
     reference: Reference, state: State, names: Sequence[str], scalar: Scalar, seed: str
 ) -> dict[str, Expectation]:
     try:
-        return expectations(reference, state, names, scalar, seed)
+        return expectations(reference, state, names, scalar, seed, all_literals=True)
     except ReferenceValueError:
         found: dict[str, Expectation] = {}
         for name in names:
             try:
-                found |= expectations(reference, state, (name,), scalar, seed)
+                found |= expectations(reference, state, (name,), scalar, seed, all_literals=True)
             except ReferenceValueError:
                 continue
         return found
@@ -206,7 +206,10 @@ def of_more_draws(
     reference: Reference, state: State, name: str, scalar: Scalar, seed: str, known: Expectation
 ) -> Expectation:
     """The expectation with the largest d of more draws."""
-    draws = [expectations(reference, state, (name,), scalar, f"{seed} {k}")[name] for k in range(MORE_DRAWS)]
+    draws = [
+        expectations(reference, state, (name,), scalar, f"{seed} {k}", all_literals=True)[name]
+        for k in range(MORE_DRAWS)
+    ]
     return replace(known, unit=max(one.unit for one in (known, *draws)))
 
 

@@ -119,7 +119,7 @@ def _compare(
                     worst, identical = worst if outcome.status in RANKS else float("inf"), False
                     refused += 1
                     continue
-                expected = expectations(other, moved, (name,), scalar, f"{what} {index}")[name]
+                expected = expectations(other, moved, (name,), scalar, f"{what} {index}", all_literals=True)[name]
                 worst = max(worst, expected.in_units(expected.distance(outcome.entries)))
                 if binary and conversion is not None:
                     plain = kernels.run(name, rounded_state(state, scalar), scalar)

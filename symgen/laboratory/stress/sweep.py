@@ -177,7 +177,8 @@ class Sweeper:
         if d < 10 ** (-DEEPEST[scalar] / 2) * 0.99:
             return
         try:
-            expected = expectations(self._reference, truth, self._names, scalar, f"{scalar} {index} {d}")
+            seed = f"{scalar} {index} {d}"
+            expected = expectations(self._reference, truth, self._names, scalar, seed, all_literals=True)
             if truth is not state:
                 expected = self._drifted(expected, state, truth)
         except ReferenceValueError:
