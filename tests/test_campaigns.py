@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +19,7 @@ def member(name: str, **changed: Any) -> Member:
     def result(root: Path) -> str:
         return (root / "result.txt").read_text()
 
-    command = (sys.executable, "-c", COUNT.format(name))
+    command = ("python", "-c", COUNT.format(name))
     files = (f"generated/{name}/files.sha256", "code")
     return replace(Member("weighing", name, (command,), files, ("scales",), result), **changed)
 
@@ -111,7 +110,7 @@ def test_the_sample_goes_round_and_must_give_the_same(root: Path, capsys: pytest
 
 
 def test_a_failure_ends_in_1_and_is_not_recorded(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    broken = member("b", commands=((sys.executable, "-c", "print('too light'); raise SystemExit(3)"),))
+    broken = member("b", commands=(("python", "-c", "print('too light'); raise SystemExit(3)"),))
     assert run_and_record(root, [member("a"), broken], version) == 1
     assert list(read_record(root)["weighing"]) == ["a"]
     assert "too light" in capsys.readouterr().out

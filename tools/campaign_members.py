@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
 from campaigns import Member
 
-PYTHON = sys.executable
+PYTHON = "python"  # this one, wherever it is
 SYMGEN = (PYTHON, "-m", "symgen")
 PYTEST = (PYTHON, "-m", "pytest")
 BY_ENERGIES = (

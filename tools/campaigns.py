@@ -33,7 +33,10 @@ Record = dict[str, dict[str, dict[str, Any]]]
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """One run of a campaign: commands one after the other, the files that go in, and what is kept of the result."""
+    """One run of a campaign: commands one after the other, the files that go in, and what is kept of the result.
+
+    A command that begins with `python` is run by this interpreter, so that hashes do not depend on where it is.
+    """
 
     campaign: str
     name: str
@@ -94,8 +97,9 @@ def run(root: Path, member: Member) -> tuple[Any, str]:
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w", encoding="utf-8") as out:
         for command in member.commands:
+            first = sys.executable if command[0] == "python" else command[0]
             made = subprocess.run(
-                command, cwd=root, stdout=out, stderr=subprocess.STDOUT, check=False,
+                (first, *command[1:]), cwd=root, stdout=out, stderr=subprocess.STDOUT, check=False,
                 env={**os.environ, **dict(member.environment)},
             )
             if made.returncode:
