@@ -56,6 +56,8 @@ def test_what_was_recorded_is_not_run_again(root: Path) -> None:
     assert ran(root) == ["a", "b"]  # nothing is recorded yet
     assert run_and_record(root, members, version) == 0
     assert ran(root) == ["a", "b"]
+    (root / "code/__pycache__").mkdir()
+    (root / "code/__pycache__/weigh.pyc").write_bytes(b"made by Python")
     assert run_changed(root, members, NOT_SAMPLED, version) == 0
     assert ran(root) == []
 

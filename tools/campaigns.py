@@ -28,6 +28,8 @@ ROOT = Path(__file__).resolve().parent.parent
 RECORD = "tests/campaigns.json"
 SAMPLED = 12
 LAST_LINES = 30
+# Folders of what Python and an installation make beside the sources.
+MADE = frozenset({"__pycache__", "compiled"})
 Record = dict[str, dict[str, dict[str, Any]]]
 
 
@@ -63,7 +65,7 @@ def inputs_hash(root: Path, member: Member, version: Callable[[str], str]) -> st
 def _below(path: Path) -> Iterable[Path]:
     if path.is_file():
         return [path]
-    return [file for file in path.rglob("*") if file.is_file() and "__pycache__" not in file.parts]
+    return [file for file in path.rglob("*") if file.is_file() and MADE.isdisjoint(file.parts)]
 
 
 def version_of(tool: str) -> str:
