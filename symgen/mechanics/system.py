@@ -17,6 +17,7 @@ from symgen.model.kinematics.components import components_in, definitions_before
 from symgen.model.kinematics.triples import Rows
 from symgen.model.model import Model
 from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.scalar import Graph, Scalar
@@ -151,7 +152,7 @@ class System:
         slopes = []
         for q in self.q:
             places = moved.get(q, [])
-            found = derivative_along(graph, [upper[place] for place in places], {q: graph.one})
+            found = without_hidden_zeros(derivative_along(graph, [upper[place] for place in places], {q: graph.one}))
             slopes.append({place: x for place, x in zip(places, found, strict=True) if not x.is_zero})
         return tuple(slopes)
 

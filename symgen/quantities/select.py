@@ -19,7 +19,7 @@ from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_angles
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor
-from symgen.methods.quantity import Quantity, resting_on, scalars
+from symgen.methods.quantity import Quantity, is_fixed, resting_on, scalars
 from symgen.methods.selection import (
     CANCELLATION_WORTH,
     FACTORING_LIMIT,
@@ -35,6 +35,7 @@ from symgen.quantities.excess import with_test_of_excess
 from symgen.quantities.row_units import in_ordinary_units, in_units_of_the_file
 from symgen.records import dataclass
 from symgen.runtime.activity import each, working
+from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.passes.grouping import grouped as grouped_scalars
 from symgen.symbolic.traverse import cost, reached
 
@@ -261,8 +262,10 @@ def finished(mechanics: System, generic: Genericity, derived: Quantity) -> Quant
 
 
 def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quantity:
-    """A quantity with ranks tested that other branches may exceed, told what its reader must know, rows in the units of
-    the file."""
+    """A quantity without entries that are 0 unseen, with ranks tested that other branches may exceed, told what its
+    reader must know, rows in the units of the file."""
+    outputs = without_hidden_zeros(derived.outputs)
+    derived = replace(derived, outputs=outputs, guards=() if is_fixed(outputs) else derived.guards)
     tested = with_test_of_excess(mechanics, generic, derived)
     tested = in_units_of_the_file(mechanics.graph, mechanics.model, tested)
     return _remarked(tested, generic)

@@ -14,6 +14,7 @@ from symgen.generation.results import Options
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.expressions import FUNCTIONS, NotReadError, read_expression
 from symgen.laboratory.zoo.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.generated import Answer
 from symgen.laboratory.zoo.mechanics import equations
 from symgen.laboratory.zoo.reader import System
 from symgen.laboratory.zoo.run import run_command
@@ -321,3 +322,26 @@ configuration: {a_0: 0, a_1: 0, a_2: 0, b: 0}
         walker = Walker(witness._system, witness._evaluate, witness._start, Dice("states", 0))
         found, ranks = walker.states(witness._defaults(), 5)
         assert (len(found), ranks.constraints) == (5 if expected else 0, expected)
+
+
+def test_a_number_that_is_0_to_all_digits_of_the_witness_is_right() -> None:
+    """A wheel about its own centre of mass never speeds up; what balls leave of that is no truth to be missed."""
+    text = """model: flywheel
+joints: {turn: {type: revolute, axis: [0.3, 0.7, 0.9], rotation: [[y, 0.4]], coordinate: a}}
+bodies: {turn: {mass: 3, inertia: {xx: 0.1, yy: 0.2, zz: 0.25}}}
+gravity: [0, -9.81, 0]
+outputs: [forward_dynamics]
+"""
+    witness = Witness(text, {"a": 0.7})
+    walker = Walker(witness._system, witness._evaluate, witness._start, Dice("states", 0))
+    found, ranks = walker.states(witness._defaults(), 4)
+    with precision():
+        for state in found:
+            truth = witness._truth("forward_dynamics", state, ranks)
+            assert truth is not None
+            units = [
+                witness._units(Answer(0, (value,)), truth, "forward_dynamics", state, ranks, 2.0**-53)
+                for value in (0.0, 1e-30)
+            ]
+            assert units[0] == 0
+            assert units[1] > 1e3

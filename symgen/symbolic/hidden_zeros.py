@@ -1,0 +1,40 @@
+"""Scalars that are 0 everywhere though nothing in them shows it.
+
+Fingerprints know no roots of numbers: of a unit vector along [2, 3, 0] they do not see that it has the length 1, nor
+that a turn about it leaves it where it is.  What is made of that and should vanish is rounding error in a kernel, a
+wrong number where the whole result is 0.  Double precision finds what may be 0, exact values decide.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.exact import ExactValues
+from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.traverse import reached
+
+# What rounding may leave of a 0 among numbers about 1; more than that is worth no exact value.
+ROUNDING = 1e-6
+POINTS = 2
+
+
+def without_hidden_zeros(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    """The scalars, 0 in place of those that are 0 at every point."""
+    hidden = [scalar for scalar in dict.fromkeys(scalars) if scalar.constant is None]
+    for seed in range(POINTS):
+        values = zip(hidden, _floats(hidden, seed), strict=True) if hidden else ()
+        hidden = [scalar for scalar, value in values if abs(value) <= ROUNDING]
+    if not hidden:
+        return tuple(scalars)
+    exact = ExactValues(signs=False)(hidden)
+    zeros = {scalar for scalar, value in zip(hidden, exact, strict=True) if value == 0}
+    return tuple(scalar.graph.zero if scalar in zeros else scalar for scalar in scalars)
+
+
+def _floats(scalars: Sequence[Scalar], seed: int) -> list[float]:
+    """Values at a random point that lies inside the domains of most functions; NaN elsewhere."""
+    names = [str(node.payload) for node in reached(scalars) if node.op == "symbol"]
+    point = {name: random.Random(f"{seed} {name}").uniform(0.1, 0.9) for name in names}
+    return Evaluator(scalars)(point)

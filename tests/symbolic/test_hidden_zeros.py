@@ -1,0 +1,71 @@
+"""Scalars that are 0 everywhere because of what roots of numbers are."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symgen.generation.draft import draft_of
+from symgen.generation.results import Options
+from symgen.mechanics.system import System
+from symgen.model.load import load_text
+from symgen.symbolic.hidden_zeros import without_hidden_zeros
+from symgen.symbolic.scalar import Graph, Scalar
+
+
+def _turned(graph: Graph, axis: tuple[Scalar, ...], angle: Scalar) -> list[Scalar]:
+    """R e - e of a turn about a unit vector e."""
+    x, y, z = axis
+    c, s = graph.trig("cos", angle), graph.trig("sin", angle)
+    cross = ((graph.zero, -z, y), (z, graph.zero, -x), (-y, x, graph.zero))
+    found = []
+    for i, e in enumerate(axis):
+        row = [(1 - c) * e * other + s * cross[i][j] + (c if i == j else 0) for j, other in enumerate(axis)]
+        found.append(graph.sum(a * b for a, b in zip(row, axis, strict=True)) - e)
+    return found
+
+
+@pytest.mark.parametrize("axis", [("2", "3", "0"), ("0.3", "0.7", "0.9"), ("0.9104909891213981", "-0.337", "0.24")])
+def test_an_axis_stays_where_it_is(axis: tuple[str, ...]) -> None:
+    graph = Graph()
+    parts = [graph.const(Fraction(x)) for x in axis]
+    length = graph.function("sqrt", (graph.sum(x * x for x in parts),))
+    unit = (parts[0] / length, parts[1] / length, parts[2] / length)
+    left = _turned(graph, unit, graph.symbol("a"))
+    assert not all(x.is_zero for x in left)
+    assert all(x.is_zero for x in without_hidden_zeros(left))
+
+
+def test_what_is_small_or_almost_0_stays() -> None:
+    graph = Graph()
+    root = [graph.function("sqrt", (graph.const(number),)) for number in (3, 5, 15, 53, 59, 53 * 59)]
+    x = graph.symbol("x")
+    tiny = x * graph.const(Fraction(1, 10**12))
+    almost = root[0] * root[1] * x - root[2] * x + tiny
+    opposite = root[3] * root[4] * x + root[5] * x
+    nothing = root[0] * root[1] * x - root[2] * x
+    scalars = (tiny, almost, opposite, nothing, x, graph.one)
+    assert without_hidden_zeros(scalars) == (tiny, almost, opposite, graph.zero, x, graph.one)
+
+
+SCREWS = """model: screws
+joints:
+  one: {type: cylindrical, axis: [0.3, 0.7, 0.9], coordinates: [s, a]}
+  other: {type: cylindrical, at: [0.5, 0.2, 0], axis: [2, 3, 0], coordinates: [h, b]}
+bodies:
+  one: {mass: m, inertia: {xx: 0.1, yy: 0.2, zz: 0.25, xy: 0.01}}
+  other: {mass: 4, com: [0, 0.3, 0.1], inertia: {xx: 0.1, yy: 0.05, zz: 0.12}}
+parameters: {m: 2.5}
+gravity: [0, 0, -9.81]
+outputs: [coriolis_matrix, coriolis_force, forward_dynamics]
+"""
+
+
+def test_bodies_on_fixed_axes_have_no_coriolis_forces() -> None:
+    """Rounding errors in place of 0 are no digits: verification rejected every form of C."""
+    model = load_text(SCREWS, "screws.yaml")
+    assert all(x.is_zero for slope in System(model).mass_matrix_gradient for row in slope for x in row)
+    made = draft_of(model, ["coriolis_matrix"], Options())
+    (kernel,) = made.program.kernels
+    assert not kernel.statements
