@@ -21,6 +21,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +69,7 @@ def _below(path: Path) -> Iterable[Path]:
     return [file for file in path.rglob("*") if file.is_file() and MADE.isdisjoint(file.parts)]
 
 
+@cache
 def version_of(tool: str) -> str:
     """The first line a tool says about its version; that it is missing, where it is."""
     path = shutil.which(tool)

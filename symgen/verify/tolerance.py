@@ -121,7 +121,7 @@ def _parts(state: State) -> tuple[Sequence[Any], ...]:
 def _signs(reference: Reference, state: State, generator: random.Random) -> list[list[int]]:
     """Random signs for each perturbation, with which no two numbers of equal size move together every time.
 
-    By chance they do so once in 128 pairs.  What vanishes where the two are equal, as on a parallelogram, then shows no
+    By chance one pair in 256 does.  What vanishes where the two are equal, as on a parallelogram, then shows no
     change at all, and there is no unit of error.
     """
     parts = _parts(state)

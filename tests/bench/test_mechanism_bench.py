@@ -84,7 +84,6 @@ def test_as_written_is_the_writing_of_the_study() -> None:
 
 
 def test_velocities_in_either_axes_give_the_same_equations() -> None:
-    casadi = pytest.importorskip("casadi")
     one = model("arm7")
     state = drawn_states(one, 1)[0]
     found = []
