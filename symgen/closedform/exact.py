@@ -54,7 +54,9 @@ class Exact:
     @cached_property
     def rows(self) -> Rows:
         """B with rows freed of denominators and common factors."""
-        return polynomial_rows(self.ring, self.mechanics.jacobian)
+        jacobian = self.mechanics.jacobian
+        with self.ring.work.limited("B without denominators"):
+            return polynomial_rows(self.ring, jacobian)
 
     @cached_property
     def minor_sets(self) -> tuple[Minors, ...]:

@@ -24,7 +24,7 @@ from symgen.quantities.select import Choice, Rejection
 from symgen.records import dataclass
 from symgen.runtime.garbage import let_go, let_go_and_keep
 from symgen.symbolic.traverse import cost
-from symgen.verify.certificate import Certificate, ErrorRecord, Fault, LeftOut
+from symgen.verify.certificate import Certificate, Fault, LeftOut
 from symgen.verify.comparison import INACCURATE, VIOLATES
 from symgen.verify.exactness import difference
 from symgen.verify.expected import Expected
@@ -62,7 +62,7 @@ class Fallback:
         self._alternatives: Alternatives | None = None
         self._search: WorstStateSearch | None = None
         self.measurements = Measurements()
-        self._searched: dict[str, Kernels] = {}
+        self._searched: dict[str, tuple[Kernels, float]] = {}
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
         self._passing: defaultdict[str, list[_Candidate]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
@@ -85,9 +85,10 @@ class Fallback:
             let_go()
         if not certificate.faults:
             worst = {one.quantity: one for one in sorted(certificate.errors, key=lambda record: record.largest)}
-            for record in worst.values():
-                if record.largest > MARGIN and record.quantity not in self._weighed:
-                    made = self._with_margin(made, record, expected)
+            for quantity, record in worst.items():
+                largest = max(record.largest, self._searched[quantity][1] if quantity in self._searched else 0.0)
+                if largest > MARGIN and quantity not in self._weighed:
+                    made = self._with_margin(made, quantity, largest, expected)
                     let_go()
         return None if made is draft else made
 
@@ -102,22 +103,25 @@ class Fallback:
         found = {}
         for quantity in (kernel.name for kernel in draft.program.kernels):
             kernels = draft.kernels(quantity)
-            if quantity not in certificate.rejected and self._searched.get(quantity) != kernels:
-                self._progress(f"verifying: where {quantity} is worst")
-                self._searched[quantity] = kernels
-                judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
-                if judged and (faults := self._at_worst(draft, judged, _plain(draft.choice(quantity), kernels))):
-                    found[quantity] = tuple(faults)
+            if quantity in certificate.rejected or self._searched.get(quantity, ({}, 0.0))[0] == kernels:
+                continue
+            self._progress(f"verifying: where {quantity} is worst")
+            judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
+            errors = self._at_worst(draft, judged, _plain(draft.choice(quantity), kernels)) if judged else {}
+            self._searched[quantity] = kernels, max(errors.values(), default=0.0)
+            if faults := _faults(quantity, errors):
+                found[quantity] = faults
         return found
 
-    def _at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel | None) -> list[Fault]:
-        """What is wrong with kernels where they are worst, a `plain` one among them and others before."""
+    def _at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel | None) -> dict[Scalar, float]:
+        """The errors of kernels where they are worst, a `plain` one among them and others before."""
         assert self._search is not None
         if plain is not None:
             self._search.look(plain)
-        sincos = {scalar: draft.programs[scalar].sincos for scalar in kernels}
-        faults = (self._search.fault(kernel, sincos[scalar], scalar) for scalar, kernel in kernels.items())
-        return [fault for fault in faults if fault is not None]
+        programs = draft.programs
+        return {
+            scalar: self._search.largest(kernel, programs[scalar].sincos, scalar) for scalar, kernel in kernels.items()
+        }
 
     def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:
         """The draft with a rejected quantity along its next way that passes, or without it."""
@@ -166,18 +170,17 @@ class Fallback:
         passing.remove(best)
         return best
 
-    def _with_margin(self, draft: Draft, record: ErrorRecord, expected: Expected) -> Draft:
+    def _with_margin(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:
         """The draft with a quantity that passes narrowly along a way with half of its error, where that is not long."""
-        quantity = record.quantity
         self._weighed.add(quantity)
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
-        here = _Candidate(record.largest, tuple(kernels), taken, kernels)
+        here = _Candidate(largest, tuple(kernels), taken, kernels)
         self._seen[quantity].add(_digest(kernels))
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
         for one in self._candidates(draft, quantity, 0, expected):
             if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.way.cost <= most:
                 self._passing[quantity].append(here)
-                why = f"error {record.largest:.3g} times d + eps |y*| of {FACTOR:g} ({record.target}) leaves no margin"
+                why = f"error {largest:.3g} times d + eps |y*| of {FACTOR:g} leaves no margin"
                 self._tried[quantity].append((draft.way(quantity), why))
                 return draft.along(one.way, one.kernels).rejecting((Rejection(quantity, draft.way(quantity), why),))
             if "float64" in one.scalars:
@@ -238,13 +241,14 @@ class Fallback:
                 worst = max(worst, record.largest)
             passed[scalar] = kernel
         judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
-        if judged:
-            for fault in self._at_worst(draft, judged, _plain(way.choice, kernels)):
-                self._note(way, fault, inaccurate=True)
-                passed.pop(fault.scalar)
+        errors = self._at_worst(draft, judged, _plain(way.choice, kernels)) if judged else {}
+        for fault in _faults(way.choice.quantity, errors):
+            self._note(way, fault, inaccurate=True)
+            passed.pop(fault.scalar)
         scalars = tuple(passed) if "float64" in passed else ()
+        worst = max((worst, *(error for scalar, error in errors.items() if scalar in scalars)))
         if scalars:
-            self._searched[way.choice.quantity] = kernels
+            self._searched[way.choice.quantity] = kernels, worst
         return _Candidate(worst, scalars, way, kernels)
 
     def _note(self, way: Alternative, fault: Fault, inaccurate: bool) -> None:
@@ -265,6 +269,12 @@ class Fallback:
 
 def _digest(kernels: Kernels) -> int:
     return hash(tuple(kernels.items()))
+
+
+def _faults(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Fault, ...]:
+    """What is wrong at the states that were searched for."""
+    what = f"{INACCURATE} {{:.3g}} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
+    return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > FACTOR)
 
 
 def _plain(choice: Choice, kernels: Kernels) -> Kernel | None:

@@ -65,13 +65,21 @@ class Background(Generic[Answer]):
         else:
             try:
                 fault, answer = self._pipe.recv()
-            except EOFError as error:
-                raise SymgenBug("the background process ended without an answer") from error
+            except (EOFError, ConnectionError) as error:
+                self._process.join()
+                raise SymgenBug(f"the background process {_end(self._process.exitcode)}") from error
             self._process.join()
         if fault is not None:
             raise SymgenBug(f"in the background process:\n{fault}")
         result: Answer = answer
         return result
+
+
+def _end(code: int | None) -> str:
+    """How a process ended that has not answered."""
+    if code == -signal.SIGKILL:
+        return "was killed without an answer, most likely because memory ran out"
+    return f"ended without an answer (exit code {code})"
 
 
 def _child(

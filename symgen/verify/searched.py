@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from functools import cached_property
+from itertools import islice
 
 import numpy as np
 
 from symgen.ir.kernel import Function, Kernel, Scalar
 from symgen.runtime.activity import working
-from symgen.verify.certificate import Fault
-from symgen.verify.comparison import INACCURATE
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes import Lanes, estimates
@@ -32,7 +31,8 @@ NUMBERS = 4_000_000
 KEPT, DIRECTIONS = 32, 8
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
 DOUBTFUL = FACTOR / 2
-JUDGED = 8
+# How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
+JUDGED, SETTLED = 8, 32
 
 
 class WorstStateSearch:
@@ -49,23 +49,25 @@ class WorstStateSearch:
             self._add(kernel.name, *self._estimated(kernel))
 
     def _add(self, quantity: str, states: Nearby, units: Lanes) -> None:
-        for place in (place for place in _worst(units, JUDGED) if units[place] > DOUBTFUL):
-            admissible = bool(states.admissible[place])
-            sample = self._settling.sample(states.state(place), admissible, quantity)
-            if sample is not None and sample not in self._found[quantity]:
+        doubtful = (place for place in _worst(units, SETTLED) if units[place] > DOUBTFUL)
+        tried = (
+            self._settling.sample(states.state(place), bool(states.admissible[place]), quantity) for place in doubtful
+        )
+        for sample in islice((sample for sample in tried if sample is not None), JUDGED):
+            if sample not in self._found[quantity]:
                 self._found[quantity].append(sample)
 
-    def fault(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> Fault | None:
-        """A wrong number with status 0 at the states that were found for its quantity, whatever way it takes."""
+    def largest(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> float:
+        """The largest error with status 0, in units of d + eps |y*|, at the states that were found for its quantity.
+
+        They are those of every way that was looked at.
+        """
         states = [rounded(sample, scalar).state for sample in self._found[kernel.name]]
         worst = 0.0
         for place, made in enumerate(outcomes(kernel, sincos, scalar, states)):
             if made.valid and (expected := self._expectation(kernel.name, place, scalar)) is not None:
                 worst = max(worst, expected.in_units(expected.distance(made.entries)))
-        if worst <= FACTOR:
-            return None
-        what = f"{INACCURATE} {worst:.3g} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
-        return Fault(what, kernel.name, scalar)
+        return worst
 
     def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
         """None where there is no value once the state is rounded."""

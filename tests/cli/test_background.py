@@ -87,3 +87,12 @@ def _runs(process: int) -> bool:
             return False
         time.sleep(0.02)
     return True
+
+
+def test_a_process_that_is_killed_is_told() -> None:
+    def work(_receive: Receive) -> int:
+        os.kill(os.getpid(), signal.SIGKILL)
+        return 0
+
+    with Background(work) as background, pytest.raises(SymgenBug, match="killed without an answer"):
+        background.answer()

@@ -25,6 +25,10 @@ from symgen.methods.quantity import Quantity
 from symgen.pipeline import generate
 from symgen.quantities import alternatives
 from symgen.symbolic.scalar import Graph, Scalar
+from symgen.verify.reference.reference import State
+from symgen.verify.searched import JUDGED
+from symgen.verify.settling import Settling
+from symgen.verify.states import Sample
 
 # A pin on a crank moves a slotted slider: one row, one degree of freedom.
 YOKE = """
@@ -103,6 +107,11 @@ def narrow(motion: MotionMethod) -> MotionMethod:
 def edgy(motion: MotionMethod) -> MotionMethod:
     """λ that loses digits where the crank is nearly turned around, and little elsewhere."""
     return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 4)) for value in motion.multipliers))
+
+
+def edging(motion: MotionMethod) -> MotionMethod:
+    """The same, less: a good half of what is allowed is lost there."""
+    return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 16)) for value in motion.multipliers))
 
 
 def losing_digits(motion: MotionMethod) -> MotionMethod:
@@ -242,6 +251,35 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
     wide = derived(result)["kernels"].get("multipliers", {}).get("twice_the_digits")
     assert wide or [one.quantity for one in result.left_out] == ["multipliers"]
     assert made(yoke).files["derivation.json"] == result.files["derivation.json"]
+
+
+def test_states_that_lead_nowhere_do_not_end_the_search(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spoil_choice(monkeypatch, edgy)
+    settled = Settling.sample
+    asked: list[State] = []
+
+    def rarely(self: Settling, state: State, admissible: bool, quantity: str) -> Sample | None:
+        asked.append(state)
+        return settled(self, state, admissible, quantity) if len(asked) > 2 * JUDGED else None
+
+    monkeypatch.setattr(Settling, "sample", rarely)
+    (rejected,) = derived(made(yoke))["rejected"]
+    assert "at a state searched for" in rejected["why"]
+
+
+def test_what_passes_narrowly_at_a_state_searched_for_leaves_no_margin(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spoil_choice(monkeypatch, edging)
+    result = made(yoke)
+    (rejected,) = derived(result)["rejected"]
+    assert "leaves no margin" in rejected["why"]
+    # the states of the verification had nothing to say
+    spoil_named(monkeypatch, edging)
+    result = made(yoke)
+    assert "rejected" not in derived(result)
+    assert result.certificate is not None
+    assert max(e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers") <= 8
 
 
 def test_the_way_taken_is_the_one_that_counts_least_of_those_that_pass(

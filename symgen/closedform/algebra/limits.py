@@ -9,7 +9,9 @@ WORK_LIMIT = 60_000
 """Products of terms, about half a second of work: what needs more has always been too long to be printed."""
 
 LIMIT_OF_MODEL = 300_000
-"""The same for g and B, without which there is no report."""
+"""The same for g and B, without which there is no report, and for all that has no limit of its own."""
+
+THE_REST = "what the closed forms rest on"
 
 
 class TooLargeError(Exception):
@@ -17,12 +19,10 @@ class TooLargeError(Exception):
 
 
 class WorkCounter:
-    """Counts products of terms while a limit is set; what failed once on its own fails again at once."""
+    """Counts products of terms, what is `limited` on its own; what failed once on its own fails again at once."""
 
     def __init__(self) -> None:
-        self._spent = 0
-        self._what = ""
-        self._limit = WORK_LIMIT
+        self._spent, self._what, self._limit = 0, THE_REST, LIMIT_OF_MODEL
         self._failed: dict[str, str] = {}
 
     @contextmanager
@@ -30,7 +30,7 @@ class WorkCounter:
         """Raise TooLargeError, saying what was being built, beyond so many products; the outermost limit counts."""
         if what in self._failed:
             raise TooLargeError(self._failed[what])
-        outermost = not self._what
+        outermost, of_the_rest = self._what == THE_REST, self._spent
         if outermost:
             self._spent, self._what, self._limit = 0, what, limit
         before = self._spent
@@ -42,10 +42,10 @@ class WorkCounter:
             raise
         finally:
             if outermost:
-                self._what = ""
+                self._spent, self._what, self._limit = of_the_rest, THE_REST, LIMIT_OF_MODEL
 
     def spend(self, products: int) -> None:
         """Note work that is about to be done."""
         self._spent += products
-        if self._what and self._spent > self._limit:
+        if self._spent > self._limit:
             raise TooLargeError(f"{self._what} needs more than {self._limit} products of terms")

@@ -180,11 +180,11 @@ class System:
 
     @cached_property
     def rows(self) -> tuple[Row, ...]:
-        """All constraints: those of the file, joints, loops, wheels; of loops and wheels none that always hold."""
+        """All constraints: those of the file, joints, loops, wheels; of wheels none that always hold."""
         given = self.blocks.get("constraints") or {}
         found = [Row(name, True, self.read(text)) for name, text in (given.get("geometric") or {}).items()]
         for name, entry in (self.blocks.get("loops") or {}).items():
-            found += [row for row in self._loop(name, entry) if row.value.number != 0]
+            found += self._loop(name, entry)
         found += self._norms()
         wheels = [row for name, entry in (self.blocks.get("rolling") or {}).items() for row in self._wheel(name, entry)]
         wheels = [row for row in wheels if row.value.number != 0]
