@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from symgen.closedform.algebra.limits import LIMIT_OF_MODEL, WORK_LIMIT, TooLargeError, WorkCounter
+from symgen.closedform.algebra.limits import LIMIT_OF_THE_REST, WORK_LIMIT, TooLargeError, WorkCounter
 from symgen.closedform.forms import derive_closed_forms
 from symgen.model.load import load_model
 
@@ -15,17 +15,17 @@ LINKS = 9
 
 def test_what_has_no_limit_of_its_own_has_that_of_the_model() -> None:
     work = WorkCounter()
-    work.spend(LIMIT_OF_MODEL // 2)
+    work.spend(LIMIT_OF_THE_REST // 2)
     with work.limited("a matrix"):
         work.spend(WORK_LIMIT)
-    work.spend(LIMIT_OF_MODEL // 2)
+    work.spend(LIMIT_OF_THE_REST // 2)
     with pytest.raises(TooLargeError, match="rest on needs more than"):
         work.spend(1)
 
 
 def test_what_has_a_limit_is_held_to_it_whatever_was_done_before() -> None:
     work = WorkCounter()
-    work.spend(LIMIT_OF_MODEL)
+    work.spend(LIMIT_OF_THE_REST)
     with pytest.raises(TooLargeError, match="a matrix needs more than"), work.limited("a matrix"):
         work.spend(WORK_LIMIT + 1)
 

@@ -9,7 +9,10 @@ WORK_LIMIT = 60_000
 """Products of terms, about half a second of work: what needs more has always been too long to be printed."""
 
 LIMIT_OF_MODEL = 300_000
-"""The same for g and B, without which there is no report, and for all that has no limit of its own."""
+"""The same for g and B, without which there is no report."""
+
+LIMIT_OF_THE_REST = 1_000_000
+"""The same for all together that has no limit of its own."""
 
 THE_REST = "what the closed forms rest on"
 
@@ -22,7 +25,7 @@ class WorkCounter:
     """Counts products of terms, what is `limited` on its own; what failed once on its own fails again at once."""
 
     def __init__(self) -> None:
-        self._spent, self._what, self._limit = 0, THE_REST, LIMIT_OF_MODEL
+        self._spent, self._what, self._limit = 0, THE_REST, LIMIT_OF_THE_REST
         self._failed: dict[str, str] = {}
 
     @contextmanager
@@ -42,7 +45,7 @@ class WorkCounter:
             raise
         finally:
             if outermost:
-                self._spent, self._what, self._limit = of_the_rest, THE_REST, LIMIT_OF_MODEL
+                self._spent, self._what, self._limit = of_the_rest, THE_REST, LIMIT_OF_THE_REST
 
     def spend(self, products: int) -> None:
         """Note work that is about to be done."""
