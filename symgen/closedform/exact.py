@@ -10,7 +10,7 @@ from math import comb
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.algebra.homogeneous import common_factor, divide
-from symgen.closedform.algebra.limits import WORK_LIMIT, TooLargeError
+from symgen.closedform.algebra.limits import LIMIT_OF_MODEL, WORK_LIMIT, TooLargeError
 from symgen.closedform.algebra.matrices import add, determinant, identity, multiply, transpose, zero
 from symgen.closedform.algebra.minors import (
     Actuation,
@@ -55,7 +55,7 @@ class Exact:
     def rows(self) -> Rows:
         """B with rows freed of denominators and common factors."""
         jacobian = self.mechanics.jacobian
-        with self.ring.work.limited("B without denominators"):
+        with self.ring.work.limited("B without denominators", LIMIT_OF_MODEL):
             return polynomial_rows(self.ring, jacobian)
 
     @cached_property
