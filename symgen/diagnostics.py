@@ -22,12 +22,17 @@ class Mistake:
     """One mistake of the user: what is wrong, where, and what to do.
 
     `about` is the name in both texts by which this mistake differs from the same one made elsewhere.
+    Raises SymgenBug without a remedy: whoever is told what is wrong is told what to do.
     """
 
     message: str
     remedy: str
     span: Span | None = None
     about: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.remedy.strip():
+            raise SymgenBug(f"there is no remedy for: {self.message}")
 
 
 @dataclass(frozen=True, slots=True)

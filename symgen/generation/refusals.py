@@ -11,6 +11,8 @@ from symgen.model.model import Model
 if TYPE_CHECKING:
     from symgen.verify.certificate import Certificate
 
+MORE_STATES = "give a start under `configuration` and the ranges of the coordinates"
+
 
 def beyond_range(error: LiteralRangeError) -> Mistake:
     """That a kernel holds a number that its scalar type does not."""
@@ -25,4 +27,4 @@ def no_states(model: Model, certificate: Certificate) -> Mistake:
     message, _, remedy = certificate.faults[0].what.partition("; ")
     spans = [row.span for row in model.constraints if row.kind == "geometric" and row.span is not None]
     place = next((span for span in spans if not span.file), None)
-    return Mistake(message.removeprefix(f"{model.name}: "), remedy, place)
+    return Mistake(message.removeprefix(f"{model.name}: "), remedy or MORE_STATES, place)

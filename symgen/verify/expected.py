@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import TypeAlias
 
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.runtime.activity import each, working
 from symgen.verify.modes import modes
-from symgen.verify.reference.reference import Reference
-from symgen.verify.states import USUAL_STATES, Sample, affordable_states, rounded, sample_states
+from symgen.verify.reference.reference import Reference, ReferenceValueError
+from symgen.verify.regular import FEWEST_STATES
+from symgen.verify.states import (
+    USUAL_STATES,
+    Sample,
+    VerificationError,
+    affordable_states,
+    rounded,
+    sample_states,
+)
 from symgen.verify.tolerance import Expectation, expectations
 
 Progress: TypeAlias = Callable[[str], None]
@@ -41,18 +50,33 @@ class Expected:
         return tuple(self._values)
 
     def samples(self, scalar: Scalar) -> tuple[Sample, ...]:
-        """The states, rounded to the scalar type."""
+        """The states, rounded to the scalar type; those that lie on a singularity then are none, see `values`."""
         if scalar not in self._samples:
             self._samples[scalar] = tuple(rounded(sample, scalar) for sample in self._samples["float64"])
         return self._samples[scalar]
 
     def values(self, scalar: Scalar) -> list[dict[str, Expectation]]:
-        """Reference values and error units of every quantity, state by state."""
+        """Reference values and error units of every quantity, state by state.
+
+        States at which a quantity has no value once they are rounded are let go of.  Raises VerificationError when
+        fewer than 8 are left.
+        """
         if scalar not in self._values:
             found, chosen = [], self.samples(scalar)
+            kept = []
             for index, sample in each("", list(enumerate(chosen))):
                 if index % 8 == 0:
                     self._progress(f"verifying: reference for {scalar}, state {index + 1} of {len(chosen)}")
-                found.append(expectations(self.reference, sample.state, self._quantities, scalar, f"{scalar} {index}"))
+                with suppress(ReferenceValueError):
+                    made = expectations(self.reference, sample.state, self._quantities, scalar, f"{scalar} {index}")
+                    found.append(made)
+                    kept.append(sample)
+            if len(kept) < FEWEST_STATES:
+                raise VerificationError(
+                    f"only {len(kept)} regular configurations are left once they are rounded to {scalar} "
+                    f"({FEWEST_STATES} are needed); give ranges that lie further from singular configurations"
+                    + ("" if scalar == "float64" else ", or generate double precision alone, with `--scalar float64`")
+                )
+            self._samples[scalar] = tuple(kept)
             self._values[scalar] = found
         return self._values[scalar]

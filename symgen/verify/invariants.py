@@ -15,7 +15,6 @@ from flint import arb_mat
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.linear import column, norm
 from symgen.verify.reference.reference import BITS, Reference
-from symgen.verify.reference.tape import precision
 from symgen.verify.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation
 
@@ -30,18 +29,30 @@ def defects(
     results: Mapping[str, tuple[float, ...]],
 ) -> Iterator[tuple[str, str, float]]:
     """Each law the results can be tested on at one state, the quantity it judges, and its defect over its bound."""
-    with precision(BITS):
-        exact = {name: expectation.value for name, expectation in expected.items()}
-        given = {
-            name: arb_mat(exact[name].nrows(), exact[name].ncols(), list(entries)) for name, entries in results.items()
-        }
-        room = {name: FACTOR * expectation.unit for name, expectation in expected.items()}
-        evaluation = reference.evaluation(sample.state)
-        for needed, (name, defect, bound) in _laws(evaluation, sample.admissible):
-            if all(quantity in given for quantity in needed):
-                allowed = bound(exact, room) + 2 * norm(defect(exact))
-                found = norm(defect(given))
-                yield name, needed[0], found / allowed if allowed else float(found > 0)
+
+    def found() -> list[tuple[str, str, float]]:
+        return list(_defects(reference.evaluation(sample.state), sample.admissible, expected, results))
+
+    yield from reference.regular(found, BITS)
+
+
+def _defects(
+    evaluation: Evaluation,
+    admissible: bool,
+    expected: Mapping[str, Expectation],
+    results: Mapping[str, tuple[float, ...]],
+) -> Iterator[tuple[str, str, float]]:
+    """The same at one working precision."""
+    exact = {name: expectation.value for name, expectation in expected.items()}
+    given = {
+        name: arb_mat(exact[name].nrows(), exact[name].ncols(), list(entries)) for name, entries in results.items()
+    }
+    room = {name: FACTOR * expectation.unit for name, expectation in expected.items()}
+    for needed, (name, defect, bound) in _laws(evaluation, admissible):
+        if all(quantity in given for quantity in needed):
+            allowed = bound(exact, room) + 2 * norm(defect(exact))
+            found = norm(defect(given))
+            yield name, needed[0], found / allowed if allowed else float(found > 0)
 
 
 def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[tuple[str, ...], Law]]:

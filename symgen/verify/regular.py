@@ -109,6 +109,10 @@ class RegularStateSearch:
         if sum(self._kept.values()) < FEWEST_STATES and self._system.r_geometric:
             yield from self._along(last)
 
+    def has_no_value(self) -> None:
+        """A state that was found is none: some quantity has no value there."""
+        self._ends[VALUE] += 1
+
     def told(self) -> str:
         """What became of the others, as the end of a sentence."""
         if not self._ends:

@@ -112,10 +112,10 @@ def _verified(
 ) -> Certificate:
     """The certificate with everything that was found; compilers work while the reference does."""
     reference = expected.reference
-    model, doubles = reference.model, expected.samples("float64")
+    model = reference.model
     scalars: dict[Scalar, None] = dict.fromkeys((*compilations, *(("float64",) if python_source is not None else ())))
-    samples = {scalar: expected.samples(scalar) for scalar in scalars}
     values = {scalar: expected.values(scalar) for scalar in scalars}
+    samples, doubles = {scalar: expected.samples(scalar) for scalar in scalars}, expected.samples("float64")
     progress("verifying: running C and Python")
     results, faults = _run_c(model, kernels, c_sources, compilations, samples)
     if python_source is not None:

@@ -80,6 +80,8 @@ def sample_states(
                     outside.append(found_state)
                 elif (sample := _sample(reference, quantities, found_state)) is not None:
                     inside.append(sample)
+                else:
+                    search.has_no_value()
                 if len(inside) == count:
                     break
                 work.done, work.part = len(inside), f"{len(inside)} of {count} found"

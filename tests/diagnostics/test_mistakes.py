@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from spoiled_models import GOOD, GROUPS
 
-from symgen.diagnostics import ModelError
+from symgen.diagnostics import Mistake, ModelError, SymgenBug
+from symgen.generation.refusals import MORE_STATES, no_states
 from symgen.model.load import load_text
+from symgen.verify.certificate import Fault
+from symgen.verify.run import blank_certificate
 
 EXPECTED = Path(__file__).parent / "expected"
 
@@ -127,3 +131,18 @@ constraints: {geometric: {pin: "x - 0.25*sin(a)"}}
 configuration: {x: 0, a: 0}
 """
     assert load_text(text, "pin.yaml").r == 1
+
+
+@pytest.mark.parametrize("remedy", ["", "  "])
+def test_no_mistake_leaves_without_a_remedy(remedy: str) -> None:
+    with pytest.raises(SymgenBug, match="no remedy for: the loop is open"):
+        Mistake("the loop is open", remedy)
+
+
+@pytest.mark.parametrize("what", ["nothing was found", "nothing was found; look further"])
+def test_what_ends_a_verification_has_a_remedy(what: str) -> None:
+    model = load_text(GOOD, "good.yaml")
+    certificate = replace(blank_certificate(model, None, {}, None), faults=(Fault(f"{model.name}: {what}"),))
+    mistake = no_states(model, certificate)
+    assert mistake.message == "nothing was found"
+    assert mistake.remedy == ("look further" if ";" in what else MORE_STATES)

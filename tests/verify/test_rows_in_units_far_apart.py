@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import pi
 
 import pytest
-from flint import arb_mat
+from flint import arb, arb_mat
 
+from symgen.ir.kernel import Scalar
 from symgen.model.load import load_text
 from symgen.verify.reference.linear import independent_rows, right_pseudoinverse
 from symgen.verify.reference.manifold import exceeds
-from symgen.verify.reference.reference import Reference
+from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.tape import ball, precision
-from symgen.verify.states import sample_states
+from symgen.verify.states import rounded, sample_states
+from symgen.verify.tolerance import expectations
 
 # the shelf holds the tip of an arm, so that its joints stand still; the crank turns beside it
 SHELF = """\
@@ -100,3 +103,42 @@ configuration: {c: -1.17}
     reference = Reference(load_text(text, "slide.yaml"))
     assert (reference.ranks.constraints, reference.ranks.actuation) == (1, 1)
     assert len(sample_states(reference, ("inverse_dynamics",), 12)) == 12
+
+
+# of two rows that say the same one is in other units, and a third says nothing at all
+TWICE = """\
+model: twice_in_other_units
+coordinates: {{a: {{unit: rad}}, b: {{unit: rad}}, c: {{unit: rad}}, w: {{}}}}
+kinetic_energy: 2*a_dot**2 + b_dot**2 + cos(a - b)*a_dot*b_dot/2 + c_dot**2/3 + w_dot**2/7
+constraints:
+  geometric:
+    level: 0.6*sin(a) + 0.8*sin(b) + 0.3*sin(c) - 0.9
+    reach: "1e-3*(0.6*cos(a) + 0.8*cos(b) + 0.3*cos(c) - w)"
+    again: "{unit}*(0.6*sin(a) + 0.8*sin(b) + 0.3*sin(c) - 0.9)"
+inputs: {{shoulder: {{acts_on: {{a: 1}}}}}}
+configuration: {{a: 0.3, b: 0.9, c: 0.4, w: 1.3}}
+"""
+
+
+@pytest.mark.parametrize("scalar", ["float32", "float64"])
+@pytest.mark.parametrize("unit", ["1e7", "1e-7", "3e11"])
+def test_a_step_towards_closed_loops_is_known_at_states_that_are_rounded(unit: str, scalar: Scalar) -> None:
+    """Sums over subsets of rows that belong to a second Newton step start from what the first leaves open."""
+    reference = Reference(load_text(TWICE.format(unit=unit), "twice.yaml"))
+    assert reference.ranks.geometric == 2
+    wanted = ("projected_configuration", "nullspace_projector")
+    for index, sample in enumerate(sample_states(reference, wanted, 8)):
+        state = rounded(sample, scalar).state
+        made = expectations(reference, state, wanted, scalar, f"{index}")
+        moved = max(abs(float(x) - y) for x, y in zip(made[wanted[0]].value.entries(), state.q, strict=True))
+        assert moved < 0.02
+        assert 0 < made[wanted[0]].unit < 1e-4
+
+
+def test_a_rank_that_drops_is_told_with_a_remedy() -> None:
+    reference = Reference(load_text(TWICE.format(unit="1e7"), "twice.yaml"))
+    upright = State((0.5 * pi,) * 3 + (0.0,), (0.0,) * 4, (0.0,) * 4, (0.0,), ())
+    singular = replace(upright, q=(arb.pi() / 2,) * 3 + (arb(0),))
+    assert reference.matrices(upright, ["nullspace_projector"])  # the rounding of pi/2 is told from nothing
+    with pytest.raises(ReferenceValueError, match="a rank drops at this state; give"):
+        reference.matrices(singular, ["nullspace_projector"])

@@ -13,6 +13,7 @@ from linkages import row_of_four_bars
 from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 
 from symgen.model.load import load_text
+from symgen.verify.expected import Expected
 from symgen.verify.reference.linear import column, norm
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.tape import precision
@@ -250,3 +251,31 @@ def test_where_a_loop_stands_still_nearly_stretched_its_small_measure_is_regular
     assert len(samples) == 8
     assert all(0 < sample.measures[0] < 1e-4 for sample in samples)
     assert len({sample.state.q[2] for sample in samples}) == 8
+
+
+def far_away(reach: int) -> Expected:
+    """A row that vanishes at one place so far from 0 that single precision has few numbers beside it."""
+    text = f"""\
+model: far_away
+coordinates: {{x: {{}}, y: {{}}, z: {{}}}}
+kinetic_energy: x_dot**2 + y_dot**2 + z_dot**2
+constraints: {{nonholonomic: {{row: (x - 1e8)*y_dot}}}}
+inputs: {{u: {{acts_on: {{z: 1}}}}}}
+ranges: {{x: [{10**8 - reach}, {10**8 + reach}]}}
+"""
+    model = load_text(text, "far_away.yaml")
+    return Expected(model, ["nullspace_projector"], 24, lambda _: None)
+
+
+def test_states_that_are_singular_once_they_are_rounded_are_let_go_of() -> None:
+    expected = far_away(20)
+    assert len(expected.values("float64")) == len(expected.samples("float64")) == 24
+    assert 8 <= len(expected.values("float32")) == len(expected.samples("float32")) < 24
+    assert all(sample.state.q[0] != 1e8 for sample in expected.samples("float32"))
+
+
+def test_where_too_few_states_are_left_once_they_are_rounded_a_remedy_is_told() -> None:
+    expected = far_away(3)
+    assert len(expected.values("float64")) == 24
+    with pytest.raises(VerificationError, match=r"only 0 regular .* rounded to float32 .*; give .*--scalar float64"):
+        expected.values("float32")

@@ -11,10 +11,13 @@ import pytest
 import yaml
 
 from symgen.laboratory.zoo.describe import Description
+from symgen.laboratory.zoo.dice import Dice
+from symgen.laboratory.zoo.endings import independent
 from symgen.laboratory.zoo.families import FAMILIES, draw
 from symgen.laboratory.zoo.fields import Floats
 from symgen.laboratory.zoo.mechanics import equations
 from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.sketch import Sketch
 from symgen.laboratory.zoo.urdf_file import expanded
 
 DRAWS = range(3)
@@ -80,3 +83,16 @@ def test_a_seed_draws_the_same_under_any_hash_seed() -> None:
 def test_seeds_and_numbers_draw_different_systems() -> None:
     texts = {draw(seed, index).text for seed in range(5) for index in range(20)}
     assert len(texts) == 100
+
+
+def test_as_many_velocities_are_independent_as_there_are_degrees_of_freedom() -> None:
+    """Also where rows all but depend on each other: a rod of 1e4 lengths of the other one."""
+    for index in range(6):
+        sketch = Sketch(Dice(f"independent {index}"), "disc")
+        sketch.start = {"x": 0.3, "y": 0.4, "z": 0.2, "w": 0.1}
+        sketch.blocks |= {
+            "coordinates": {name: {} for name in sketch.start},
+            "kinetic_energy": "x_dot**2 + y_dot**2 + z_dot**2 + w_dot**2",
+            "constraints": {"geometric": {"one": "x + y - 0.7", "two": "x + y + 2e-4*(z - w - 0.1) - 0.7"}},
+        }
+        assert len(independent(sketch)) == 2

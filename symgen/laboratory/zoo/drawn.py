@@ -58,7 +58,7 @@ class Drawn:
     @cached_property
     def rank(self) -> int:
         """The rank of the constraints, the largest that was met."""
-        return max(_rank(at) for at in self.places)
+        return max(rank_at(at) for at in self.places)
 
     @property
     def freedom(self) -> int:
@@ -100,7 +100,8 @@ def reached(at: Numbers) -> Any:
     return null_space(at).T @ (control / np.where(lengths > 0, lengths, 1))
 
 
-def _rank(at: Numbers) -> int:
+def rank_at(at: Numbers) -> int:
+    """The rank of the constraints at one configuration."""
     return rank_of(normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), ROUNDING)
 
 

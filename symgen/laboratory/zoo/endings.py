@@ -9,7 +9,7 @@ import numpy as np
 
 from symgen.laboratory.zoo.describe import MISTAKE, Description, Terms
 from symgen.laboratory.zoo.dice import decimal
-from symgen.laboratory.zoo.drawn import Drawn
+from symgen.laboratory.zoo.drawn import Drawn, rank_at
 from symgen.laboratory.zoo.linear import NOTHING
 from symgen.laboratory.zoo.names import ILLEGAL
 from symgen.laboratory.zoo.sketch import Sketch
@@ -36,7 +36,7 @@ def finish(sketch: Sketch) -> Description:
         allocate(sketch)
     others = [*OTHERS, *(OF_POINTS if "points" in blocks else ())]
     if dice.chance(0.12):
-        blocks["independent_velocities"] = _independent(sketch)
+        blocks["independent_velocities"] = independent(sketch)
         others += OF_INDEPENDENT
     match dice.weighted({"main": 5, "some": 4, "all": 2, "none": 1}):
         case "main":
@@ -117,15 +117,23 @@ def allocate(sketch: Sketch) -> None:
         blocks["allocation"] = allocation
 
 
-def _independent(sketch: Sketch) -> list[str]:
-    """Coordinates whose rates determine all others at the start."""
+def independent(sketch: Sketch) -> list[str]:
+    """Coordinates whose rates determine all others where most rows count: as many as there are degrees of freedom."""
     drawn = Drawn(expanded(sketch.blocks, sketch.files), sketch.start)
     names = list(drawn.start)
-    jacobian = np.array(drawn.at_start.rows, dtype=float).reshape(-1, len(names))
+    place = max(drawn.places, key=rank_at)
+    jacobian = np.array(place.rows, dtype=float).reshape(-1, len(names))
     jacobian = jacobian / np.maximum(np.linalg.norm(jacobian, axis=1, keepdims=True), NOTHING)
     dependent: list[str] = []
-    for name in sketch.dice.shuffled(names):
+
+    def spread(name: str) -> float:
         chosen = [names.index(each) for each in (*dependent, name)]
-        if len(chosen) <= drawn.rank and np.linalg.svd(jacobian[:, chosen], compute_uv=False).min() > 1e-3:
+        return float(np.linalg.svd(jacobian[:, chosen], compute_uv=False).min())
+
+    for name in sketch.dice.shuffled(names):
+        if len(dependent) < drawn.rank and spread(name) > 1e-3:
             dependent.append(name)
+    # rows that all but depend on each other leave less of every further coordinate
+    while len(dependent) < drawn.rank:
+        dependent.append(max((name for name in names if name not in dependent), key=spread))
     return [name for name in names if name not in dependent]

@@ -67,16 +67,15 @@ def _chosen(scope: Scope, node: Node | None, known: dict[str, Span], what: str) 
 def _enter(scope: Scope, taken: dict[str, str], name: str, span: Span, of: tuple[str, str, str, str]) -> None:
     what, block, owner, own = of
     mistake = name_mistake(ScalarNode(name, span, "", False), what)
-    if mistake is None and name == WORLD:
+    message = mistake.message if mistake is not None else ""
+    if not message and name == WORLD:
         message = f"the link `{own}` is called as the frame at rest, and moves against the root"
-        mistake = Mistake(message, "", span)
-    if mistake is None and name in taken:
+    if not message and name in taken:
         message = f"the {owner} `{own}` has the name of a {taken[name]}"
-        mistake = Mistake(message, "", span)
-    if mistake is not None:
+    if message:
         better = _suggestion(own, taken)
         remedy = f"name it in the model file: `urdf: {{file: ..., {block}: {{{better}: {own}}}}}`"
-        scope.mistakes.append(Mistake(mistake.message, remedy, span, own))
+        scope.mistakes.append(Mistake(message, remedy, span, own))
     taken.setdefault(name, owner)
 
 

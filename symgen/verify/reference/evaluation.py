@@ -7,12 +7,11 @@ P = I - N, v = N qd, Z = N (N G N + P)^-1 N = F (F'GF)^-1 F' for every basis F o
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import Any, TypeAlias
 
-from flint import arb_mat, ctx
+from flint import arb_mat
 
 from symgen.verify.reference.blocks import pseudoinverse_of_parts, right_pseudoinverse_of_parts
 from symgen.verify.reference.linear import (
@@ -25,10 +24,7 @@ from symgen.verify.reference.linear import (
 from symgen.verify.reference.manifold import Ranks
 from symgen.verify.reference.parts import piece, placed
 from symgen.verify.reference.system import Configuration, System
-from symgen.verify.reference.tape import precision
-from symgen.verify.reference.translation import literal_values
 
-MORE_BITS = (2, 4, 8)  # times the working precision
 Derivative: TypeAlias = Callable[["Evaluation", Any], Any]
 
 
@@ -57,7 +53,6 @@ class Evaluation:
     u: Sequence[Any]
     parameters: Sequence[Any]
     literals: Sequence[Any]
-    own_literals: bool = False  # whether they are the values of the model's, which more bits make known better
     derivatives: dict[tuple[str, int], tuple[Any, Any]] = field(default_factory=dict)
 
     @cached_property
@@ -88,25 +83,8 @@ class Evaluation:
 
     @cached_property
     def inverse(self) -> Any:
-        """B+ (n x r).
-
-        Sums over subsets of rows in units far apart lose more digits than the working precision has: then they are
-        worked out with more bits.
-        """
-        rank = self.ranks.constraints
-        try:
-            return right_pseudoinverse_of_parts(self.at.constraints, rank, self.system.parts)
-        except ZeroDivisionError:
-            if rank == self.system.r:
-                raise
-        bits = ctx.prec
-        for more in MORE_BITS:
-            with precision(more * bits):
-                literals = literal_values(self.system.literals) if self.own_literals else self.literals
-                constraints, _ = self.system.matrices(self.q, self.parameters, literals)
-                with suppress(ZeroDivisionError):
-                    return right_pseudoinverse_of_parts(constraints, rank, self.system.parts)
-        raise ZeroDivisionError("the constraints may be of lower rank")
+        """B+ (n x r)."""
+        return right_pseudoinverse_of_parts(self.at.constraints, self.ranks.constraints, self.system.parts)
 
     @cached_property
     def projector_off(self) -> Any:

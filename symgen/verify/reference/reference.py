@@ -7,11 +7,11 @@ nothing with the derivation of kernels.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from flint import ctx
 
@@ -29,6 +29,10 @@ Exact: TypeAlias = int | float | Fraction | Any
 BITS = 256
 DIGITS = 50
 MOST_BITS = 4096
+# Times the working precision, where a matrix cannot be told from one of lower rank.
+MORE_BITS = (1, 2, 4, 8)
+NEAR_SINGULAR = "give `ranges` that leave out the configurations beside it, if they are never met"
+Result = TypeVar("Result")
 
 
 class ReferenceValueError(Exception):
@@ -90,7 +94,9 @@ class Reference:
                 if all(_accurate(matrix) for matrix in matrices.values()):
                     return matrices
             bits *= 2
-        raise ReferenceValueError(f"{self.model.name}: {MOST_BITS} bits do not give {DIGITS} digits at this state")
+        raise ReferenceValueError(
+            f"{self.model.name}: {MOST_BITS} bits do not give {DIGITS} digits at this state; {NEAR_SINGULAR}"
+        )
 
     def matrices(
         self, state: State, quantities: Sequence[str], bits: int = BITS, literals: Sequence[Any] | None = None
@@ -99,22 +105,34 @@ class Reference:
 
         `literals` replace the values of the model's literals.
         """
-        with precision(bits), self._ranks_may_drop():
+
+        def found() -> dict[str, Any]:
             evaluation = self.evaluation(state, literals)
             return {name: QUANTITIES[name](evaluation) for name in quantities}
 
+        return self.regular(found, bits)
+
     def measured(self, state: State, quantities: Sequence[str], bits: int) -> tuple[dict[str, Any], list[Any]]:
         """Like `matrices`, and both measures of each part of the system, as balls."""
-        with precision(bits), self._ranks_may_drop():
+
+        def found() -> tuple[dict[str, Any], list[Any]]:
             evaluation = self.evaluation(state)
             return {name: QUANTITIES[name](evaluation) for name in quantities}, measures_of_parts(evaluation)
 
-    @contextmanager
-    def _ranks_may_drop(self) -> Iterator[None]:
-        try:
-            yield
-        except ZeroDivisionError as fault:
-            raise ReferenceValueError(f"{self.model.name}: a rank drops at this state") from fault
+        return self.regular(found, bits)
+
+    def regular(self, work: Callable[[], Result], bits: int) -> Result:
+        """What `work` makes of evaluations at a working precision, or at a greater one where that tells no rank.
+
+        Sums over subsets of rows in units far apart lose digits with the power of their sizes: a ball that may hold a
+        singular matrix says nothing of the matrix yet.  Raises ReferenceValueError where more bits say no more.
+        """
+        for more in MORE_BITS:
+            if more > 1 and more * bits > MOST_BITS:
+                break
+            with precision(more * bits), suppress(ZeroDivisionError):
+                return work()
+        raise ReferenceValueError(f"{self.model.name}: a rank drops at this state; {NEAR_SINGULAR}")
 
     def evaluation(self, state: State, literals: Sequence[Any] | None = None) -> Evaluation:
         """The state with every intermediate at hand, at the working precision of the caller."""
@@ -127,7 +145,6 @@ class Reference:
             u=[ball(x) for x in state.u],
             parameters=[ball(x) for x in state.parameters],
             literals=self.literals() if literals is None else literals,
-            own_literals=literals is None,
         )
 
 
