@@ -89,18 +89,24 @@ class NullSpace(Protocol):
         """The same by determinants, however many they are."""
 
 
+def without(x: Vector, locked: Sequence[int]) -> Vector:
+    """x with 0 at the places of coordinates that rows of their own lock."""
+    return tuple(entry.graph.zero if j in locked else entry for j, entry in enumerate(x)) if locked else x
+
+
 class Restriction:
     """Brings a generalized force to the space in which the input equations are solved."""
 
-    def __init__(self, reflections: Reflections | None, skip: int) -> None:
+    def __init__(self, reflections: Reflections | None, skip: int, locked: Sequence[int] = ()) -> None:
         self._reflections = reflections
         self._skip = skip
+        self._locked = locked
 
     def __call__(self, force: Vector) -> Vector:
         """The force itself, or its components F^T f along the orthonormal null-space basis."""
         if self._reflections is None:
             return force
-        return self._reflections.apply_transposed(force)[self._skip :]
+        return self._reflections.apply_transposed(without(force, self._locked))[self._skip :]
 
 
 class MinorSpace:
@@ -166,11 +172,20 @@ class MinorSpace:
 class Reflections:
     """Householder reflections that bring the columns a_1..a_r to upper triangular form (Golub and Van Loan, 5.2).
 
-    With `everywhere` a column that vanishes is left alone instead of giving 0/0.
+    With `everywhere` a column that vanishes is left alone instead of giving 0/0.  In another `order` entries are turned
+    that stand in it.
     """
 
-    def __init__(self, graph: Graph, columns: Sequence[Vector], n: int, everywhere: bool = False) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        columns: Sequence[Vector],
+        n: int,
+        everywhere: bool = False,
+        order: Sequence[int] | None = None,
+    ) -> None:
         self.graph, self.n, self.everywhere = graph, n, everywhere
+        self._order = range(n) if order is None else order
         self.reflectors: list[tuple[int, Vector, Scalar]] = []
         self.pivots: list[Scalar] = []
         self.triangle: list[Vector] = []
@@ -194,6 +209,7 @@ class Reflections:
 
     def apply_transposed(self, x: Vector) -> Vector:
         """Q^T x."""
+        x = self.in_order(x)
         for reflector in self.reflectors:
             x = self._reflect(reflector, x)
         return x
@@ -202,7 +218,12 @@ class Reflections:
         """Q x."""
         for reflector in reversed(self.reflectors):
             x = self._reflect(reflector, x)
-        return x
+        there = dict(zip(self._order, x, strict=True))
+        return tuple(there[j] for j in range(self.n))
+
+    def in_order(self, x: Vector) -> Vector:
+        """The entries as they are turned."""
+        return tuple(x[j] for j in self._order)
 
     def _reflect(self, reflector: tuple[int, Vector, Scalar], x: Vector) -> Vector:
         k, v, factor = reflector
@@ -213,10 +234,15 @@ class Reflections:
 
 
 class HouseholderSpace:
-    """By the orthogonal factorisation B^T = Q R."""
+    """By the orthogonal factorisation B^T = Q R.
 
-    def __init__(self, graph: Graph, rows: Matrix, n: int, everywhere: bool = False) -> None:
-        self.graph, self.rows, self.n = graph, rows, n
+    `locked` are coordinates that rows without others lock wherever all rows are independent: N_B is 0 there, exactly.
+    """
+
+    def __init__(
+        self, graph: Graph, rows: Matrix, n: int, everywhere: bool = False, locked: Sequence[int] = ()
+    ) -> None:
+        self.graph, self.rows, self.n, self.locked = graph, rows, n, locked
         self.rank = len(rows)
         self.delta = n - self.rank
         self.reflections = Reflections(graph, rows, n, everywhere)
@@ -255,7 +281,7 @@ class HouseholderSpace:
     def basis(self) -> Matrix:
         """An orthonormal null-space basis F (n x delta): the last columns of Q."""
         units = identity(self.graph, self.n)[self.rank :]
-        return transpose(tuple(self.reflections.apply(e) for e in units), self.n)
+        return transpose(tuple(without(self.reflections.apply(e), self.locked) for e in units), self.n)
 
     @cached_property
     def projector(self) -> Matrix:
@@ -269,7 +295,8 @@ class HouseholderSpace:
 
     def project(self, x: Vector) -> Vector:
         zeros = (self.graph.zero,) * self.rank
-        return self.reflections.apply((*zeros, *self.reflections.apply_transposed(x)[self.rank :]))
+        along = self.reflections.apply_transposed(without(x, self.locked))[self.rank :]
+        return without(self.reflections.apply((*zeros, *along)), self.locked)
 
     def lift(self, a: Vector) -> Vector:
         """Solve R^T y = a forwards, then Q [y; 0]."""
@@ -289,7 +316,7 @@ class HouseholderSpace:
         return tuple(y)
 
     def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
-        restriction = Restriction(self.reflections, self.rank)
+        restriction = Restriction(self.reflections, self.rank, self.locked)
         columns = [restriction(column) for column in inputs]
         if small_family([[0]], columns, degree):
             return ActuationForms(RowForms(self.graph, (), self.delta, 0), columns, degree), restriction
@@ -298,7 +325,7 @@ class HouseholderSpace:
         return ReflectedInputs(self.graph, columns, self.delta, degree, self.reflections.everywhere), restriction
 
     def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
-        restriction = Restriction(self.reflections, self.rank)
+        restriction = Restriction(self.reflections, self.rank, self.locked)
         free = RowForms(self.graph, (), self.delta, 0)
         return ActuationForms(free, [restriction(column) for column in inputs], degree), restriction
 

@@ -11,11 +11,14 @@ decomposition).
 
 Rows of what inputs do along the constraints are no rows of their own: they are components in an orthonormal basis, one
 of which may vanish at any configuration.  Of those the longest is taken as it is.
+
+Coordinates that are locked by rows without others, as many of them as the rank of these rows, come first, and so do the
+rows: their reflections touch nothing else, and N_B is 0 there without a rounding.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from symgen.linear_algebra.null_spaces import HouseholderSpace, Reflections
@@ -31,17 +34,27 @@ class PivotedReflections(Reflections):
     """
 
     def __init__(
-        self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+        self,
+        graph: Graph,
+        rows: Matrix,
+        n: int,
+        rank: int,
+        everywhere: bool = False,
+        own: bool = True,
+        locked: Sequence[int] = (),
     ) -> None:
-        super().__init__(graph, (), n, everywhere)
-        remaining = list(rows)
+        super().__init__(graph, (), n, everywhere, (*locked, *(j for j in range(n) if j not in locked)))
+        remaining = [self.in_order(row) for row in rows]
         squares = [dot(graph, row, row) for row in rows]
         self.lengths: list[Scalar] = []
-        for k in range(rank):
-            left = [dot(graph, row[k:], row[k:]) for row in remaining]
-            shares = [graph.function("ratio_or_zero", pair) for pair in zip(left, squares, strict=True)]
+        for k, places in enumerate(_candidates(rows, rank, locked)):
+            left = [dot(graph, remaining[i][k:], remaining[i][k:]) for i in places]
+            shares = [graph.function("ratio_or_zero", (a, squares[i])) for a, i in zip(left, places, strict=True)]
             # long rows are known to more digits than short ones that hold the same
-            chosen = longest(graph, [a * b for a, b in zip(left, shares, strict=True)] if own else left)
+            best = longest(graph, [a * b for a, b in zip(left, shares, strict=True)] if own else left)
+            chosen = [graph.zero] * len(rows)
+            for i, wins in zip(places, best, strict=True):
+                chosen[i] = wins
             pairs = list(zip(chosen, remaining, strict=True))
             tail = tuple(graph.sum(c * row[i] for c, row in pairs) for i in range(k, n))
             self.lengths.append(graph.sum(c * square for c, square in zip(chosen, squares, strict=True)))
@@ -66,6 +79,18 @@ class PivotedReflections(Reflections):
         self.pivots.append(squared)
 
 
+def _candidates(rows: Matrix, rank: int, locked: Sequence[int]) -> Iterator[Sequence[int]]:
+    """For each reflection the rows it may be made from: those that lock coordinates first, then the others."""
+    if not locked:
+        yield from [range(len(rows))] * rank
+        return
+    first = [i for i, row in enumerate(rows) if all(x.is_zero for j, x in enumerate(row) if j not in locked)]
+    others = [i for i in range(len(rows)) if i not in first]
+    for places, count in ((first, len(locked)), (others, rank - len(locked))):
+        # as many rows as reflections are taken as they come
+        yield from [[i] for i in places] if len(places) == count else [places] * count
+
+
 def longest(graph: Graph, sizes: Sequence[Scalar]) -> list[Scalar]:
     """1 for the largest of the sizes, the last one where several are equal, 0 for the others."""
     best = sizes[0]
@@ -81,12 +106,19 @@ class PivotedSpace(HouseholderSpace):
     """By reflections of as many rows as the rank, chosen by length at each configuration."""
 
     def __init__(
-        self, graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+        self,
+        graph: Graph,
+        rows: Matrix,
+        n: int,
+        rank: int,
+        everywhere: bool = False,
+        own: bool = True,
+        locked: Sequence[int] = (),
     ) -> None:
-        self.graph, self.rows, self.n, self.rank = graph, rows, n, rank
+        self.graph, self.rows, self.n, self.rank, self.locked = graph, rows, n, rank, locked
         self.delta = n - rank
         self._everywhere = everywhere
-        self._pivoted = PivotedReflections(graph, rows, n, rank, everywhere, own)
+        self._pivoted = PivotedReflections(graph, rows, n, rank, everywhere, own, locked)
         self.reflections = self._pivoted
 
     @cached_property
@@ -128,15 +160,22 @@ class PivotedSpace(HouseholderSpace):
 
 
 def reflected(
-    graph: Graph, rows: Matrix, n: int, rank: int, everywhere: bool = False, own: bool = True
+    graph: Graph,
+    rows: Matrix,
+    n: int,
+    rank: int,
+    everywhere: bool = False,
+    own: bool = True,
+    locked: Sequence[int] = (),
 ) -> HouseholderSpace:
     """The null space by reflections, with pivoting only where rows depend on each other.
 
-    With `own` each row counts by what is left of its own length.
+    With `own` each row counts by what is left of its own length.  `locked` are coordinates that rows without others
+    lock: as many as the rank of these.
     """
     if rank == len(rows):
-        return HouseholderSpace(graph, rows, n, everywhere)
-    return PivotedSpace(graph, rows, n, rank, everywhere, own)
+        return HouseholderSpace(graph, rows, n, everywhere, locked)
+    return PivotedSpace(graph, rows, n, rank, everywhere, own, locked)
 
 
 def elementary_symmetric(graph: Graph, values: Sequence[Scalar], degree: int) -> Scalar:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from symgen.diagnostics import SymgenBug
+from symgen.linear_algebra.blocks import components
 from symgen.mechanics.system import System
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.branches import branches
@@ -14,6 +15,7 @@ from symgen.model.configurations.sparse import PLAIN, clear_rank
 from symgen.model.model import Model
 from symgen.records import dataclass
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 
 POINTS = 6
@@ -23,7 +25,8 @@ POINTS = 6
 class Genericity:
     """Generic ranks on V: rho = rank B, delta = n - rho, alpha = rank of the projected control matrix (26).
 
-    The ranks of B and of [B; M^T] are identical where no configuration, on V or off it, exceeds them.
+    The ranks of B and of [B; M^T] are identical where no configuration, on V or off it, exceeds them.  `locked` are the
+    numbers of coordinates that rows without others lock, as many as the rank of these rows.
     """
 
     n: int
@@ -34,6 +37,7 @@ class Genericity:
     geometric_rank: int
     rank_is_identical: bool = True
     actuation_is_identical: bool = True
+    locked: tuple[int, ...] = ()
 
     @property
     def delta(self) -> int:
@@ -107,6 +111,36 @@ def genericity(mechanics: System) -> Genericity:
     """The ranks kernels are made for: those of the branch that is meant."""
     found = assembly_of(mechanics.model)
     ranks, identical = found.ranks, (found.rank_is_identical, found.actuation_is_identical)
-    return Genericity(
-        mechanics.n, mechanics.r, mechanics.m, ranks.constraints, ranks.actuation, ranks.geometric, *identical
-    )
+    sizes = mechanics.n, mechanics.r, mechanics.m
+    locked = _locked(mechanics, found.held)
+    return Genericity(*sizes, ranks.constraints, ranks.actuation, ranks.geometric, *identical, locked)
+
+
+def _locked(mechanics: System, held: Sequence[int]) -> tuple[int, ...]:
+    """Of the coordinates that cannot move those that rows without others lock, whatever the configuration.
+
+    Such rows have as many columns as their rank, which is tested at run time: where they have it, nothing moves there.
+    Others are held along this branch alone, and may move along another.
+    """
+    if not held:
+        return ()
+    rows = mechanics.constraint_jacobian
+    own = tuple(tuple(row[j] for j in held) for row in rows if _lies_in(row, held))
+    flat = [entry for row in own for entry in row]
+    evaluate, width = Evaluator(flat), len(held)
+    places = [evaluate(point) for point in configurations(mechanics)]
+    locked: list[int] = []
+    for part in components(own):
+        ranks = {rank([[at[i * width + j] for j in part.columns] for i in part.rows]) for at in places}
+        if ranks == {len(part.columns)}:
+            locked += (held[j] for j in part.columns)
+    return tuple(sorted(locked))
+
+
+def _lies_in(row: Sequence[Scalar], columns: Sequence[int]) -> bool:
+    return all(entry.is_zero for j, entry in enumerate(row) if j not in columns)
+
+
+def locked_in(mechanics: System, generic: Genericity) -> tuple[int, ...]:
+    """The numbers of locked coordinates where a system is described in the model's own."""
+    return generic.locked if type(mechanics) is System and mechanics.change is None else ()

@@ -13,7 +13,7 @@ from symgen.linear_algebra.block_space import BlockSpace
 from symgen.linear_algebra.blocks import components
 from symgen.linear_algebra.null_spaces import MINOR_LIMIT, MinorSpace
 from symgen.linear_algebra.pivoted import reflected
-from symgen.mechanics.genericity import Genericity, genericity
+from symgen.mechanics.genericity import Genericity, genericity, locked_in
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_angles
@@ -106,7 +106,8 @@ def ways(mechanics: System, generic: Genericity) -> dict[str, Derivation]:
         space = MinorSpace(mechanics.graph, rows, n, generic.rank)
         found["minors"] = Derivation(mechanics, generic, space)
     if rows:
-        found["householder"] = Derivation(mechanics, generic, reflected(mechanics.graph, rows, n, generic.rank))
+        turned = reflected(mechanics.graph, rows, n, generic.rank, locked=locked_in(mechanics, generic))
+        found["householder"] = Derivation(mechanics, generic, turned)
     return found
 
 
