@@ -3,7 +3,8 @@
 Beside the result v of a statement stands a rest, so that results are off by a few eps^2 of what is added up on the way.
 What is left is what rounding of the inputs does.  Sines and cosines are brought back to the unit circle: 1 - s^2 - c^2
 follows from s and c alone.  What is left of their errors turns the angle by less than eps of itself, as rounding of its
-argument does.  What functions of the library round themselves stays.
+argument does; those of a sum of angles are made of those of its parts (`ir/wide_angles.py`).  What functions of the
+library round themselves stays.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from symgen.ir.interpret import round_literal
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, OperationName, Scalar, Statement, Status
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.split import pruned
+from symgen.ir.wide_angles import Turn, sums_of_shared_angles, with_ranges
 from symgen.ir.wide_functions import HALF, ONE, WIDE, Lines
 
 ZERO = Literal(Fraction(0))
@@ -32,6 +34,7 @@ def widened(kernel: Kernel, scalar: Scalar) -> Kernel:
     blocks = [replace(block, statements=writer.block(block.statements)) for block in kernel.blocks]
     last, outputs = writer.rounded(kernel.outputs)
     blocks[-1] = replace(blocks[-1], statements=(*blocks[-1].statements, *last))
+    blocks = with_ranges(blocks, writer.further_angles, writer.taken)
     made = pruned(replace(kernel, blocks=tuple(blocks), outputs=outputs, alike=()))
     same_kernel(f"twice the digits in {kernel.name}", Lifted(kernel), Lifted(made), squares_roots=True)
     return made
@@ -100,9 +103,15 @@ class _Writer:
 
     def __init__(self, kernel: Kernel, scalar: Scalar) -> None:
         self._scalar: Scalar = scalar
-        self._taken = {load.local for load in kernel.loads} | _targets(kernel.blocks)
+        self.taken = {load.local for load in kernel.loads} | _targets(kernel.blocks)
         self._count = 0
         self._rests: dict[str, Operand] = {}
+        self._sums = sums_of_shared_angles(kernel)
+        sines = (one for one in kernel.statements if one.operation == "sincos")
+        self._own_sines = {one.operands[0].name: one for one in sines if isinstance(one.operands[0], Local)}
+        self._turned: dict[Turn, tuple[_Pair, _Pair]] = {}
+        self._written: set[str] = set()
+        self.further_angles: list[str] = []
         self._lines = Lines(self._name)
 
     def block(self, statements: Sequence[Statement]) -> tuple[Statement, ...]:
@@ -167,7 +176,59 @@ class _Writer:
         return (value, rest) if exact or rest == ZERO else self.wide("wide_add", (value, rest), (ZERO, ZERO))
 
     def _sines(self, statement: Statement) -> None:
+        """Of a sum of angles by those of its parts, where others are made of them too."""
+        (angle,) = statement.operands
+        if isinstance(angle, Local) and angle.name in self._sums:
+            self._turn(self._sums[angle.name], statement.targets)
+        elif statement.targets[0] not in self._written:
+            self._on_circle(statement)
+
+    def _turn(self, turn: Turn, targets: tuple[str, ...] = ()) -> tuple[_Pair, _Pair]:
+        """Sine and cosine of a sum of angles, by the addition theorem from those of all but one."""
+        if turn in self._turned and not targets:
+            return self._turned[turn]
+        if turn.count == 1:
+            ((name, direction),) = turn.parts
+            sine, cosine = self._sines_of(name)
+            if direction < 0:
+                sine = self.emit("neg", sine[0]), self.emit("neg", sine[1])
+            self._turned[turn] = sine, cosine
+            return sine, cosine
+        names = [name for name, _ in turn.parts]
+        last = next((name for name in names if turn.without(name) in self._turned), names[-1])
+        (sine, cosine), (s, c) = self._turn(turn.without(last)), self._sines_of(last)
+        kinds: tuple[OperationName, OperationName] = ("wide_add", "wide_sub")
+        add, sub = kinds if turn.direction(last) > 0 else kinds[::-1]
+        first, second = targets or (self._name(), self._name())
+        made = self._product(first, add, (sine, c), (cosine, s)), self._product(second, sub, (cosine, c), (sine, s))
+        self._turned[turn] = made
+        return made
+
+    def _product(
+        self, target: str, operation: OperationName, left: tuple[_Pair, _Pair], right: tuple[_Pair, _Pair]
+    ) -> _Pair:
+        """A sum or difference of two products."""
+        products = self.wide("wide_mul", *left), self.wide("wide_mul", *right)
+        rest = self._name()
+        given = tuple(x for pair in products for x in pair)
+        self._lines.statements.append(Statement((target, rest), operation, given))
+        self._rests[target] = Local(rest)
+        return Local(target), Local(rest)
+
+    def _sines_of(self, name: str) -> tuple[_Pair, _Pair]:
+        """Those of a loaded angle; where the kernel has none of it, or only later on, they come first."""
+        own = self._own_sines.get(name)
+        if own is None:
+            own = self._own_sines[name] = Statement((self._name(), self._name()), "sincos", (Local(name),))
+            self.further_angles.append(name)
+        if own.targets[0] not in self._written:
+            self._on_circle(own)
+        sine, cosine = map(Local, own.targets)
+        return (sine, self.rest(sine)), (cosine, self.rest(cosine))
+
+    def _on_circle(self, statement: Statement) -> None:
         """Along the radius onto the unit circle, and along the circle by the rest of the angle."""
+        self._written.add(statement.targets[0])
         self._lines.statements.append(statement)
         turned = self.rest(statement.operands[0])
         sine, cosine = map(Local, statement.targets)
@@ -194,9 +255,9 @@ class _Writer:
     def _name(self) -> str:
         self._count += 1
         name = f"w{self._count}"
-        while name in self._taken:
+        while name in self.taken:
             name += "_"
-        self._taken.add(name)
+        self.taken.add(name)
         return name
 
 

@@ -187,6 +187,70 @@ def test_sums_of_angles(scalar: Scalar) -> None:
         assert abs(entry - (x - y)) < 4 * eps * one["q"][0]
 
 
+def stretched(lines: Lines) -> str:
+    """sin(a + k) cos a - cos(a + k) sin a, which is sin k; nothing else is made of k alone."""
+    lines("sincos", lines("add", "a", "k"), targets=2)
+    both = len(lines.statements) - 1
+    lines("sincos", "a", targets=2)
+    one = len(lines.statements) - 1
+    left = lines("mul", f"t{both}a", f"t{one}b")
+    return lines("sub", left, lines("mul", f"t{both}b", f"t{one}a"))
+
+
+def folded(lines: Lines) -> str:
+    """sin(x - k - a - a) cos(x - a - a) - cos(x - k - a - a) sin(x - a - a), which is -sin k."""
+    shared = lines("sub", lines("sub", "x", "a"), "a")
+    lines("sincos", lines("sub", shared, "k"), targets=2)
+    both = len(lines.statements) - 1
+    lines("sincos", lines("neg", lines("sub", "a", lines("sub", "x", "a"))), targets=2)
+    one = len(lines.statements) - 1
+    left = lines("mul", f"t{both}a", f"t{one}b")
+    return lines("sub", left, lines("mul", f"t{both}b", f"t{one}a"))
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+@pytest.mark.parametrize("build", [stretched, folded], ids=lambda build: build.__name__)
+def test_angles_that_are_a_little_apart(build: Callable[[Lines], str], scalar: Scalar) -> None:
+    """Sines of a sum and of a part of it keep what is between them, as on a leg that is all but stretched."""
+    lines = Lines()
+    plain = lines.kernel(build(lines))
+    wide = widened(plain, scalar)
+    interpreter = Interpreter(sincos(scalar), scalar)
+    eps = float(UNIT_ROUNDOFF[scalar])
+    lost = []
+    for one in given(scalar):
+        little = {**one, "p": (one["p"][0] * 2.0**-9,)}
+        with precision(200):
+            (exact,) = exact_outputs(plain, _state(little))
+        relative = []
+        for kernel in (plain, wide):
+            _, (entry,) = interpreter.run(kernel, little, little["p"])
+            with precision(200):
+                relative.append(float(abs(arb(entry) - exact) / abs(exact)))
+        lost.append(relative[0])
+        assert relative[1] < 4 * eps
+    assert max(lost) > 100 * eps
+
+
+def test_angles_that_sums_are_made_of_have_a_range() -> None:
+    """Sums of angles can be small where the angles are not."""
+    lines = Lines()
+    output = stretched(lines)
+    limit = Check(Status.ANGLE_RANGE, Literal(Fraction(100)), Local("a"), inclusive=True)
+    wide = widened(lines.kernel(output, checks=(limit,)), "float64")
+    interpreter = Interpreter(sincos("float64"), "float64")
+    state = {"q": (0.5,), "qd": (1.0, 1.0), "qdd": (), "u": ()}
+    assert interpreter.run(wide, state, (0.25,))[0] is Status.OK
+    assert interpreter.run(wide, state, (-200.0,))[0] is Status.ANGLE_RANGE
+
+
+def test_sums_of_angles_of_their_own_stay_as_they_are() -> None:
+    lines = Lines()
+    sine = lines("sincos", lines("add", "a", "k"), targets=2)
+    wide = widened(lines.kernel(sine), "float64")
+    assert sum(one.operation == "sincos" for one in wide.statements) == 1
+
+
 @pytest.mark.parametrize("scalar", SCALARS)
 @pytest.mark.parametrize("operation", WIDE.values())
 def test_operations_on_pairs(operation: OperationName, scalar: Scalar) -> None:
@@ -240,7 +304,7 @@ def test_a_pair_that_is_not_the_same_is_found() -> None:
 
 
 @pytest.mark.parametrize("scalar", SCALARS)
-@pytest.mark.parametrize("build", [*KERNELS, turned], ids=lambda build: build.__name__)
+@pytest.mark.parametrize("build", [*KERNELS, turned, stretched, folded], ids=lambda build: build.__name__)
 def test_many_states_have_the_bits_of_one(build: Callable[[Lines], str], scalar: Scalar) -> None:
     lines = Lines()
     last = build(lines)
