@@ -271,3 +271,26 @@ configuration: {e_0: 0.8, e_3: 0.6}
         assert not any("leave the coordinate" in x for x in told)
     alone = load_text(text.replace("plane: e_3 - 0.6, still: EXPRESSION", "still: s - 0.2"), "hinged.yaml")
     assert any("else leave the coordinate out" in notice.message for notice in alone.notices)
+
+
+@pytest.mark.parametrize(("r", "h", "share"), [(0.37, 0.9, "h/3"), (0.4, 0.8, "h/2"), (0.5, 1.1, "h/2")])
+def test_a_length_that_moves_a_row_of_its_own_is_not_tied(r: float, h: float, share: str) -> None:
+    """A bar on three equal cranks closes for any length of all three; a slide that follows one takes no part."""
+    text = f"""\
+model: cranks_and_slide
+parameters: {{r: {{value: {r}, range: [0.3, 0.7]}}, h: {{value: {h}}}}}
+coordinates: {{a: {{unit: rad}}, b: {{unit: rad}}, c: {{unit: rad}}, p: {{unit: rad}}, w: {{}}}}
+kinetic_energy: a_dot**2/5 + b_dot**2/7 + c_dot**2/9 + p_dot**2/3 + w_dot**2
+constraints:
+  geometric:
+    x1: r*cos(a) + h*cos(p) - h - r*cos(b)
+    y1: r*sin(a) + h*sin(p) - r*sin(b)
+    x2: r*cos(a) + {share}*cos(p) - {share} - r*cos(c)
+    y2: r*sin(a) + {share}*sin(p) - r*sin(c)
+    slot: w - r*cos(a)/2
+configuration: {{a: 0.9, b: 0.9, c: 0.9, p: 0, w: 0.153}}
+"""
+    model = load_text(text, "cranks.yaml")
+    assert model.assembly is not None
+    assert model.assembly.ranks.constraints == 4
+    assert model.assembly.tied == ()

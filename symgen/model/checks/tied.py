@@ -16,6 +16,7 @@ STEP, FURTHER = 1e-5, 10.0  # of a parameter, and how many times as far what is 
 PLAIN = 1e-3  # of the change, that no motion makes up for
 LINEAR = 0.2
 SAME, NOISE = 1e-6, 1e-9
+REST = 1e-11  # of a row that takes no part, which is what rounding leaves in y
 
 
 def tied_parameters(written: NumericSystem, counted: NumericSystem, found: Assembly) -> tuple[str, ...]:
@@ -52,6 +53,7 @@ def _opens(still: Rows, change: Callable[[str, float], list[float]], name: str, 
     for vector in still:
         near, far = (sum(y * x for y, x in zip(vector, moved, strict=True)) for moved in (little, more))
         whole = sum(abs(y * x) for y, x in zip(vector, little, strict=True))
-        if abs(near) > PLAIN * whole and abs(far - FURTHER * near) < LINEAR * FURTHER * abs(near):
+        rest = REST * max(map(abs, vector)) * max(map(abs, little))
+        if abs(near) > max(PLAIN * whole, rest) and abs(far - FURTHER * near) < LINEAR * FURTHER * abs(near):
             return True
     return False
